@@ -1,0 +1,1 @@
+"""Elastohydrodynamic (oil-filled) revolute and cylindrical joints for Exudyn."""

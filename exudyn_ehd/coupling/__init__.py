@@ -1,0 +1,1 @@
+"""Everything that touches Exudyn: the film element, kinematics of markers, histories, sensors."""

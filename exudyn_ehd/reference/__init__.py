@@ -1,0 +1,1 @@
+"""Closed forms to compare with: long and short bearings, Petroff, thick cylinders, rings."""

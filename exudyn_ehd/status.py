@@ -1,0 +1,103 @@
+"""Outcomes of a film evaluation, the package's errors, and the checks that scene descriptions share."""
+
+from __future__ import annotations
+
+import enum
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+
+class Status(enum.IntEnum):
+    """Outcome of one film evaluation; ``advice`` says what to do about it."""
+
+    CONVERGED = 0
+    NOT_CONVERGED = 1
+    NO_FILM = 2
+    NOT_FINITE = 3
+
+    @property
+    def advice(self) -> str:
+        """One sentence for the user: what happened and what to try."""
+        return _ADVICE[self]
+
+
+_ADVICE = {
+    Status.CONVERGED: "the film was evaluated.",
+    Status.NOT_CONVERGED: "the cavitation closure did not settle; refine the film grid (FiniteLength) or reduce the "
+    "step size, and please report the state.",
+    Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact effect, "
+    "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
+    Status.NOT_FINITE: "the state handed to the film is not finite; reduce the step size and check the masses and "
+    "loads of the model.",
+}
+
+
+class EHDError(Exception):
+    """Base of all errors of this package."""
+
+
+class InputError(EHDError, ValueError):
+    """A scene was described with values that can't be meant; raised before anything runs."""
+
+
+class FilmError(EHDError, RuntimeError):
+    """A film could not be evaluated; names the joint, the state and the remedy."""
+
+
+def require_number(
+    where: str, value: float, unit: str = "", *, above: float | None = None, at_least: float | None = None, hint: str = ""
+) -> float:
+    """Return ``value`` as a finite float, or raise `InputError` naming argument, received and expected value.
+
+    Parameters
+    ----------
+    where : str
+        ``Class.argument`` for the message.
+    value : float
+        What the user gave.
+    unit : str
+        SI unit for the message.
+    above, at_least : float, optional
+        Exclusive and inclusive lower bounds.
+    hint : str
+        Next step, appended to the message.
+    """
+    expected = "finite"
+    if above is not None:
+        expected = f"> {above:g}"
+    elif at_least is not None:
+        expected = f">= {at_least:g}"
+    if unit:
+        expected += f" {unit}"
+    tail = f"; {hint}" if hint else "."
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
+        raise InputError(f"{where} must be a number {expected}, got {value!r}{tail}")
+    number = float(value)
+    bad = not math.isfinite(number)
+    bad = bad or (above is not None and not number > above)
+    bad = bad or (at_least is not None and not number >= at_least)
+    if bad:
+        raise InputError(f"{where} must be {expected}, got {value!r}{tail}")
+    return number
+
+
+def require_integer(where: str, value: int, *, at_least: int, hint: str = "") -> int:
+    """Return ``value`` as an int not below ``at_least``, or raise `InputError`."""
+    tail = f"; {hint}" if hint else "."
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < at_least:
+        raise InputError(f"{where} must be an integer >= {at_least}, got {value!r}{tail}")
+    return int(value)
+
+
+def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, unit: str = "") -> np.ndarray:
+    """Return ``value`` as a finite float64 vector of ``size``, or raise `InputError`."""
+    expected = f"must be {size} finite numbers" + (f" in {unit}" if unit else "")
+    try:
+        vector = np.array(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{where} {expected}, got {value!r}.") from None
+    if vector.shape != (size,) or not np.all(np.isfinite(vector)):
+        raise InputError(f"{where} {expected}, got {value!r}.")
+    return vector
