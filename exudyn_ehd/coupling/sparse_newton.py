@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import exudyn as exu
 import numpy as np
@@ -39,14 +39,19 @@ class FactorReuse:
         Renew if an iteration reduces the residual by less than this factor.
     maximum_iterations : int
         Renew after so many iterations of one step.
+    worth : int
+        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent beyond
+        those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
     """
 
     contractivity: float = 0.5
     maximum_iterations: int = 10
+    worth: int = 40
 
     def __post_init__(self) -> None:
         require_number("FactorReuse.contractivity", self.contractivity, above=0.0)
         require_integer("FactorReuse.maximum_iterations", self.maximum_iterations, at_least=1)
+        require_integer("FactorReuse.worth", self.worth, at_least=1)
 
 
 @dataclass(kw_only=True)
@@ -118,7 +123,13 @@ def SolveDynamicSparse(
     solver = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
     start = time.perf_counter()
-    run.success = bool(solver.SolveSystem(mbs, settings))
+    chosen = settings.linearSolver.solverType
+    # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    try:
+        run.success = bool(solver.SolveSystem(mbs, settings))
+    finally:
+        settings.linearSolver.solverType = chosen
     run.seconds = time.perf_counter() - start
     if not run.success:
         raise exu.SolverError(
@@ -136,7 +147,9 @@ class _Newton:
     reuse: FactorReuse
     run: SparseRun
     factor: SuperLU | None = None
-    step_size: float = field(default=0.0)
+    step_size: float = 0.0
+    baseline: int = 0
+    excess: int = 0
 
     def __call__(self, solver: exu.MainSolverImplicitSecondOrder, mbs: exu.MainSystem, settings) -> bool:
         newton = settings.timeIntegration.newton
@@ -145,8 +158,10 @@ class _Newton:
         if solver.it.currentStepSize != self.step_size:
             self.factor = None
             self.step_size = solver.it.currentStepSize
+        if self.excess >= self.reuse.worth:
+            self.factor = None
         age = 0
-        for _ in range(newton.maxIterations):
+        for iteration in range(1, newton.maxIterations + 1):
             if not np.isfinite(error):
                 break
             if self.factor is None or age >= self.reuse.maximum_iterations:
@@ -157,6 +172,8 @@ class _Newton:
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
             if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1
+                self.baseline = self.baseline or iteration
+                self.excess += iteration - self.baseline
                 return True
             first = max(first, error) if newton.adaptInitialResidual else first
             if error > self.reuse.contractivity * previous:
@@ -176,6 +193,7 @@ class _Newton:
             diag_pivot_thresh=0.01 if constraints else 0.0,
             options={"SymmetricMode": True},
         )
+        self.baseline = self.excess = 0
         self.run.jacobians += 1
         self.run.factor_bytes = 12 * (self.factor.nnz)
         self.run.seconds_jacobian += time.perf_counter() - start
