@@ -91,7 +91,10 @@ def equilibrium(
             for load in followers:
                 K = K + part * _follower_matrix(load, positions)
             K = K[free][:, free].tocsc()
-            factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            try:
+                factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            except RuntimeError:
+                raise _failure(step, steps, float("inf")) from None
             correction = factor.solve(residual.ravel()[free])
             u.ravel()[free] -= correction
             count += 1

@@ -96,7 +96,7 @@ GAUSS27 = gauss_cube(3)
 IRONS14 = _irons14()
 """Nearly the accuracy of 27 points at half the cost; exact for a straight-edged element under constant strain."""
 GAUSS8 = gauss_cube(2)
-"""Reduced integration: cheapest and softest; one element alone has six zero-energy modes besides rigid motion."""
+"""Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall, else it has mechanisms."""
 
 
 def shape_functions(points: np.ndarray) -> np.ndarray:
