@@ -1,9 +1,9 @@
 """A flexible hollow cylinder under a growing line load: the first case of the paper by Flores (2013).
 
-Inner radius 0.225 m, length 0.2 m, thickness 0.05 m, E = 1e6 Pa, line load 1000 t N/m, step 1e-3 s, 1 s. The paper leaves
-out density, Poisson ratio, supports and direction; assumed here: 7800 kg/m^3, 0.3, the lowest outer generatrix fixed in x,
-y and z, the top outer generatrix guided in x (one fixed line alone leaves a rotation free), no gravity, a dead load on the
-top outer generatrix pointing down (-y). The bush axis is z.
+Inner radius 0.225 m, length 0.2 m, thickness 0.05 m, E = 1e6 Pa, line load 1000 t N/m, step 1e-3 s, 1 s. The paper
+leaves out density, Poisson ratio, supports and direction; assumed here: 7800 kg/m^3, 0.3, the lowest outer generatrix
+fixed in x, y and z, the top outer generatrix guided in x (one fixed line alone leaves a rotation free), no gravity, a
+dead load on the top outer generatrix pointing down (-y). The bush axis is z.
 
 Stress is reported at two bore points of the mid-plane: under the load and at the side. At the loaded line itself it is
 unbounded in the exact solution, so that a number there would only tell the mesh size.
@@ -147,8 +147,8 @@ def main(*, quick: bool = False, results: str | Path | None = "results") -> dict
     Returns
     -------
     dict
-        ``cases``: per mesh the counts, final top displacement [m], final von Mises stresses [Pa] at the two points and the
-        run's cost; ``pictures``: files written.
+        ``cases``: per mesh the counts, final top displacement [m], final von Mises stresses [Pa] at the two points
+        and the run's cost; ``pictures``: files written.
     """
     meshes = [(1, 1, 16), (2, 1, 24)] if quick else [(2, 1, 20), (4, 1, 40), (6, 2, 60), (4, 2, 40)]
     step, end = (4e-3, 0.2) if quick else (1e-3, 1.0)

@@ -1,7 +1,7 @@
 """Equations of motion of a nodal bush in the coordinates of its Exudyn object.
 
-Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier's node with coordinates q_c. With
-u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
+Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier's node with coordinates q_c.
+With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
 """
 
 from __future__ import annotations
@@ -87,9 +87,7 @@ class BushEquations:
         which is of the size of angular velocity squared times the slaved mass.
         """
         u, v = self.displacements(q), self.velocities(q, q_t)
-        values = self.solid.tangent_values(
-            u, v, position_factor=position_factor, velocity_factor=velocity_factor
-        )
+        values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
         self._add_follower_stiffness(values, t, u, position_factor)
         K = self._moving_block.matrix(values)
         if self.mass_rate:
@@ -184,7 +182,7 @@ class BushEquations:
 
     @cached_property
     def _highest_frequency_squared(self) -> float:
-        """An upper estimate [1/s^2]: largest row sum of K over the smallest diagonal of M; M/diag has condition ~100."""
+        """An upper estimate [1/s^2]: largest row sum of K over a hundredth of the smallest diagonal of M."""
         K = self.solid.tangent(np.zeros(self.held.shape))
         return 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
 

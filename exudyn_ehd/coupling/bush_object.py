@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
-import exudyn as exu
+import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
@@ -23,6 +24,9 @@ from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import InputError, require_vector
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,7 +65,7 @@ class CarriedOuter:
         The body or its node. Its own mass and inertia stay untouched: the bush adds its own.
     """
 
-    itemNumber: exu.ObjectIndex | exu.NodeIndex
+    itemNumber: Any
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -81,28 +85,28 @@ class FlexibleBush:
     equations : BushEquations
     """
 
-    mbs: exu.MainSystem
+    mbs: Any
     mesh: BushMesh
     solid: TotalLagrange
-    objectNumber: exu.ObjectIndex
+    objectNumber: Any
     nodeNumbers: np.ndarray
     equations: BushEquations
 
-    def coordinates(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the object's coordinates q without reference values."""
         places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
         return np.asarray(self.mbs.systemData.GetODE2Coordinates(configuration))[places]
 
-    def coordinates_t(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates_t(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the rates dq/dt of the object's coordinates."""
         places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
         return np.asarray(self.mbs.systemData.GetODE2Coordinates_t(configuration))[places]
 
-    def displacements(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def displacements(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the displacement of all mesh nodes, shape (n, 3) [m], global frame."""
         return self.equations.displacements(self.coordinates(configuration))
 
-    def velocities(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
+    def velocities(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the velocity of all mesh nodes, shape (n, 3) [m/s], global frame."""
         return self.equations.velocities(self.coordinates(configuration), self.coordinates_t(configuration))
 
@@ -111,13 +115,13 @@ class FlexibleBush:
         """Stress recovery for `displacements`."""
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
-    def energy(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> tuple[float, float]:
+    def energy(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[float, float]:
         """Return strain and kinetic energy [J]."""
         v = self.velocities(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
         return self.solid.energy(self.displacements(configuration)), kinetic
 
-    def momentum(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> tuple[np.ndarray, np.ndarray]:
+    def momentum(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[np.ndarray, np.ndarray]:
         """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s]."""
         flow = self.solid.scalar_mass @ self.velocities(configuration)
         positions = self.solid.mesh.nodes + self.displacements(configuration)
@@ -125,7 +129,7 @@ class FlexibleBush:
 
 
 def CreateFlexibleBush(
-    mbs: exu.MainSystem,
+    mbs: Any,
     name: str = "",
     *,
     bush: ANCFBush,
@@ -168,8 +172,8 @@ def CreateFlexibleBush(
     rotation = np.eye(3) if rotationMatrix is None else np.asarray(rotationMatrix, dtype=float)
     if rotation.shape != (3, 3) or not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9):
         raise InputError(
-            f"CreateFlexibleBush.rotationMatrix must be a rotation matrix, got {rotationMatrix!r}; its columns are the bush "
-            "axes in the global frame."
+            f"CreateFlexibleBush.rotationMatrix must be a rotation matrix, got {rotationMatrix!r}; its columns are "
+            "the bush axes in the global frame."
         )
     place = require_vector("CreateFlexibleBush.position", position, 3, "m")
     mesh = bush.build_mesh()
@@ -190,8 +194,8 @@ def CreateFlexibleBush(
     mass_rate = 0.0 if bush.damping is None else bush.damping.mass_rate
     if carrier is not None and mass_rate > 0.0:
         raise InputError(
-            f"ANCFBush.damping with outer=CarriedOuter must have mass_rate = 0, got {mass_rate:g} 1/s: it would brake the "
-            "carrier; use stiffness_time."
+            f"ANCFBush.damping with outer=CarriedOuter must have mass_rate = 0, got {mass_rate:g} 1/s: it would brake "
+            "the carrier; use stiffness_time."
         )
     equations = BushEquations(
         solid=solid, held=held, slaved=slaved, carrier=carrier, loads=tuple(loads), mass_rate=mass_rate
@@ -217,7 +221,7 @@ def _held_directions(mesh: BushMesh, supports: Sequence[Support]) -> np.ndarray:
 
 
 def _initial_motion(
-    mbs: exu.MainSystem, equations: BushEquations, place: np.ndarray, velocity: np.ndarray, omega: np.ndarray
+    mbs: Any, equations: BushEquations, place: np.ndarray, velocity: np.ndarray, omega: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Initial displacement and velocity of all mesh nodes: rigid, the carrier's if there is one."""
     X = equations.solid.mesh.nodes
@@ -229,7 +233,7 @@ def _initial_motion(
     return everything.positions(q) - X, everything.velocities(q, q_t)
 
 
-def _add_nodes(mbs: exu.MainSystem, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+def _add_nodes(mbs: Any, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     numbers = np.full(len(u), -1)
     X, held = equations.solid.mesh.nodes, equations.held
     v = np.where(held, 0.0, v)
@@ -248,7 +252,7 @@ def _add_nodes(mbs: exu.MainSystem, equations: BushEquations, u: np.ndarray, v: 
 
 
 def _add_object(
-    mbs: exu.MainSystem,
+    mbs: Any,
     name: str,
     mesh: BushMesh,
     equations: BushEquations,

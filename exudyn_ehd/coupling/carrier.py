@@ -7,12 +7,16 @@ the local angular velocity omega = G dtheta/dt, xbar local positions of the slav
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
-import exudyn as exu
+import exudyn
 import numpy as np
 from exudyn import rigidBodyUtilities as rigid
 
 from exudyn_ehd.status import InputError
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
 
 _KINDS = {
     "RigidBodyEP": (rigid.EulerParameters2RotationMatrix, rigid.EulerParameters2GLocal, 4),
@@ -36,34 +40,35 @@ class Carrier:
         xbar [m].
     """
 
-    node: exu.NodeIndex
+    node: Any
     kind: str
     reference: np.ndarray
     local: np.ndarray
 
     @classmethod
-    def of(cls, mbs: exu.MainSystem, item: exu.ObjectIndex | exu.NodeIndex, positions: np.ndarray) -> Carrier:
+    def of(cls, mbs: Any, item: Any, positions: np.ndarray) -> Carrier:
         """Return the carrier for slaved points at global reference positions, shape (s, 3) [m]."""
         node = item
         if isinstance(item, exu.ObjectIndex):
             data = mbs.GetObject(item)
             if "nodeNumber" not in data:
                 raise InputError(
-                    f"CarriedOuter.itemNumber must be a rigid body or its node, got an object of type {data['objectType']}; "
+                    "CarriedOuter.itemNumber must be a rigid body or its node, got an object of type "
+                    f"{data['objectType']}; "
                     "use FixedOuter() for ground, or carry the bush by a rigid body joined to your flexible part."
                 )
             node = exu.NodeIndex(int(data["nodeNumber"]))
         if not isinstance(node, exu.NodeIndex):
             raise InputError(
-                f"CarriedOuter.itemNumber must be an ObjectIndex or NodeIndex, got {item!r}; pass what mbs.CreateRigidBody "
-                "returned."
+                f"CarriedOuter.itemNumber must be an ObjectIndex or NodeIndex, got {item!r}; pass what "
+                "mbs.CreateRigidBody returned."
             )
         data = mbs.GetNode(node)
         kind = data["nodeType"]
         if kind not in _KINDS:
             raise InputError(
-                f"CarriedOuter.itemNumber must have a rigid node of type {', '.join(_KINDS)}, got {kind}; create the body "
-                "with one of these nodeTypes."
+                f"CarriedOuter.itemNumber must have a rigid node of type {', '.join(_KINDS)}, got {kind}; create the "
+                "body with one of these nodeTypes."
             )
         reference = np.array(data["referenceCoordinates"], dtype=float)
         rotation = _KINDS[kind][0](reference[3:])
@@ -130,7 +135,9 @@ class Carrier:
             for k in range(3, self.size):
                 change = np.zeros(self.size)
                 change[k] = step
-                result[3:, k] += (self.rotation_rate(q + change) - self.rotation_rate(q - change)).T @ torque / (2 * step)
+                result[3:, k] += (
+                    (self.rotation_rate(q + change) - self.rotation_rate(q - change)).T @ torque / (2 * step)
+                )
         return result
 
 

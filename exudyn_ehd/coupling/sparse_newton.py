@@ -8,9 +8,9 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
     [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
 
 after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2). (Generalized-alpha for constrained systems as in
-M. Arnold, O. Brüls (2007), Multibody System Dynamics 18, 185-202, is Exudyn's documented scheme; the scaling is measured
-in the tests.) The Jacobian is assembled from the objects' own analytic Jacobians. The factor is kept over iterations and
-steps until convergence slows down (modified Newton).
+M. Arnold, O. Brüls (2007), Multibody System Dynamics 18, 185-202, is Exudyn's documented scheme; the scaling is
+measured in the tests.) The Jacobian is assembled from the objects' own analytic Jacobians. The factor is kept over
+iterations and steps until convergence slows down (modified Newton).
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """
@@ -20,13 +20,17 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
-import exudyn as exu
+import exudyn
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
 from scipy.sparse.linalg import SuperLU, splu
 
 from exudyn_ehd.status import InputError, require_integer, require_number
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,8 +44,8 @@ class FactorReuse:
     maximum_iterations : int
         Renew after so many iterations of one step.
     worth : int
-        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent beyond
-        those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
+        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent
+        beyond those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
     """
 
     contractivity: float = 0.5
@@ -91,8 +95,8 @@ class SparseRun:
 
 
 def SolveDynamicSparse(
-    mbs: exu.MainSystem,
-    simulationSettings: exu.SimulationSettings | None = None,
+    mbs: Any,
+    simulationSettings: Any | None = None,
     *,
     reuse: FactorReuse | None = None,
 ) -> SparseRun:
@@ -122,6 +126,8 @@ def SolveDynamicSparse(
     loop = _Newton(matrix=SystemMatrix.of(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run)
     solver = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
+    # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
+    mbs.sys["dynamicSolver"] = solver
     start = time.perf_counter()
     chosen = settings.linearSolver.solverType
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
@@ -133,8 +139,8 @@ def SolveDynamicSparse(
     run.seconds = time.perf_counter() - start
     if not run.success:
         raise exu.SolverError(
-            f"SolveDynamicSparse: the integration stopped at t = {mbs.systemData.GetTime():g} s; reduce the step size or "
-            "look at the state there."
+            f"SolveDynamicSparse: the integration stopped at t = {mbs.systemData.GetTime():g} s; reduce the step size "
+            "or look at the state there."
         )
     return run
 
@@ -151,7 +157,7 @@ class _Newton:
     baseline: int = 0
     excess: int = 0
 
-    def __call__(self, solver: exu.MainSolverImplicitSecondOrder, mbs: exu.MainSystem, settings) -> bool:
+    def __call__(self, solver: Any, mbs: Any, settings) -> bool:
         newton = settings.timeIntegration.newton
         solver.ComputeNewtonUpdate(mbs, settings, True)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
@@ -165,7 +171,8 @@ class _Newton:
             if not np.isfinite(error):
                 break
             if self.factor is None or age >= self.reuse.maximum_iterations:
-                self._factorise(solver, mbs)
+                if not self._factorise(solver, mbs):
+                    break
                 age = 0
             self._update(solver, mbs)
             age += 1
@@ -182,21 +189,26 @@ class _Newton:
         self.run.rejected += 1
         return False
 
-    def _factorise(self, solver, mbs) -> None:
+    def _factorise(self, solver, mbs) -> bool:
+        """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
         system = self.matrix.assemble(mbs, solver)
         constraints = self.matrix.constraints
-        self.factor = splu(
-            system,
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.01 if constraints else 0.0,
-            options={"SymmetricMode": True},
-        )
+        try:
+            self.factor = splu(
+                system,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.01 if constraints else 0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError:
+            return False
         self.baseline = self.excess = 0
         self.run.jacobians += 1
         self.run.factor_bytes = 12 * (self.factor.nnz)
         self.run.seconds_jacobian += time.perf_counter() - start
+        return True
 
     def _update(self, solver, mbs) -> None:
         start = time.perf_counter()
@@ -231,24 +243,28 @@ class SystemMatrix:
     parts: tuple[Callable, ...]
 
     @classmethod
-    def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
+    def of(cls, mbs: Any) -> SystemMatrix:
         """Look up the objects of an assembled model."""
         data = mbs.systemData
         for number in range(data.NumberOfNodes()):
             kind = mbs.GetNode(exu.NodeIndex(number))["nodeType"]
             if "LG" in kind or "LieGroup" in kind:
                 raise InputError(
-                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; create "
-                    "rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
+                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
+                    "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
                     "mbs.SolveDynamic."
                 )
         n = len(data.GetODE2Coordinates())
+        parts: list[Callable] = [
+            _euler_parameters(mbs, exu.NodeIndex(number), n)
+            for number in range(data.NumberOfNodes())
+            if mbs.GetNode(exu.NodeIndex(number))["nodeType"] == "RigidBodyEP"
+        ]
         if len(data.GetODE1Coordinates()):
             raise InputError(
-                f"SolveDynamicSparse mbs must have second-order coordinates only, got {len(data.GetODE1Coordinates())} of "
-                "first order; use mbs.SolveDynamic."
+                "SolveDynamicSparse mbs must have second-order coordinates only, got "
+                f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
             )
-        parts: list[Callable] = []
         for number in range(data.NumberOfObjects()):
             item = exu.ObjectIndex(number)
             places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
@@ -260,7 +276,7 @@ class SystemMatrix:
                 parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
         return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts))
 
-    def assemble(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> csc_matrix:
+    def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
         """Return the iteration matrix of the current state, scaled by beta h^2."""
         h = solver.it.currentStepSize
         factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
@@ -275,7 +291,7 @@ class SystemMatrix:
         return system
 
 
-def _generic(mbs: exu.MainSystem, item: exu.ObjectIndex, places: np.ndarray) -> Callable:
+def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
     """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
 
     def function(name: str) -> Callable | None:
@@ -289,8 +305,8 @@ def _generic(mbs: exu.MainSystem, item: exu.ObjectIndex, places: np.ndarray) -> 
     jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
     if jacobian is None and function("forceUserFunction") is not None:
         raise InputError(
-            f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, got "
-            "none; add one, or use mbs.SolveDynamic, which differentiates numerically."
+            f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, "
+            "got none; add one, or use mbs.SolveDynamic, which differentiates numerically."
         )
     mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
 
@@ -306,22 +322,40 @@ def _generic(mbs: exu.MainSystem, item: exu.ObjectIndex, places: np.ndarray) -> 
             terms.append((fM, _as_sparse(mass_function(mbs, t, int(item), q, q_t))))
         return tuple(
             np.concatenate(x)
-            for x in ([places[m.row] for _, m in terms], [places[m.col] for _, m in terms], [f * m.data for f, m in terms])
+            for x in (
+                [places[m.row] for _, m in terms],
+                [places[m.col] for _, m in terms],
+                [f * m.data for f, m in terms],
+            )
         )
 
     return part
 
 
-def _standard(mbs: exu.MainSystem, item: exu.ObjectIndex, places: np.ndarray, equations: np.ndarray) -> Callable:
+def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) -> Callable:
     """Triplets of a body, connector or constraint through Exudyn's own matrices."""
     kind = exu.ComputeItemType
     offered = mbs.ComputeItem(item)
     terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
     constrained = kind.ConstraintJacobian in offered and len(equations) > 0
+    object_type = mbs.GetObject(item)["objectType"]
+    point_mass = None
+    if object_type.startswith("MassPoint"):
+        # Exudyn keeps this mass matrix sparse and can't return it; density times position Jacobian is the same matrix
+        terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
+        point_mass = np.asarray(mbs.ComputeItem(item, kind.MassWeightedPositionJacobian))[: len(places)]
+    for what, _ in terms:
+        try:
+            mbs.ComputeItem(item, what)
+        except exu.ExudynError as error:
+            raise InputError(
+                f"SolveDynamicSparse mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
+                f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
+            ) from error
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
     def part(mbs, *factors):
-        values = np.zeros((len(places), len(places)))
+        values = np.zeros((len(places), len(places))) if point_mass is None else factors[0] * point_mass
         for what, i in terms:
             matrix = np.asarray(mbs.ComputeItem(item, what))
             if matrix.size:
@@ -335,6 +369,20 @@ def _standard(mbs: exu.MainSystem, item: exu.ObjectIndex, places: np.ndarray, eq
             np.concatenate([columns, q, a]),
             np.concatenate([values.ravel(), C.data, C.data]),
         )
+
+    return part
+
+
+def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
+    """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
+    data = mbs.systemData
+    columns = np.array(data.GetNodeLTGODE2(int(node)), dtype=np.int32)[3:]
+    rows = np.full(4, n + data.GetNodeLTGAE(int(node))[0], dtype=np.int32)
+    reference = np.array(mbs.GetNode(node)["referenceCoordinates"], dtype=float)[3:]
+
+    def part(mbs, *factors):
+        slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
+        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
 
     return part
 

@@ -103,7 +103,7 @@ def equilibrium(
             if not np.all(np.isfinite(u)):
                 raise _failure(step, steps, float("nan"))
         else:
-            raise _failure(step, steps, error / scale)
+            raise _failure(step, steps, float(error / scale))
     return Equilibrium(displacements=u, iterations=count, reactions=np.where(held, residual, 0.0))
 
 
@@ -158,6 +158,8 @@ def _follower_matrix(load: FollowerPressure, positions: np.ndarray) -> csr_matri
 
 def _failure(step: int, steps: int, error: float) -> EquilibriumError:
     return EquilibriumError(
-        f"equilibrium: load step {step} of {steps} did not converge, relative residual {error:.2e}; give more steps, check "
-        "that the supports hold all rigid motions, or follow the motion dynamically: the load may lie above a limit point."
+        f"equilibrium: load step {step} of {steps} did not converge, relative residual {error:.2e}; give more steps, "
+        "check "
+        "that the supports hold all rigid motions, or follow the motion dynamically: the load may lie above a limit "
+        "point."
     )

@@ -56,8 +56,8 @@ class ANCFBush:
     def __post_init__(self) -> None:
         if not isinstance(self.mesh, HollowCylinder | BushMesh):
             raise InputError(
-                f"ANCFBush.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your own "
-                "mesh with mesh_from_fem or mesh_from_arrays."
+                f"ANCFBush.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
+                "own mesh with mesh_from_fem or mesh_from_arrays."
             )
 
     def build_mesh(self) -> BushMesh:

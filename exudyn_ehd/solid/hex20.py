@@ -96,7 +96,7 @@ GAUSS27 = gauss_cube(3)
 IRONS14 = _irons14()
 """Nearly the accuracy of 27 points at half the cost; exact for a straight-edged element under constant strain."""
 GAUSS8 = gauss_cube(2)
-"""Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall, else it has mechanisms."""
+"""Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall."""
 
 
 def shape_functions(points: np.ndarray) -> np.ndarray:

@@ -86,8 +86,8 @@ def _element_force(G, w, nodes, u, v, lam, mu, beta, work, f_out):
 def _element_tangent(G, w, nodes, u, v, lam, mu, beta, geometric, material, work, K):
     """Six blocks 00, 11, 22, 01, 02, 12 of the element tangent into K (6, 20, 20).
 
-    K_ab = w [geometric (G_a S G_b) I + material (lam g_a g_b^T + mu g_b g_a^T + mu (G_a G_b) F F^T)], from the variation
-    of f_a = w F S G_a; the other three blocks are transposes, since K is symmetric.
+    K_ab = w [geometric (G_a S G_b) I + material (lam g_a g_b^T + mu g_b g_a^T + mu (G_a G_b) F F^T)], from the
+    variation of f_a = w F S G_a; the other three blocks are transposes, since K is symmetric.
     """
     ue = work[:60].reshape(3, 20)
     ve = work[60:120].reshape(3, 20)
@@ -139,7 +139,7 @@ def _element_tangent(G, w, nodes, u, v, lam, mu, beta, geometric, material, work
 
 @njit(cache=True, inline="always")
 def _scatter(K, nodes, stride, slot, data_out):
-    """Add an element's blocks to CSR values; slot[a, b] is the entry (3 I, 3 J), the next row of node I is stride[I] on."""
+    """Add an element's blocks to CSR values; slot[a, b] is entry (3 I, 3 J), the next row of node I is stride[I] on."""
     for a in range(20):
         row = stride[nodes[a]]
         for b in range(20):

@@ -1,6 +1,7 @@
 """Loads on a bush: on a line, on a surface, and pressure, as consistent nodal forces.
 
-Every load has a ``history``, a function of time [s] that multiplies its value; without one the value holds at all times.
+Every load has a ``history``, a function of time [s] that multiplies its value; without one the value holds at all
+times.
 """
 
 from __future__ import annotations
@@ -211,7 +212,8 @@ def _cross_matrix(vector: np.ndarray) -> np.ndarray:
 def _require_history(where: str, history: History | None) -> None:
     if history is not None and not callable(history):
         raise InputError(
-            f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load that varies."
+            f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load "
+            "that varies."
         )
 
 

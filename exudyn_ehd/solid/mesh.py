@@ -92,8 +92,10 @@ class Surface:
         if np.any(best > 1 + 1e-6):
             bad = int(np.argmax(best))
             raise InputError(
-                f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, which "
-                f"spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush or lengthen the bush."
+                f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
+                "which "
+                f"spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush or lengthen the "
+                "bush."
             )
         chosen = np.full(len(theta), -1)
         hits = np.flatnonzero(inside <= best[point])
@@ -105,9 +107,7 @@ class Surface:
         face, natural = self.locate(theta, z)
         weights, _ = face_shapes(natural)
         rows = np.repeat(np.arange(len(face)), 8)
-        return csr_matrix(
-            (weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes))
-        )
+        return csr_matrix((weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes)))
 
     def _candidates(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         corner = self.positions[self.local_faces]
@@ -185,8 +185,8 @@ class BushMesh:
         if len(edges) == 0:
             raise InputError(
                 f"BushMesh.line: the {len(np.atleast_1d(nodes))} nodes given must contain at least one whole element "
-                "edge (two corners and the node between them), got none; take them from BushMesh.generatrix or from one "
-                "grid line of the mesh."
+                "edge (two corners and the node between them), got none; take them from BushMesh.generatrix or from "
+                "one grid line of the mesh."
             )
         return Line(nodes=np.unique(edges), edges=edges)
 
@@ -352,7 +352,9 @@ def mesh_from_arrays(
             f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
             f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
         )
-    taken = _face_in(boundary, low) | _face_in(boundary, high) | _face_in(boundary, np.isin(np.arange(len(r)), bore.nodes))
+    taken = (
+        _face_in(boundary, low) | _face_in(boundary, high) | _face_in(boundary, np.isin(np.arange(len(r)), bore.nodes))
+    )
     faces = boundary[~taken]
     outer_nodes = np.unique(faces)
     outer = Surface(

@@ -131,7 +131,9 @@ def _facets(corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndar
     points = np.einsum("pa,fai->fpi", shapes, corners)
     fields = np.einsum("pa,fa->fp", shapes, nodal)
     i, j = (x.ravel() for x in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
-    quad = np.stack([i * (count + 1) + j, (i + 1) * (count + 1) + j, (i + 1) * (count + 1) + j + 1, i * (count + 1) + j + 1])
+    quad = np.stack(
+        [i * (count + 1) + j, (i + 1) * (count + 1) + j, (i + 1) * (count + 1) + j + 1, i * (count + 1) + j + 1]
+    )
     return points[:, quad.T].reshape(-1, 4, 3), fields[:, quad.T].mean(axis=2).ravel()
 
 

@@ -43,7 +43,7 @@ class StressRecovery:
     material: SaintVenantKirchhoff
 
     def cauchy_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
-        """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points for displacements u (mesh nodes, 3)."""
+        """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points; u has a row per mesh node [m]."""
         nodes = self.mesh.elements[points.element]
         natural = shape_gradients(points.natural)
         jacobian = np.einsum("nar,nai->nir", natural, self.mesh.nodes[nodes])
@@ -57,8 +57,9 @@ class StressRecovery:
     def cauchy_at_nodes(self, u: np.ndarray) -> np.ndarray:
         """Return the Cauchy stress at all nodes, shape (mesh nodes, 3, 3) [Pa].
 
-        Sampled at the 2 x 2 x 2 Gauss points, where the derivatives of the quadratic element are one order more accurate
-        than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a node.
+        Sampled at the 2 x 2 x 2 Gauss points, where the derivatives of the quadratic element are one order more
+        accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
+        node.
         """
         elements, gradient, extrapolation = self._sampling
         samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
@@ -128,7 +129,7 @@ def _invert(corners: np.ndarray, candidates: np.ndarray, position: np.ndarray) -
     if outside[best] > 1 + 1e-6:
         raise InputError(
             f"StressRecovery.locate positions must lie inside the solid, got {position.tolist()} m in the reference "
-            "configuration; a point on the cylinder between two nodes may lie a little outside the quadratic faces: move "
-            "it inward."
+            "configuration; a point on the cylinder between two nodes may lie a little outside the quadratic faces: "
+            "move it inward."
         )
     return int(candidates[best]), natural[best]

@@ -46,8 +46,8 @@ class SaintVenantKirchhoff:
         nu = require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, above=-1.0)
         if nu >= 0.5:
             raise InputError(
-                f"SaintVenantKirchhoff.poisson_ratio must be below 0.5, got {nu:g}; an incompressible bush needs another "
-                "element, 0.49 is the sensible limit of this one."
+                f"SaintVenantKirchhoff.poisson_ratio must be below 0.5, got {nu:g}; an incompressible bush needs "
+                "another element, 0.49 is the sensible limit of this one."
             )
 
     @property

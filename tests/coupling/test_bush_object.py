@@ -18,7 +18,7 @@ from exudyn_ehd.solid.analysis import eigenfrequencies, equilibrium
 from exudyn_ehd.solid.bush import ANCFBush, Rayleigh
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 
 SOFT = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
@@ -91,8 +91,8 @@ def random_state(bush, seed, size=0.005):
     return q, 20 * q_t
 
 
-def jacobian_error(bush, q, q_t, position, velocity):
-    """Largest error of the Jacobian against extrapolated central differences, over its largest entry times n."""
+def jacobian_error(bush, q, q_t, position, velocity, normal=None):
+    """Largest error of the Jacobian's products against extrapolated differences, along directions off ``normal``."""
     equations = bush.equations
     J = equations.jacobian(0.7, q, q_t, position, velocity)
     random = np.random.default_rng(16)
@@ -100,6 +100,8 @@ def jacobian_error(bush, q, q_t, position, velocity):
     for _ in range(4):
         d = random.standard_normal(len(q))
         d[equations._held] = 0.0
+        if normal is not None:
+            d[-4:] -= normal * (normal @ d[-4:])
 
         def slope(step, d=d):
             def force(s):
@@ -116,9 +118,7 @@ def jacobian_error(bush, q, q_t, position, velocity):
 def test_jacobian_with_supports_loads_and_mass_damping_is_exact():
     model = Model()
     mesh = CYLINDER.mesh()
-    bush = pinched(
-        model, damping=Rayleigh(mass_rate=3.0), extra=[FollowerPressure(surface=mesh.bore, pressure=2e4)]
-    )
+    bush = pinched(model, damping=Rayleigh(mass_rate=3.0), extra=[FollowerPressure(surface=mesh.bore, pressure=2e4)])
     model.mbs.Assemble()
     q, q_t = random_state(bush, 17)
     q[bush.equations._held] = 0.0
@@ -132,17 +132,22 @@ def test_jacobian_of_a_carried_bush_at_rest_is_exact(kind):
     bush, _ = carried(model, kind, tilt=(0.3, -0.2, 0.5))
     model.mbs.Assemble()
     q, _ = random_state(bush, 18)
-    assert jacobian_error(bush, q, 0 * q, 1.0, 0.0) < 1e-6  # rounding of the inner difference of G
+    normal = None
+    if kind == KINDS[0]:
+        # Euler parameters are meant with unit norm: move on the sphere only
+        parameters = bush.equations.carrier.reference[3:] + q[-4:]
+        normal = parameters / np.linalg.norm(parameters)
+        q[-4:] = normal - bush.equations.carrier.reference[3:]
+    assert jacobian_error(bush, q, 0 * q, 1.0, 0.0, normal) < 1e-6  # rounding of the inner difference of G
 
 
 def test_exudyn_receives_this_jacobian_and_mass():
     model = Model()
     bush = pinched(model)
     model.mbs.Assemble()
-    kind = exu.ComputeItemType
-    K = model.mbs.ComputeItem(bush.objectNumber, kind.JacobianODE2)
-    assert np.allclose(K, bush.equations.jacobian(0.0, 0 * K[0], 0 * K[0], 1.0, 0.0).toarray(), rtol=1e-12)
-    M = model.mbs.ComputeItem(bush.objectNumber, kind.MassMatrix)
+    M, K, _ = model.mbs.ComputeLinearizedSystem()
+    zero = np.zeros(len(M))
+    assert np.allclose(K, bush.equations.jacobian(0.0, zero, zero, 1.0, 0.0).toarray(), rtol=1e-12)
     assert np.allclose(M, bush.equations.mass(None).toarray(), rtol=1e-12)
 
 
@@ -242,7 +247,7 @@ def test_own_factorisation_serves_bodies_joints_and_constraints_too(kind):
             mbs.SolveDynamic(options)
         state = mbs.systemData.GetODE2Coordinates()
         shapes.append(np.concatenate([bush.displacements().ravel(), state]))
-    assert np.abs(shapes[0]).max() > 0.1
+    assert np.abs(shapes[0]).max() > 0.05
     assert np.allclose(shapes[0], shapes[1], atol=1e-7 * np.abs(shapes[0]).max())
 
 
@@ -270,7 +275,7 @@ def test_a_carrier_welded_to_ground_equals_a_fixed_outer_surface():
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_tumbling_housing_with_a_stiff_bush_moves_as_one_rigid_body(kind):
     """The carried mass enters the housing's equations with its velocity terms: compare with the summed inertia."""
-    omega, steps, step = (3.0, -4.0, 5.0), 200, 1e-3
+    omega, steps, step = (3.0, -4.0, 5.0), 60, 2e-3
     stiff = SaintVenantKirchhoff(youngs_modulus=1e12, poisson_ratio=0.3, density=7800.0)
     model = Model()
     # damping takes out the breathing at the start, when the centrifugal load is applied at once
@@ -296,7 +301,7 @@ def test_a_tumbling_housing_with_a_stiff_bush_moves_as_one_rigid_body(kind):
     variable = exu.OutputVariableType.RotationMatrix
     turned = np.array(model.mbs.GetObjectOutputBody(housing, variable, [0, 0, 0]))
     expected = np.array(single.mbs.GetObjectOutputBody(body, variable, [0, 0, 0]))
-    # the body has turned by 1.4 rad; the bush's strain under rotation is 1e-8; the Newton tolerance adds up to 1e-6
+    # the body has turned by 0.8 rad; the bush's strain under rotation is 1e-8; the Newton tolerance adds up to 1e-6
     assert np.allclose(turned, expected, atol=2e-5)
     assert np.abs(turned - np.eye(9)[0].reshape(-1)).max() > 0.5
 
@@ -350,7 +355,8 @@ def test_energy_does_not_drift_over_100_periods_and_momenta_are_kept():
     assert abs(last.mean() - first.mean()) < 0.2 * np.abs(errors).max() + 1e-9
     assert np.abs(last).max() < 1.5 * np.abs(first).max() + 1e-9
     mass, speed = 7800 * np.pi * (0.275**2 - 0.225**2) * 0.2, 0.005 * 7
-    # linear momentum is conserved by the method up to the Newton tolerance; reported: angular momentum too in plane motion
+    # linear momentum is conserved by the method up to the Newton tolerance; reported: angular momentum too in plane
+    # motion
     assert np.abs(after[0] - before[0]).max() < 1e-6 * mass * speed
     assert np.abs(after[1] - before[1]).max() < 1e-4 * mass * speed * 0.25
 
@@ -367,22 +373,22 @@ def test_momentum_of_a_spinning_swinging_cylinder():
 
 def test_rayleigh_damping_takes_the_closed_form_decrement():
     """A mode's energy falls as exp(-2 zeta omega t) with zeta = (mass_rate/omega + stiffness_time omega)/2."""
-    damping = Rayleigh(mass_rate=0.4, stiffness_time=0.01)
-    model = Model()
     mesh = CYLINDER.mesh()
-    bush = CreateFlexibleBush(
-        model.mbs, bush=ANCFBush(mesh=mesh, material=SOFT, damping=damping), outer=FixedOuter()
-    )
-    frequency, modes = eigenfrequencies(bush.solid, held=bush.equations.held, count=1)
+    held = np.zeros(mesh.nodes.shape, dtype=bool)
+    held[mesh.outer.nodes] = True
+    frequency, modes = eigenfrequencies(TotalLagrange(mesh=mesh, material=SOFT), held=held, count=1)
     omega = float(frequency[0])
+    damping = Rayleigh(mass_rate=0.05 * omega, stiffness_time=0.05 / omega)
+    zeta = 0.05
+    model = Model()
+    bush = CreateFlexibleBush(model.mbs, bush=ANCFBush(mesh=mesh, material=SOFT, damping=damping), outer=FixedOuter())
     for node, v in zip(bush.nodeNumbers, 1e-6 * omega * modes[0] / np.abs(modes[0]).max(), strict=True):
         if model.mbs.GetNode(exu.NodeIndex(int(node)))["nodeType"] == "Point":
             model.mbs.SetNodeParameter(exu.NodeIndex(int(node)), "initialVelocities", v)
     model.mbs.Assemble()
     start = sum(bush.energy(exu.ConfigurationType.Initial))
-    period = 2 * np.pi / (omega * np.sqrt(1 - (0.5 * (0.4 / omega + 0.01 * omega)) ** 2))
+    period = 2 * np.pi / (omega * np.sqrt(1 - zeta**2))
     SolveDynamicSparse(model.mbs, settings(400, period / 400, radius=1.0))
-    zeta = 0.5 * (0.4 / omega + 0.01 * omega)
     # one full damped period: the decrement is exact for a linear system; 400 steps leave 1e-3
     assert sum(bush.energy()) / start == pytest.approx(np.exp(-2 * zeta * omega * period), rel=5e-3)
 

@@ -104,9 +104,14 @@ def test_fourier_compliance_of_the_bore(outer, layers, tolerance):
     else:
         held[np.abs(np.sin(angles(mesh))) < 1e-9, 1] = True
         held[mesh.generatrix(mesh.outer, 0.0).nodes, 0] = True
-    area = -np.einsum(
-        "ni,ni->n", DeadPressure(surface=mesh.bore, pressure=1.0).nodal_forces(mesh)[mesh.bore.nodes], mesh.bore.positions
-    ) / a
+    area = (
+        -np.einsum(
+            "ni,ni->n",
+            DeadPressure(surface=mesh.bore, pressure=1.0).nodal_forces(mesh)[mesh.bore.nodes],
+            mesh.bore.positions,
+        )
+        / a
+    )
     errors = {}
     for case in cases:
         n = int(case["n"])
@@ -168,7 +173,7 @@ def test_free_thin_ring_swings_in_plane_at_the_closed_form_frequencies(rule):
 
 @pytest.mark.parametrize(("counts", "sound"), [((1, 1, 16), False), ((2, 1, 16), True), ((1, 2, 16), True)])
 def test_reduced_integration_needs_two_rows_of_elements(counts, sound):
-    """With 8 points a ring of one row across and along has mechanisms besides its six rigid motions; two rows lock them."""
+    """With 8 points a ring of one row of elements has mechanisms besides its six rigid motions; two rows lock them."""
     axial, radial, around = counts
     mesh = HollowCylinder(
         inner_radius=0.225, thickness=0.05, length=0.2, axial=axial, radial=radial, circumferential=around

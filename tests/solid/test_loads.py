@@ -57,7 +57,9 @@ def test_follower_stiffness_is_the_derivative_of_the_forces():
     random = np.random.default_rng(14)
     x = MESH.nodes + 0.01 * random.standard_normal(MESH.nodes.shape)
     direction = random.standard_normal(x.shape)
-    slope = (follower.forces(x + 0.01 * direction) - follower.forces(x - 0.01 * direction)) / 0.02  # quadratic in x: exact
+    slope = (
+        follower.forces(x + 0.01 * direction) - follower.forces(x - 0.01 * direction)
+    ) / 0.02  # quadratic in x: exact
     product = np.zeros_like(x)
     faces = MESH.bore.faces
     local = np.einsum("fab,fb->fa", follower.stiffness(x), direction[faces].reshape(-1, 24)).reshape(-1, 8, 3)

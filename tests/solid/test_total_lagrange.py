@@ -142,9 +142,7 @@ def test_serial_and_parallel_kernels_agree_bit_for_bit(rule):
     u, v = np.random.default_rng(10).standard_normal((2, *SMALL.nodes.shape)) * 0.01
     results = []
     for parallel in (False, True):
-        solid = TotalLagrange(
-            mesh=SMALL, material=SOFT, quadrature=rule, parallel=parallel, viscosity_time=1e-3
-        )
+        solid = TotalLagrange(mesh=SMALL, material=SOFT, quadrature=rule, parallel=parallel, viscosity_time=1e-3)
         results.append((solid.force(u, v), solid.tangent_values(u, v)))
     assert np.array_equal(results[0][0], results[1][0])
     assert np.array_equal(results[0][1], results[1][1])
