@@ -62,7 +62,9 @@ class CarriedOuter:
     Parameters
     ----------
     itemNumber : exudyn.ObjectIndex or exudyn.NodeIndex
-        The body or its node. Its own mass and inertia stay untouched: the bush adds its own.
+        The body or its node. Its own mass and inertia stay untouched: the bush adds its own. With a Lie group node
+        (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
+        when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
     """
 
     itemNumber: Any

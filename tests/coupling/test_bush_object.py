@@ -297,7 +297,10 @@ def test_a_tumbling_housing_with_a_stiff_bush_moves_as_one_rigid_body(kind):
     )
     for each in (model, single):
         each.mbs.Assemble()
-        each.mbs.SolveDynamic(settings(steps, step, tolerance=1e-8))
+        options = settings(steps, step, tolerance=1e-8)
+        # with a bush this stiff Exudyn's modified Newton restarts every few iterations, and Lie group nodes then end wrong
+        options.timeIntegration.newton.useModifiedNewton = False
+        each.mbs.SolveDynamic(options)
     variable = exu.OutputVariableType.RotationMatrix
     turned = np.array(model.mbs.GetObjectOutputBody(housing, variable, [0, 0, 0]))
     expected = np.array(single.mbs.GetObjectOutputBody(body, variable, [0, 0, 0]))
