@@ -1,5 +1,7 @@
 """The nodal bush inside Exudyn models: dynamic, static and eigenvalue runs, carriers, the own factorisation."""
 
+import time
+
 import exudyn as exu
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from exudyn_ehd.coupling.sparse_newton import FactorReuse, SolveDynamicSparse
 from exudyn_ehd.solid.analysis import eigenfrequencies, equilibrium
 from exudyn_ehd.solid.bush import ANCFBush, Rayleigh
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
-from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.mesh import HollowCylinder, mesh_from_fem
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 
@@ -298,7 +300,7 @@ def test_a_tumbling_housing_with_a_stiff_bush_moves_as_one_rigid_body(kind):
     for each in (model, single):
         each.mbs.Assemble()
         options = settings(steps, step, tolerance=1e-8)
-        # with a bush this stiff Exudyn's modified Newton restarts every few iterations, and Lie group nodes then end wrong
+        # a bush this stiff makes Exudyn's modified Newton restart often, upon which Lie group nodes end wrong
         options.timeIntegration.newton.useModifiedNewton = False
         each.mbs.SolveDynamic(options)
     variable = exu.OutputVariableType.RotationMatrix
@@ -453,3 +455,67 @@ def test_factor_reuse_changes_the_cost_and_not_the_answer():
         costs.append(run.jacobians)
     assert costs[0] > 2 * costs[1]
     assert np.allclose(shapes[0], shapes[1], atol=1e-8 * np.abs(shapes[0]).max())
+
+
+def test_a_mesh_read_by_exudyn_from_an_abaqus_file_becomes_the_same_bush(tmp_path):
+    from exudyn.FEM import FEMinterface
+
+    mesh = CYLINDER.mesh()
+    lines = ["*Part, name=Part-1", "*Node"]
+    lines += [f"{i}, {x:.16g}, {y:.16g}, {z:.16g}" for i, (x, y, z) in enumerate(mesh.nodes, start=1)]
+    lines += ["*Element, type=C3D20"]
+    for i, element in enumerate(mesh.elements + 1, start=1):
+        text = [str(n) for n in (i, *element)]
+        lines += [", ".join(text[:16]) + ",", ", ".join(text[16:])]
+    file = tmp_path / "bush.inp"
+    file.write_text("\n".join([*lines, "*End Part"]) + "\n")
+    fem = FEMinterface()
+    fem.ImportFromAbaqusInputFile(str(file))
+    read = mesh_from_fem(fem, bore_radius=0.225)
+    assert np.array_equal(read.elements, mesh.elements)
+    assert np.array_equal(read.bore.nodes, mesh.bore.nodes)
+    assert np.allclose(read.nodes, mesh.nodes, atol=1e-14)
+
+
+def test_the_renderer_gets_all_boundary_faces_of_a_free_bush_and_outward_triangles():
+    model = Model()
+    bush = pinched(model)
+    triangles = np.asarray(model.mbs.GetObject(bush.objectNumber)["VtriangleMesh"])
+    assert len(triangles) == 6 * len(bush.mesh.boundary)
+    # object nodes are mesh nodes in mesh order: the enclosed volume by the divergence theorem is the solid's
+    corner = bush.mesh.nodes[triangles]
+    volume = np.einsum("ti,ti->", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])) / 6
+    assert volume == pytest.approx(np.pi * (0.275**2 - 0.225**2) * 0.2, rel=0.11)  # facets across 45 degrees: sin(x)/x
+
+
+@pytest.mark.slow
+def test_own_factorisation_equals_exudyn_s_solver_on_the_paper_s_mesh():
+    shapes = []
+    for own in (False, True):
+        model = Model()
+        cylinder = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=4, radial=2, circumferential=40)
+        mesh = cylinder.mesh()
+        low, top = mesh.generatrix(mesh.outer, -np.pi / 2), mesh.generatrix(mesh.outer, np.pi / 2)
+        bush = CreateFlexibleBush(
+            model.mbs,
+            bush=ANCFBush(mesh=mesh, material=SOFT),
+            outer=FreeOuter(),
+            supports=[Support(nodes=low.nodes), Support(nodes=top.nodes, directions=(True, False, False))],
+            loads=[LineLoad(line=top, force_per_length=(0.0, -1000.0, 0.0), history=lambda t: t)],
+        )
+        model.mbs.Assemble()
+        options = settings(300, 1e-3)
+        if own:
+            print(SolveDynamicSparse(model.mbs, options).report())
+        else:
+            start = time.perf_counter()
+            model.mbs.SolveDynamic(options)
+            counts = model.mbs.sys["dynamicSolver"].it
+            print(
+                f"Exudyn alone: {time.perf_counter() - start:.1f} s, {counts.newtonStepsCount} iterations, "
+                f"{counts.newtonJacobiCount} Jacobians"
+            )
+        shapes.append(bush.displacements())
+    # both stop at 1e-8 of the step's first residual; 300 steps add up
+    assert np.abs(shapes[0]).max() > 0.01
+    assert np.allclose(shapes[0], shapes[1], atol=1e-6 * np.abs(shapes[0]).max())
