@@ -1,4 +1,7 @@
-"""A flexible hollow cylinder under a growing line load: the first case of the paper by Flores (2013).
+"""A flexible hollow cylinder under a growing line load.
+
+The first case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody
+Systems".
 
 Inner radius 0.225 m, length 0.2 m, thickness 0.05 m, E = 1e6 Pa, line load 1000 t N/m, step 1e-3 s, 1 s. The paper
 leaves out density, Poisson ratio, supports and direction; assumed here: 7800 kg/m^3, 0.3, the lowest outer generatrix
@@ -110,8 +113,9 @@ def history_figure(cases: list[dict]) -> Figure:
     """Displacement of the top point for all meshes, von Mises stress of the finest."""
     figure = Figure(figsize=(10, 4.2), layout="constrained")
     left, right = figure.subplots(1, 2)
-    for case in cases:
-        left.plot(case["time"], 1e3 * case["top_displacement"], label=" x ".join(map(str, case["counts"])))
+    for case, style in zip(cases, ("-", "--", "-.", ":")):
+        label = " x ".join(map(str, case["counts"]))
+        left.plot(case["time"], 1e3 * case["top_displacement"], style, label=label, linewidth=2)
     left.set(xlabel="time in s", ylabel="displacement of the top point in mm", title="Mesh: axial x radial x around")
     fine = cases[-1]
     right.plot(fine["stress_time"], 1e-3 * fine["von_mises_under_load"], label="bore, under the load")

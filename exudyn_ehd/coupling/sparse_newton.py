@@ -7,10 +7,9 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
     [M / f + beta h^2 K + gamma h D   C^T] [d_q               ]   [r]
     [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
 
-after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2). (Generalized-alpha for constrained systems as in
-M. Arnold, O. Brüls (2007), Multibody System Dynamics 18, 185-202, is Exudyn's documented scheme; the scaling is
-measured in the tests.) The Jacobian is assembled from the objects' own analytic Jacobians. The factor is kept over
-iterations and steps until convergence slows down (modified Newton).
+after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own analytic Jacobians. The
+factor is kept over iterations and steps until convergence slows down (modified Newton).
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """

@@ -109,6 +109,19 @@ class Surface:
         rows = np.repeat(np.arange(len(face)), 8)
         return csr_matrix((weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes)))
 
+    def radial_interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
+        """Return H, shape (n, 3 k), so that H @ displacements is the radial displacement at the points (theta, z).
+
+        Displacements are ordered node by node as x, y, z in the bush frame [m]; positive is outward, which opens a gap.
+        The direction (cos theta, sin theta, 0) is that of the point. Loads are carried back by H.T @ (pressure * area).
+        """
+        theta = np.asarray(theta, dtype=float).ravel()
+        S = self.interpolation(theta, z).tocoo()
+        direction = np.stack([np.cos(theta), np.sin(theta)], axis=1)
+        values = S.data[:, None] * direction[S.row]
+        rows, columns = np.repeat(S.row, 2), (3 * S.col[:, None] + np.arange(2)).ravel()
+        return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
+
     def _candidates(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         corner = self.positions[self.local_faces]
         middle = corner[:, :4].mean(axis=1)

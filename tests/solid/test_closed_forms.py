@@ -137,7 +137,7 @@ def thin_ring(around):
 
 @pytest.mark.parametrize("rule", [GAUSS27, IRONS14])
 def test_pinched_thin_ring_shortens_and_lengthens_as_the_closed_forms(rule):
-    """(pi/4 - 2/pi) P R^3/(E I) and (2/pi - 1/2) P R^3/(E I): Timoshenko, Strength of Materials, thin ring, nu = 0."""
+    """(pi/4 - 2/pi) P R^3/(E I) and (2/pi - 1/2) P R^3/(E I): textbook thin-ring bending, nu = 0."""
     mesh = thin_ring(120)
     held = quarter_symmetry(mesh)
     held[:, 2] = mesh.nodes[:, 2] < -0.4 * T

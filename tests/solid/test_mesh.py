@@ -55,6 +55,18 @@ def test_interpolation_on_the_bore_returns_angle_and_height():
     assert np.allclose(S.sum(axis=1), 1, atol=1e-13)
 
 
+def test_radial_interpolation_measures_opening_and_carries_pressure_back():
+    random = np.random.default_rng(21)
+    theta, z = random.uniform(-3, 3, 50), random.uniform(-0.1, 0.1, 50)
+    H = MESH.bore.radial_interpolation(theta, z)
+    x, y, height = MESH.bore.positions.T
+    # a quadratic ovalisation along z plus a shift: radial opening (1 + z) cos^2 - ..., exact up to the parabolic edges
+    u = np.stack([1e-3 * x + 2e-4, -1e-3 * y * (1 + height), 0 * x], axis=1)
+    expected = 1e-3 * 0.225 * (np.cos(theta) ** 2 - np.sin(theta) ** 2 * (1 + z)) + 2e-4 * np.cos(theta)
+    assert np.allclose(H @ u.ravel(), expected, atol=1e-9)  # (pi/80)^4 of 2e-4 m
+    assert np.allclose(u.ravel() @ (H.T @ np.ones(50)), (H @ u.ravel()).sum(), rtol=1e-12)
+
+
 def test_a_point_beside_the_bore_is_refused_with_the_bore_s_extent():
     with pytest.raises(InputError, match=r"z = 0.15 m must lie on the surface, which spans z = -0.1 to 0.1"):
         MESH.bore.interpolation(np.array([0.0]), np.array([0.15]))
