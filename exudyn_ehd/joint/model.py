@@ -1,0 +1,344 @@
+"""One lubricated bearing between two rigid surfaces as a pure function of its relative motion.
+
+Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in it is
+
+    motion = [x, y, bx, by, dx/dt, dy/dt, dbx/dt, dby/dt, omega, w]
+
+with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w. The wrench acts on
+the journal, moment about O; the housing receives exactly the opposite about the same point.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.contact import limit_gap, wall_pressure
+from exudyn_ehd.film.gap import contract_pose, largest_eccentricity, rigid_gap
+from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.loads import (
+    couette_gradient,
+    couette_integral,
+    end_flows,
+    load_adjoint_rhs,
+    peak_of,
+    pressure_integrals,
+    refined_peak,
+)
+from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.status import Status
+
+MOTION_SIZE = 10
+
+
+class Wall:
+    """Buffers and scaled parameters of a `RegularisedWall`; present only if the scene names one."""
+
+    def __init__(self, shape: tuple[int, int], onset: float, pressure: float, residual: float) -> None:
+        self.onset, self.pressure, self.residual = onset, pressure, residual
+        self.P, self.P_slope = np.zeros(shape), np.zeros(shape)
+        self.slope, self.curvature = np.zeros(shape), np.zeros(shape)
+        self.face_slope, self.face_curvature = np.zeros(shape), np.zeros(shape)
+
+
+@dataclass(eq=False)
+class Evaluation:
+    """One film evaluation.
+
+    Attributes
+    ----------
+    status : Status
+    motion : (10,) array
+    wrench : (6,) array
+        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film.
+    iterations : int
+        Linear solves spent.
+    """
+
+    status: Status
+    motion: np.ndarray
+    wrench: np.ndarray
+    iterations: int
+    _model: RigidBearingModel
+    _serial: int
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10), exact for the current active set, from the stored factor.
+
+        Raises
+        ------
+        RuntimeError
+            If the model has evaluated another state since.
+        """
+        self._require_current()
+        return self._model.tangent()
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of this state in SI units; see `RigidBearingModel.quantities`."""
+        self._require_current()
+        return self._model.quantities()
+
+    def _require_current(self) -> None:
+        if self._model.serial != self._serial:
+            raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
+
+
+class RigidBearingModel:
+    """Film between a rigid journal and a rigid bore.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    start_angle : float
+        theta of the first grid column, rad; the line of ambient pressure if the bearing's inlet is `MaximumGap`.
+    """
+
+    def __init__(self, bearing: JournalBearing, start_angle: float = 0.0) -> None:
+        R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
+        self.bearing = bearing
+        self.grid = bearing_grid(
+            R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
+            start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
+        )  # fmt: skip
+        self.solver = FilmSolver(
+            self.grid, bearing.cavitation, squeeze=bearing.squeeze,
+            circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
+        )  # fmt: skip
+        self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
+        self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
+        self.pressure_scale = 12.0 * mu * R**2 / c**2
+        self.force_scale = self.pressure_scale * R**2
+        self.shear_scale = mu * R**2 / c
+        self.half_length = 0.5 * bearing.length / R
+        self.pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
+        self.end_pressures = np.array(bearing.end_pressures) / self.pressure_scale
+        self.cavity_pressure = bearing.cavitation.cavity_pressure / self.pressure_scale
+        self.wall: Wall | None = None
+        if bearing.contact is not None:
+            self.wall = Wall(
+                self.grid.shape, bearing.contact.onset / c, bearing.contact.pressure / self.pressure_scale,
+                bearing.contact.residual,
+            )  # fmt: skip
+        self.serial = 0
+        self.status = Status.NOT_FINITE
+        self.integrals = np.zeros(4)
+        self.wall_integrals = np.zeros(4)
+
+    def forget(self) -> None:
+        """Drop the warm start. It never changes a result, only the time it takes."""
+        self.solver.forget()
+
+    def evaluate(self, motion: np.ndarray) -> Evaluation:
+        """Evaluate the film.
+
+        Parameters
+        ----------
+        motion : (10,) array
+            Relative motion in the joint frame, SI units; see the module's docstring.
+
+        Returns
+        -------
+        Evaluation
+            With ``status`` other than CONVERGED the wrench is nan.
+        """
+        self.serial += 1
+        self.motion = np.array(motion, dtype=float)
+        self.pose = self.motion[:4] * self.pose_scale
+        self.rate = self.motion[4:8] * self.pose_scale
+        self.omega, self.axial_speed = float(self.motion[8]), float(self.motion[9])
+        self.wrench = np.full(6, np.nan)
+        self.iterations = 0
+        self.status = self._solve()
+        if self.status is Status.CONVERGED:
+            self.wrench = self._loads()
+        return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
+
+    def _solve(self) -> Status:
+        if not np.all(np.isfinite(self.motion)):
+            return Status.NOT_FINITE
+        self.eccentricity = float(largest_eccentricity(self.pose, self.half_length))
+        if self.wall is None and self.eccentricity >= 1.0:
+            return Status.NO_FILM
+        s, z = self.solver, self.grid.z
+        rigid_gap(self.pose, self.cos_x, self.sin_x, z, 1.0, s.H)
+        rigid_gap(self.pose, self.cos_f, self.sin_f, z, 1.0, s.HF)
+        if s.squeeze:
+            rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
+        if self.wall is not None:
+            self._apply_wall(self.wall)
+        P = s.pressure
+        P[:, 0], P[:, -1] = self.end_pressures
+        status, self.iterations = s.solve(
+            0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, self.cavity_pressure
+        )
+        return status
+
+    def _apply_wall(self, wall: Wall) -> None:
+        """Contact pressure from the true gap; then the gap that the film sees, and its rate."""
+        s = self.solver
+        wall_pressure(s.H, wall.onset, wall.pressure, wall.P, wall.P_slope)
+        limit_gap(s.H, wall.onset, wall.residual, wall.slope, wall.curvature)
+        limit_gap(s.HF, wall.onset, wall.residual, wall.face_slope, wall.face_curvature)
+        if s.squeeze:
+            wall.curvature *= s.H_t
+            s.H_t *= wall.slope
+
+    def _loads(self) -> np.ndarray:
+        s, g = self.solver, self.grid
+        pressure_integrals(s.pressure, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
+        total = self.integrals
+        if self.wall is not None:
+            pressure_integrals(self.wall.P, g.weight, self.cos_x, self.sin_x, g.z, self.wall_integrals)
+            total = self.integrals + self.wall_integrals
+        self.couette, self.couette_unbroken = couette_integral(
+            s.H, g.weight, s.work.active, g.fixed, self.bearing.cavitation.cavity_shear
+        )
+        x, y, bx, by = self.pose
+        sc, ss, szc, szs = total
+        self.s_theta = x * ss - y * sc + bx * szs - by * szc
+        self.s_z = -(bx * sc + by * ss)
+        R, fs = g.reference_length, self.force_scale
+        ends = self.end_pressures[1] * _ring_mean(s.H[:, -1]) - self.end_pressures[0] * _ring_mean(s.H[:, 0])
+        return np.array(
+            [
+                -fs * sc,
+                -fs * ss,
+                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - ends)),
+                fs * R * szs,
+                -fs * R * szc,
+                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * self.s_theta),
+            ]
+        )
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) of the last evaluation; nan without a film."""
+        if self.status is not Status.CONVERGED:
+            return np.full((6, MOTION_SIZE), np.nan)
+        ds = self._integral_gradients()
+        s, g = self.solver, self.grid
+        gradient = np.empty((1, *g.shape))
+        couette_gradient(s.H, g.weight, s.work.active, g.fixed, self.bearing.cavitation.cavity_shear, gradient[0])
+        if self.wall is not None:
+            gradient[0] *= self.wall.slope
+        dc = np.zeros((1, 4))
+        contract_pose(gradient, self.cos_x, self.sin_x, g.z, dc)
+        x, y, bx, by = self.pose
+        sc, ss, szc, szs = self.integrals + self.wall_integrals
+        ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2]
+        ds_theta[:4] += (ss, -sc, szs, -szc)
+        ds_z = -(bx * ds[0] + by * ds[1])
+        ds_z[2:4] -= (sc, ss)
+        R, fs, c0 = g.reference_length, self.force_scale, self.shear_scale
+        out = np.empty((6, MOTION_SIZE))
+        out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
+        out[2] = -6.0 * c0 * R * ds_z
+        out[5] = -6.0 * c0 * R**2 * ds_theta
+        out[2, :4] -= c0 * self.axial_speed * dc[0]
+        out[5, :4] -= c0 * R**2 * self.omega * dc[0]
+        out[:, :4] *= self.pose_scale
+        out[:, 4:8] *= self.pose_scale
+        out[:, 8] *= 0.5
+        out[:, 9] *= 0.5 / R
+        out[2, 9] -= c0 * self.couette
+        out[5, 8] -= c0 * R**2 * self.couette
+        if self.wall is not None:
+            out[2, :4] += 6.0 * c0 * R * self._end_gradient()
+        return out
+
+    def _end_gradient(self) -> np.ndarray:
+        """Gradient (4,) of the ends' pressure force with respect to the pose where a wall limits the gap."""
+        assert self.wall is not None
+        out = np.zeros((1, 4))
+        field = np.zeros((1, *self.grid.shape))
+        step = self.grid.width_x[0]
+        field[0, :, -1] = self.end_pressures[1] * step * self.wall.slope[:, -1]
+        field[0, :, 0] = -self.end_pressures[0] * step * self.wall.slope[:, 0]
+        contract_pose(field, self.cos_x, self.sin_x, self.grid.z, out)
+        return out[0] * self.pose_scale
+
+    def _integral_gradients(self) -> np.ndarray:
+        """d(S_c, S_s, S_zc, S_zs) / d(scaled pose, scaled rates, vx, vz): (4, 10)."""
+        s, g, w = self.solver, self.grid, self.solver.work
+        rhs = np.empty((4, w.count))
+        load_adjoint_rhs(w.order, w.count, g.weight, self.cos_x, self.sin_x, g.z, w.active, rhs)
+        lam = s.adjoint(rhs)
+        cell, face = s.gap_sensitivity(lam)
+        ds = np.zeros((4, MOTION_SIZE))
+        pose, rates = np.zeros((4, 4)), np.zeros((4, 4))
+        squeeze = lam * np.multiply.outer(-g.width_x, g.width_z) if s.squeeze else None
+        if self.wall is not None:
+            face *= self.wall.face_slope
+            cell *= self.wall.slope
+            if squeeze is not None:
+                cell += squeeze * self.wall.curvature
+                squeeze *= self.wall.slope
+            for k, factor in enumerate((self.cos_x[:, None], self.sin_x[:, None])):
+                direct = self.wall.P_slope * g.weight * factor
+                cell[k] += direct
+                cell[k + 2] += direct * g.z
+        contract_pose(cell, self.cos_x, self.sin_x, g.z, pose)
+        contract_pose(face, self.cos_f, self.sin_f, g.z, pose)
+        if squeeze is not None:
+            contract_pose(squeeze, self.cos_x, self.sin_x, g.z, rates)
+        ds[:, :4], ds[:, 4:8] = pose, rates
+        ds[:, 8:] = s.speed_sensitivity(lam)
+        return ds
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of the last evaluation.
+
+        Returns
+        -------
+        dict
+            ``minimum_gap`` (m, over the whole bearing with its edges), ``eccentricity_ratio`` (at the mid-plane),
+            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, the film's largest vertex),
+            ``friction_torque`` (Nm, of the film on the journal about its own axis),
+            ``friction_torque_unbroken`` (the same with shear of the unbroken film only), ``friction_torque_bush`` (Nm, on
+            the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters the film), ``leakage``
+            (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried by the wall).
+        """
+        b = self.bearing
+        c = b.radial_clearance
+        gap = c * (1.0 - float(largest_eccentricity(self.pose, self.half_length)))
+        out = {
+            "minimum_gap": gap,
+            "eccentricity_ratio": math.hypot(self.pose[0], self.pose[1]),
+            "largest_eccentricity_ratio": 1.0 - gap / c,
+        }
+        if self.status is not Status.CONVERGED:
+            return out
+        s, g, R = self.solver, self.grid, self.grid.reference_length
+        peak = peak_of(s.pressure)[0]
+        torque_scale = self.shear_scale * R**2
+        lower, upper = end_flows(
+            s.pressure, s.system.kz, s.fz, s.fx, s.H_t, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed
+        )
+        flow_scale = c * R**2
+        friction = -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta)
+        v, f = self.motion, self.wrench
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
+        out |= {
+            "peak_pressure": peak * self.pressure_scale,
+            "friction_torque": friction,
+            "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - 6.0 * self.s_theta),
+            "friction_torque_bush": -float(self.wrench[5]),
+            "power_loss": -power,
+            "leakage": flow_scale * (lower + upper),
+            "leakage_lower": flow_scale * lower,
+            "leakage_upper": flow_scale * upper,
+            "contact_load": self.force_scale * math.hypot(self.wall_integrals[0], self.wall_integrals[1]),
+        }
+        return out
+
+    def refined_peak(self) -> tuple[float, float, float]:
+        """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
+        peak, theta, z = refined_peak(self.solver.pressure, self.grid.x, self.grid.z, True)
+        return peak * self.pressure_scale, theta, z * self.grid.reference_length
+
+
+def _ring_mean(row: np.ndarray) -> float:
+    """Integral over the circumference of a row of vertex values."""
+    return float(row.mean() * 2.0 * math.pi)
