@@ -47,7 +47,13 @@ class FilmError(EHDError, RuntimeError):
 
 
 def require_number(
-    where: str, value: float, unit: str = "", *, above: float | None = None, at_least: float | None = None, hint: str = ""
+    where: str,
+    value: float,
+    unit: str = "",
+    *,
+    above: float | None = None,
+    at_least: float | None = None,
+    hint: str = "",
 ) -> float:
     """Return ``value`` as a finite float, or raise `InputError` naming argument, received and expected value.
 

@@ -3,7 +3,8 @@
 Every side (housing H, journal J) is described by two work arrays, whoever fills them (the kernels here for the nodes
 of rigid bodies, `film_element.MarkerSide` for any other marker):
 
-frame (3, 6)      columns 0-2: A, marker frame to global; 3: position p; 4: velocity v; 5: angular velocity omega (global)
+frame (3, 6)      columns 0-2: A, marker frame to global; 3: position p; 4: velocity v; 5: angular velocity omega;
+                  all global
 jac   (4, 3, n)   Jp, Jr, Vq, Wq with dp = Jp dq, dphi = Jr dq (global rotation), dv = Vq dq and domega = Wq dq at
                   fixed q_t; with respect to q_t, dv = Jp dq_t and domega = Jr dq_t.
 
@@ -126,7 +127,7 @@ def _tait_bryan_axes(angles):
 
 @njit(cache=True)
 def node_rotation(kind, theta):
-    """Rotation matrix (3, 3), node frame to global, and Jr (3, m) of a node with rotation coordinates ``theta`` (m,)."""
+    """Rotation matrix (3, 3), node to global, and Jr (3, m) of a node with rotation coordinates ``theta`` (m,)."""
     if kind == EULER_PARAMETERS:
         a, norm2 = _rotation_euler(theta)
         return a, euler_g(theta) / norm2
