@@ -15,7 +15,7 @@ from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
-from exudyn_ehd.coupling.items import Item, resolve
+from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import NodeSide
 from exudyn_ehd.status import InputError, require_vector
@@ -30,7 +30,11 @@ class Free:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """The relative axial displacement keeps its reference value, by an algebraic constraint; explicit solvers can't."""
+    """The relative axial displacement keeps its reference value, by an algebraic constraint.
+
+    For implicit and static solvers; Exudyn's explicit ones stop at once and name the constraint object
+    (``constraintNumber`` of the joint).
+    """
 
 
 class LubricatedJoint:
@@ -210,7 +214,7 @@ def attach(
     flat = (kinematics.GROUND, kinematics.PLANAR)
     # planar bodies can't move axially: the constraint would be empty, and singular
     held = isinstance(axial, Held) and not (housing.kind in flat and journal.kind in flat)
-    element = FilmElement(model, *sides, name, implicit_only=held)
+    element = FilmElement(model, *sides, name)
     number = mbs.AddObject(
         eii.ObjectGenericODE2(
             name=name,
@@ -359,8 +363,12 @@ def _hold_axially(
 
 
 def _rigid_marker(mbs: Any, name: str, item: Item, transform: np.ndarray) -> Any:
-    if item.node is not None:
-        return mbs.AddMarker(eii.MarkerNodeRigid(name=name, nodeNumber=item.node, localHT=transform))
-    # ground carries no node; a ground object of our own at the origin holds the marker
-    ground = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
-    return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=ground, localHT=transform))
+    """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
+    if item.node is None:
+        # a ground object of our own at the origin holds the marker
+        body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
+    else:
+        body = body_of_node(mbs, item.node)
+        if body is None:
+            raise InputError(f"{_WHERE}: axial=Held() needs the rigid body of node {int(item.node)}, add it before.")
+    return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))

@@ -17,7 +17,7 @@ from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
-from exudyn_ehd.status import FilmError, InputError, Status
+from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -50,18 +50,13 @@ class FilmElement:
         Carriers of the joint frame and of the journal's frame (z = its axis).
     name : str
         For messages.
-    implicit_only : bool
-        Refuse explicit solvers (the joint has an algebraic constraint).
     """
 
-    def __init__(
-        self, model: JointModel, housing: Side, journal: Side, name: str, *, implicit_only: bool = False
-    ) -> None:
+    def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
         self.model = model
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
-        self._implicit_only = implicit_only
         self._record = Record()
         self._trial: Trial | None = None
         self._start = np.nan
@@ -187,11 +182,6 @@ class FilmElement:
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
         """Record the state at the start of the current step, exactly as accepted."""
-        if self._implicit_only and solvers.is_explicit(mbs):
-            raise InputError(
-                f"LubricatedJoint '{self.name}': axial=Held() is an algebraic constraint, which explicit solvers can't "
-                "keep; use an implicit solver, or axial=Free()."
-            )
         self._start, self._run = start, run
         row = self._row(mbs, start, _START_OF_STEP)
         if row is not None:

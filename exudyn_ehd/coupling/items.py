@@ -188,3 +188,12 @@ def _nodes_of_marker(mbs: Any, data: dict[str, Any]) -> tuple[Any, ...]:
     body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
     numbers = body["nodeNumbers"] if "nodeNumbers" in body else [body["nodeNumber"]]
     return tuple(exu.NodeIndex(int(number)) for number in numbers)
+
+
+def body_of_node(mbs: Any, node: Any) -> Any:
+    """The rigid body that moves ``node``, or None if there is none yet."""
+    for i in range(mbs.systemData.NumberOfObjects()):
+        body = mbs.GetObject(i)
+        if body["objectType"] in ("RigidBody", "RigidBody2D") and int(body["nodeNumber"]) == int(node):
+            return exu.ObjectIndex(i)
+    return None

@@ -39,8 +39,3 @@ def can_reject_step(mbs: Any) -> bool:
     # iteration data, not the settings: the solver's own copy is what decides
     iteration = solver.it
     return bool(iteration.adaptiveStep) and iteration.currentStepSize > iteration.minStepSize * (1.0 + 1e-6)
-
-
-def is_explicit(mbs: Any) -> bool:
-    """Whether an explicit solver is at work."""
-    return isinstance(running_solver(mbs), exu.MainSolverExplicit)

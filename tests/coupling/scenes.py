@@ -2,9 +2,8 @@
 
 import exudyn as exu
 import numpy as np
-from exudyn.utilities import InertiaCuboid
-
 import toy
+from exudyn.utilities import InertiaCuboid
 
 NODE_TYPES = {
     "EP": exu.NodeType.RotationEulerParameters,

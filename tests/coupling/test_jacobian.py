@@ -11,9 +11,9 @@ import itertools
 import exudyn as exu
 import numpy as np
 import pytest
+import scenes
 from exudyn.advancedUtilities import NumericalJacobian
 
-import scenes
 from exudyn_ehd.coupling import kinematics
 
 STEP = 2e-8
