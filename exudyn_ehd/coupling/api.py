@@ -88,6 +88,8 @@ class LubricatedJoint:
         -------
         exudyn.SensorIndex
         """
+        if not isinstance(quantity, Quantity):
+            raise InputError(f"LubricatedJoint.AddSensor: quantity must be a member of Quantity, got {quantity!r}.")
         write = bool(fileName) if writeToFile is None else writeToFile
         label = name or f"{self.name} {quantity.value}"
         return add_sensor(self.mbs, self.element, quantity, label, fileName, write)

@@ -9,7 +9,6 @@ import numpy as np
 
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import Quantity, column
-from exudyn_ehd.status import InputError
 
 _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quantity.MOMENT: 3}
 
@@ -22,8 +21,6 @@ def add_sensor(
     The sensor looks at the state Exudyn shows it, which after an accepted step is exactly the state the record gets, so
     that both agree bit for bit. Where the film can't be evaluated, it gives nan.
     """
-    if not isinstance(quantity, Quantity):
-        raise InputError(f"AddSensor.quantity must be a member of Quantity, got {quantity!r}.")
     size = _SIZE.get(quantity, 1)
 
     def read(mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any) -> list[float]:

@@ -1,6 +1,7 @@
 """Small systems shared by the tests."""
 
 import exudyn as exu
+import exudyn.itemInterface as eii
 import numpy as np
 import toy
 from exudyn.utilities import InertiaCuboid
@@ -87,3 +88,16 @@ def pair(housing, journal, *, seed=0, film=None, planar=False):
         q[:] = 2e-4 * rng.normal(size=n)
     q_t = rng.normal(size=q.size) * 3.0
     return mbs, joint, q, q_t
+
+
+def hold_axially_and_in_spin(mbs, housing, journal):
+    """Soft springs for the two directions that a film leaves free, which a static solve can't."""
+    markers = [mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=b)) for b in (housing, journal)]
+    mbs.AddObject(
+        eii.ObjectConnectorRigidBodySpringDamper(
+            markerNumbers=markers,
+            stiffness=np.diag([0, 0, 1e3, 0, 0, 1e3]),
+            damping=np.zeros((6, 6)),
+            useIntrinsicFormulation=False,
+        )
+    )

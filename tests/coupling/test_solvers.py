@@ -89,13 +89,7 @@ def test_static_equilibrium(node):
     journal = scenes.add_body(mbs, node, spin=(0, 0, spin), gravity=GRAVITY)
     joint = toy.attach(mbs, [housing, journal], film, position=[0, 0, 0])
     # friction and the free axial direction leave rigid motions: hold them
-    soft = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal))
-    fixed = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=housing))
-    mbs.AddObject(
-        eii.ObjectConnectorRigidBodySpringDamper(
-            markerNumbers=[fixed, soft], stiffness=np.diag([0, 0, 1e3, 0, 0, 1e3]), damping=np.zeros((6, 6))
-        )
-    )
+    scenes.hold_axially_and_in_spin(mbs, housing, journal)
     mbs.Assemble()
     mbs.SolveStatic(scenes.settings(1, 1))
     history = joint.history
@@ -128,7 +122,7 @@ def test_same_motion_as_exudyns_spring_damper(node):
             toy.attach(mbs, [housing, journal], film, position=[0, 0, 0])
         else:
             ends = [
-                mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=b, localPosition=p))
+                mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=b, localHT=exu.HT(translation=p)))
                 for b, p in ((housing, [0, 0, 0]), (journal, [-0.02, 0, 0]))
             ]
             mbs.AddObject(
@@ -136,7 +130,7 @@ def test_same_motion_as_exudyns_spring_damper(node):
                     markerNumbers=ends,
                     stiffness=np.diag([film.stiffness, film.stiffness, 0, 0, 0, 0]),
                     damping=np.diag([film.damping, film.damping, 0, 0, 0, 0]),
-                    intrinsicFormulation=False,
+                    useIntrinsicFormulation=False,
                 )
             )
         run(mbs, scenes.settings(0.01, 100, tolerance=1e-12))
