@@ -27,6 +27,11 @@ def running_solver(mbs: Any) -> Any:
     return None
 
 
+def is_static(mbs: Any) -> bool:
+    """Whether a static solver is at work: its time is a load parameter."""
+    return isinstance(running_solver(mbs), exu.MainSolverStatic)
+
+
 def can_reject_step(mbs: Any) -> bool:
     """Whether the running solver answers a nan force by repeating the step with a smaller size, as it still can.
 
