@@ -71,6 +71,7 @@ class FilmElement:
         self._trial: Trial | None = None
         self._start = np.nan
         self._run: tuple[Any, Any] = (self, self)
+        self._solver: Any = None
         self._uses_memory = False
         self._memory: Any = None
         self._bound = False
@@ -86,7 +87,7 @@ class FilmElement:
             self._accept(mbs, start, run)
         trial = self._try(mbs, q, q_t, _CURRENT, t)
         if trial.status != Status.CONVERGED:
-            self._fail(mbs, t, trial)
+            self._fail(t, trial)
             return np.full(len(q), np.nan)
         assert trial.evaluation is not None
         housing, journal = self.sides
@@ -101,7 +102,7 @@ class FilmElement:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
         trial = self._try(mbs, q, q_t, _CURRENT, t)
         if trial.status != Status.CONVERGED:
-            self._fail(mbs, t, trial)
+            self._fail(t, trial)
             return np.full((len(q), len(q)), np.nan)
         stiffness, damping = self._derivatives(mbs, trial)
         return -(f_q * stiffness + f_qt * damping)
@@ -174,9 +175,9 @@ class FilmElement:
 
     # --- failures -------------------------------------------------------------------------------------------------
 
-    def _fail(self, mbs: Any, t: float, trial: Trial) -> None:
+    def _fail(self, t: float, trial: Trial) -> None:
         """Return if the solver can still reject the step, else raise."""
-        if not solvers.can_reject_step(mbs):
+        if not solvers.can_reject_step(self._solver):
             raise FilmError(self._message(t, trial))
 
     def _message(self, t: float, trial: Trial) -> str:
@@ -202,9 +203,10 @@ class FilmElement:
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
         """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
         if run[0] is not self._run[0] or run[1] is not self._run[1]:
+            self._solver = solvers.running_solver(self._run, run)
             self._run = run
             # the time of a static solve is a load parameter: the film is the steady one
-            self._uses_memory = self.model.remembers and not solvers.is_static(mbs)
+            self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
             # a run that starts behind the record goes on with it, any other begins anew
             if not self._uses_memory or not start > self._record.last_time:
                 self._memory = None
@@ -253,6 +255,10 @@ class FilmElement:
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""
         final = None
-        if mbs.systemIsConsistent and mbs.systemData.GetTime(_CURRENT) > self._record.last_time:
-            final = self.current_row(mbs)
+        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        configuration = _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        if mbs.systemIsConsistent:
+            time = mbs.systemData.GetTime(configuration)
+            if time > self._record.last_time:
+                final = self._row(time, self._look(mbs, time, configuration))
         return self._record.snapshot(final)

@@ -211,6 +211,44 @@ def test_lasting_failure_ends_a_static_run_with_the_reason():
     assert history.time[-1] == mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep) > 0.0
 
 
+def test_error_elsewhere_in_a_static_run_leaves_no_row_of_the_failed_state():
+    """The film is fine, but another user function raises in the middle of a load step."""
+    mbs, joint, journal = scene(toy.ToyFilm())
+    scenes.hold_axially_and_in_spin(mbs, exu.ObjectIndex(0), journal)
+
+    def load(mbs, t, vector):
+        if t > 0.6:
+            raise ValueError("no such load")
+        return [0, -100.0 * t, 0]
+
+    marker = mbs.AddMarker(exu.itemInterface.MarkerBodyRigid(bodyNumber=journal))
+    mbs.AddLoad(
+        exu.itemInterface.LoadForceVector(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=load)
+    )
+    mbs.Assemble()
+    settings = scenes.settings(1, 1)
+    settings.staticSolver.numberOfLoadSteps = 4
+    with pytest.raises(exu.ExudynError):
+        mbs.SolveStatic(settings)
+    assert joint.history.time.tolist() == [0.0, 0.25, 0.5]
+
+
+def test_plot_sensor_draws(monkeypatch):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    mbs, joint, _ = scene(toy.ToyFilm())
+    sensor = joint.AddSensor(api.Quantity.ECCENTRICITY)
+    mbs.Assemble()
+    mbs.SolveDynamic(scenes.settings(0.001, 10))
+    monkeypatch.setattr(plt, "show", lambda *args, **kwargs: None)
+    mbs.PlotSensor(sensorNumbers=[sensor], components=[1])
+    assert plt.get_fignums()
+    plt.close("all")
+
+
 @pytest.mark.parametrize("solver", [exu.DynamicSolverType.RK44, exu.DynamicSolverType.ExplicitEuler], ids=str)
 def test_failure_raises_at_once_under_explicit_solvers(solver):
     film = FragileFilm(wall(2e-5), stiffness=0.0, damping=0.0)
@@ -368,3 +406,25 @@ def test_static_solve_asks_for_the_steady_film():
     mbs.SolveStatic(scenes.settings(1, 1))
     assert set(film.asked) == {0.0}
     assert len(joint.history.time) == 2
+
+
+def test_runs_after_a_failed_one_know_their_solver():
+    """A run that an exception ended leaves its solver looking busy; the next runs must not mistake it for theirs."""
+    film = FragileFilm(wall(2e-5), stiffness=0.0, damping=0.0)
+    mbs, joint, journal = scene(film)
+    scenes.hold_axially_and_in_spin(mbs, exu.ObjectIndex(0), journal)
+    mbs.Assemble()
+    settings = scenes.settings(0.002, 20)
+    for solver in (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.RK44) * 2:
+        film.asked.clear()
+        with pytest.raises(exu.ExudynError) as caught:
+            mbs.SolveDynamic(settings, solverType=solver)
+        assert isinstance(caught.value.__cause__, FilmError)
+        failures = sum(film.fails(m) for m in film.asked)
+        # the explicit solver ends at the first failure, the implicit one after halving 1e-4 s down to 1e-8 s
+        assert failures == 1 if solver == exu.DynamicSolverType.RK44 else failures >= 13
+        assert joint.history.time[0] == 0.0
+        assert np.all(joint.history.eccentricity[:, 0] <= 2e-5)
+    film.stiffness, film.fails = 2e6, lambda m: False
+    mbs.SolveStatic(scenes.settings(1, 1))
+    assert joint.history.time.tolist() == [0.0, 1.0]
