@@ -176,20 +176,56 @@ def factor_band(band, count, width, inv_diag_out):
 
 @njit(cache=True, fastmath=_FAST)
 def solve_one(band, inv_diag, count, width, x):
-    """Solve for one right-hand side (count,) in place."""
-    for k in range(count):
-        row = band[k]
+    """Solve for one right-hand side (count,) in place, four pivots at a time."""
+    whole = count - count % 4
+    for k in range(0, whole, 4):
+        u0, u1, u2, u3 = band[k], band[k + 1], band[k + 2], band[k + 3]
+        c0 = x[k] * inv_diag[k]
+        x1 = x[k + 1] - c0 * u0[1]
+        c1 = x1 * inv_diag[k + 1]
+        x2 = x[k + 2] - c0 * u0[2] - c1 * u1[1]
+        c2 = x2 * inv_diag[k + 2]
+        x3 = x[k + 3] - c0 * u0[3] - c1 * u1[2] - c2 * u2[1]
+        c3 = x3 * inv_diag[k + 3]
+        x[k + 1] = x1
+        x[k + 2] = x2
+        x[k + 3] = x3
+        reach = min(width, count - 4 - k)
+        target = x[k + 4 : k + 4 + reach]
+        v0, v1, v2, v3 = u0[4 : 4 + reach], u1[3 : 3 + reach], u2[2 : 2 + reach], u3[1 : 1 + reach]
+        for t in range(reach):
+            target[t] -= c0 * v0[t] + c1 * v1[t] + c2 * v2[t] + c3 * v3[t]
+    for k in range(whole, count):
         c = x[k] * inv_diag[k]
-        reach = min(width, count - 1 - k)
-        for d in range(1, reach + 1):
-            x[k + d] -= c * row[d]
-    for k in range(count - 1, -1, -1):
-        row = band[k]
-        reach = min(width, count - 1 - k)
+        for d in range(1, min(width, count - 1 - k) + 1):
+            x[k + d] -= c * band[k, d]
+    for k in range(count - 1, whole - 1, -1):
         s = 0.0
-        for d in range(1, reach + 1):
-            s += row[d] * x[k + d]
+        for d in range(1, min(width, count - 1 - k) + 1):
+            s += band[k, d] * x[k + d]
         x[k] = (x[k] - s) * inv_diag[k]
+    for k in range(whole - 4, -1, -4):
+        u0, u1, u2, u3 = band[k], band[k + 1], band[k + 2], band[k + 3]
+        reach = min(width, count - 4 - k)
+        known = x[k + 4 : k + 4 + reach]
+        v0, v1, v2, v3 = u0[4 : 4 + reach], u1[3 : 3 + reach], u2[2 : 2 + reach], u3[1 : 1 + reach]
+        s0 = 0.0
+        s1 = 0.0
+        s2 = 0.0
+        s3 = 0.0
+        for t in range(reach):
+            a = known[t]
+            s0 += v0[t] * a
+            s1 += v1[t] * a
+            s2 += v2[t] * a
+            s3 += v3[t] * a
+        x3 = (x[k + 3] - s3) * inv_diag[k + 3]
+        x2 = (x[k + 2] - s2 - u2[1] * x3) * inv_diag[k + 2]
+        x1 = (x[k + 1] - s1 - u1[1] * x2 - u1[2] * x3) * inv_diag[k + 1]
+        x[k] = (x[k] - s0 - u0[1] * x1 - u0[2] * x2 - u0[3] * x3) * inv_diag[k]
+        x[k + 1] = x1
+        x[k + 2] = x2
+        x[k + 3] = x3
 
 
 @njit(cache=True, fastmath=_FAST)
