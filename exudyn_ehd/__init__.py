@@ -19,6 +19,7 @@ taken about the joint's origin.
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
+from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
@@ -28,6 +29,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "EHDError",
+    "ElrodAdams",
     "EquilibriumResult",
     "FilmError",
     "FilmResult",

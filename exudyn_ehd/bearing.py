@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
+from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.status import InputError, require_number, require_vector
@@ -31,7 +32,7 @@ class MaximumGap:
 
 
 Film = FiniteLength | ShortBearing
-Cavitation = FullSommerfeld | Gumbel | SwiftStieber
+Cavitation = FullSommerfeld | Gumbel | SwiftStieber | ElrodAdams
 Inlet = Periodic | MaximumGap
 
 
@@ -50,7 +51,7 @@ class JournalBearing:
     lubricant : Lubricant
     film : FiniteLength or ShortBearing
         Film model and grid.
-    cavitation : FullSommerfeld, Gumbel or SwiftStieber
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
         What happens below the cavity pressure.
     inlet : Periodic or MaximumGap
         Circumferential condition.
@@ -89,7 +90,7 @@ class JournalBearing:
         )  # fmt: skip
         _require_type("lubricant", self.lubricant, (Lubricant,))
         _require_type("film", self.film, (FiniteLength, ShortBearing))
-        _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber))
+        _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")

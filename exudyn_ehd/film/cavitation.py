@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.direct import Workspace, assemble_band, factor_band, number_cells, solve_one
+from exudyn_ehd.film.direct import Workspace, assemble_band, factor_band, number_cells, solve_many, solve_one
 from exudyn_ehd.status import InputError, Status, require_number
 
 MAX_ACTIVE_SET_STEPS = 200
@@ -33,11 +33,17 @@ class FullSommerfeld:
 
     cavity_pressure = -np.inf
     cavity_shear = 1.0
+    conserves_mass = False
+    clips = False
 
-    def solve(self, system: LinearFilm, work: Workspace) -> tuple[Status, int]:
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Solve on all free vertices."""
         np.logical_not(system.fixed, out=work.active)
         return _solve_linear(system, work)
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
+        solve_symmetric(work, rhs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,15 +64,22 @@ class Gumbel:
     cavity_pressure: float = 0.0
     cavity_shear: float = 1.0
 
+    conserves_mass = False
+    clips = True
+
     def __post_init__(self) -> None:
         _check_closure(self)
 
-    def solve(self, system: LinearFilm, work: Workspace) -> tuple[Status, int]:
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Solve on all free vertices, then clip into ``system.pressure``; ``work.active`` marks the unbroken film."""
         np.logical_not(system.fixed, out=work.active)
         outcome = _solve_linear(system, work)
         clip_pressure(system.linear_pressure, system.fixed, system.cavity_pressure, system.pressure, work.active)
         return outcome
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
+        solve_symmetric(work, rhs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,10 +100,13 @@ class SwiftStieber:
     cavity_pressure: float = 0.0
     cavity_shear: float = 1.0
 
+    conserves_mass = False
+    clips = False
+
     def __post_init__(self) -> None:
         _check_closure(self)
 
-    def solve(self, system: LinearFilm, work: Workspace) -> tuple[Status, int]:
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Primal-dual active set from ``work.active``, or from all free vertices if ``work.warm`` is False."""
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
@@ -101,6 +117,15 @@ class SwiftStieber:
         work.count, work.width, work.warm = count, width, ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
 
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
+        solve_symmetric(work, rhs)
+
+
+def solve_symmetric(work: Workspace, rhs: np.ndarray) -> None:
+    """Solve with the stored symmetric factor for every row of rhs (k, count), in place."""
+    solve_many(work.band, work.inv_diag, work.count, work.width, rhs)
+
 
 def _check_closure(closure: Gumbel | SwiftStieber) -> None:
     name = type(closure).__name__
@@ -109,8 +134,8 @@ def _check_closure(closure: Gumbel | SwiftStieber) -> None:
         raise InputError(f"{name}.cavity_shear must be within 0 and 1, got {closure.cavity_shear!r}; it is a share.")
 
 
-class LinearFilm:
-    """One linear film problem ``A P = b`` and its solution, as arrays that closures read and write.
+class FilmSystem:
+    """One film problem and its solution, as arrays that closures read and write.
 
     Attributes
     ----------
@@ -124,9 +149,15 @@ class LinearFilm:
         In: prescribed values at fixed vertices. Out: the film's pressure.
     linear_pressure : (n, m) array
         Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure clips.
+    fx, fz, H, H_t, area : (n, m) arrays
+        Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
+    fill, mass_old : (n, m) arrays
+        Film fraction, and the old value of fill H; only used by closures that conserve mass.
+    inverse_step : float
+        1 / time step since ``mass_old``, 1/s; 0: steady.
     """
 
-    def __init__(self, shape: tuple[int, int], fixed: np.ndarray, clips: bool) -> None:
+    def __init__(self, shape: tuple[int, int], fixed: np.ndarray, area: np.ndarray, clips: bool, fills: bool) -> None:
         self.kx = np.zeros(shape)
         self.kz = np.zeros(shape)
         self.b = np.zeros(shape)
@@ -134,9 +165,15 @@ class LinearFilm:
         self.cavity_pressure = 0.0
         self.pressure = np.zeros(shape)
         self.linear_pressure = np.zeros(shape) if clips else self.pressure
+        self.fx, self.fz = np.zeros(shape), np.zeros(shape)
+        self.H, self.H_t = np.ones(shape), np.zeros(shape)
+        self.area = area
+        self.inverse_step = 0.0
+        empty = np.ones(shape) if fills else np.ones((0, 0))
+        self.fill, self.mass_old = empty, empty.copy()
 
 
-def _solve_linear(system: LinearFilm, work: Workspace) -> tuple[Status, int]:
+def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve on ``work.active`` into ``system.linear_pressure``."""
     ok, count, width = solve_on_active(
         system.kx, system.kz, system.b, work.active, work.order, work.number, work.band, work.inv_diag,

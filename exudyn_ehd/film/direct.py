@@ -262,5 +262,7 @@ class Workspace:
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
         self.warm = False
+        self.lower: np.ndarray | None = None
+        self.upper: np.ndarray | None = None
         self.count = 0
         self.width = 1

@@ -66,6 +66,31 @@ def couette_gradient(H, weight, active, fixed, cavity_share, out):
 
 
 @njit(cache=True, fastmath=_FAST)
+def couette_integral_fill(H, weight, fill):
+    """(C with the fill as share, C where the film is full)."""
+    n, m = H.shape
+    whole = 0.0
+    full = 0.0
+    for i in range(n):
+        for j in range(m):
+            s = weight[i, j] / H[i, j]
+            whole += fill[i, j] * s
+            if fill[i, j] >= 1.0:
+                full += s
+    return whole, full
+
+
+@njit(cache=True)
+def couette_adjoint_rhs(order, count, weight, H, active, rhs_out):
+    """dC/dfill at the cavitated unknowns: rhs_out (count,)."""
+    m = H.shape[1]
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        rhs_out[r] = 0.0 if active[i, j] else weight[i, j] / H[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
 def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
     """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped."""
     m = z.size

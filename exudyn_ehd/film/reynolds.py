@@ -13,7 +13,6 @@ Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pre
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -104,6 +103,34 @@ def link_flow_sensitivity(lam, P, H, HF, vx, vz, flow_x, width_x, width_z, link_
 
 
 @njit(cache=True, fastmath=_FAST)
+def couette_sensitivity_fill(lam, fill, fx, fz, H, HF, vx, vz, width_x, width_z, link_x, cell_out, face_out, speed_out):
+    """Correct the sensitivities of a full film for the upstream fill of the Couette fluxes; adds to all outputs.
+
+    ``cell_out``, ``face_out`` (k, n, m) as in `link_flow_sensitivity`, ``speed_out`` (k, 2) as in `speed_sensitivity`.
+    """
+    count, n, m = lam.shape
+    for k in range(count):
+        sx = 0.0
+        sz = 0.0
+        for i in range(n):
+            nxt = i + 1 if i + 1 < n else 0
+            if link_x[i] != 0.0:
+                for j in range(m):
+                    up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
+                    d = (lam[k, i, j] - lam[k, nxt, j]) * (1.0 - up) * width_z[j]
+                    face_out[k, i, j] += d * vx
+                    sx += d * HF[i, j]
+            for j in range(m - 1):
+                up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
+                d = 0.5 * (lam[k, i, j] - lam[k, i, j + 1]) * (1.0 - up) * width_x[i]
+                cell_out[k, i, j] += d * vz
+                cell_out[k, i, j + 1] += d * vz
+                sz += d * (H[i, j] + H[i, j + 1])
+        speed_out[k, 0] += sx
+        speed_out[k, 1] += sz
+
+
+@njit(cache=True, fastmath=_FAST)
 def speed_sensitivity(lam, H, HF, width_x, width_z, link_x, out):
     """d(-lam . r)/d(vx, vz) for every adjoint: out (k, 2)."""
     count, n, m = lam.shape
@@ -135,8 +162,3 @@ def vertex_balance(P, kx, kz, b, out):
             if j + 1 < m:
                 r += kz[i, j] * (P[i, j] - P[i, j + 1])
             out[i, j] = r
-
-
-def zeros_like_grid(shape: tuple[int, int], count: int) -> list[np.ndarray]:
-    """``count`` fresh (n, m) arrays of zeros."""
-    return [np.zeros(shape) for _ in range(count)]

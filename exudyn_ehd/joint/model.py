@@ -6,6 +6,9 @@ Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the
 
 with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w. The wrench acts on
 the journal, moment about O; the housing receives exactly the opposite about the same point.
+
+Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)`` reads the history
+at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
 """
 
 from __future__ import annotations
@@ -20,18 +23,33 @@ from exudyn_ehd.film.contact import limit_gap, wall_pressure
 from exudyn_ehd.film.gap import contract_pose, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
+    couette_adjoint_rhs,
     couette_gradient,
     couette_integral,
+    couette_integral_fill,
     end_flows,
     load_adjoint_rhs,
     peak_of,
     pressure_integrals,
     refined_peak,
 )
-from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.film.solver import FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
 
 MOTION_SIZE = 10
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What a bearing remembers between accepted steps.
+
+    Attributes
+    ----------
+    mass : (n, m) array or None
+        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
+    """
+
+    mass: np.ndarray | None = None
 
 
 class Wall:
@@ -81,6 +99,11 @@ class Evaluation:
         self._require_current()
         return self._model.quantities()
 
+    def history(self) -> History | None:
+        """What the bearing remembers if this state is accepted; None without effects that remember."""
+        self._require_current()
+        return self._model.history()
+
     def _require_current(self) -> None:
         if self._model.serial != self._serial:
             raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
@@ -122,6 +145,7 @@ class RigidBearingModel:
                 self.grid.shape, bearing.contact.onset / c, bearing.contact.pressure / self.pressure_scale,
                 bearing.contact.residual,
             )  # fmt: skip
+        self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
         self.serial = 0
         self.status = Status.NOT_FINITE
         self.integrals = np.zeros(4)
@@ -131,13 +155,31 @@ class RigidBearingModel:
         """Drop the warm start. It never changes a result, only the time it takes."""
         self.solver.forget()
 
-    def evaluate(self, motion: np.ndarray) -> Evaluation:
+    def initial_history(self, motion: np.ndarray) -> History | None:
+        """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
+        if not self.remembers:
+            return None
+        self._set_motion(motion)
+        self._set_gap()
+        return History(mass=self.solver.H.copy())
+
+    def history(self) -> History | None:
+        """History after the last evaluation."""
+        if not self.remembers:
+            return None
+        return History(mass=self.solver.fill * self.solver.H)
+
+    def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
         """Evaluate the film.
 
         Parameters
         ----------
         motion : (10,) array
             Relative motion in the joint frame, SI units; see the module's docstring.
+        history : History, optional
+            At the last accepted step; None asks for the steady film.
+        step : float
+            Time since then, s; 0 asks for the force at that very instant.
 
         Returns
         -------
@@ -145,23 +187,22 @@ class RigidBearingModel:
             With ``status`` other than CONVERGED the wrench is nan.
         """
         self.serial += 1
-        self.motion = np.array(motion, dtype=float)
-        self.pose = self.motion[:4] * self.pose_scale
-        self.rate = self.motion[4:8] * self.pose_scale
-        self.omega, self.axial_speed = float(self.motion[8]), float(self.motion[9])
+        self._set_motion(motion)
         self.wrench = np.full(6, np.nan)
         self.iterations = 0
-        self.status = self._solve()
+        self.status = self._solve(history, step)
         if self.status is Status.CONVERGED:
             self.wrench = self._loads()
         return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
 
-    def _solve(self) -> Status:
-        if not np.all(np.isfinite(self.motion)):
-            return Status.NOT_FINITE
-        self.eccentricity = float(largest_eccentricity(self.pose, self.half_length))
-        if self.wall is None and self.eccentricity >= 1.0:
-            return Status.NO_FILM
+    def _set_motion(self, motion: np.ndarray) -> None:
+        self.motion = np.array(motion, dtype=float)
+        self.pose = self.motion[:4] * self.pose_scale
+        self.rate = self.motion[4:8] * self.pose_scale
+        self.omega, self.axial_speed = float(self.motion[8]), float(self.motion[9])
+
+    def _set_gap(self) -> None:
+        """Gaps of the present motion into the film solver."""
         s, z = self.solver, self.grid.z
         rigid_gap(self.pose, self.cos_x, self.sin_x, z, 1.0, s.H)
         rigid_gap(self.pose, self.cos_f, self.sin_f, z, 1.0, s.HF)
@@ -169,10 +210,19 @@ class RigidBearingModel:
             rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
         if self.wall is not None:
             self._apply_wall(self.wall)
-        P = s.pressure
+
+    def _solve(self, history: History | None, step: float) -> Status:
+        if not np.all(np.isfinite(self.motion)):
+            return Status.NOT_FINITE
+        self.eccentricity = float(largest_eccentricity(self.pose, self.half_length))
+        if self.wall is None and self.eccentricity >= 1.0:
+            return Status.NO_FILM
+        self._set_gap()
+        P = self.solver.pressure
         P[:, 0], P[:, -1] = self.end_pressures
-        status, self.iterations = s.solve(
-            0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, self.cavity_pressure
+        mass = history.mass if history is not None and self.remembers else None
+        status, self.iterations = self.solver.solve(
+            0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, self.cavity_pressure, mass, step
         )
         return status
 
@@ -193,9 +243,12 @@ class RigidBearingModel:
         if self.wall is not None:
             pressure_integrals(self.wall.P, g.weight, self.cos_x, self.sin_x, g.z, self.wall_integrals)
             total = self.integrals + self.wall_integrals
-        self.couette, self.couette_unbroken = couette_integral(
-            s.H, g.weight, s.work.active, g.fixed, self.bearing.cavitation.cavity_shear
-        )
+        if s.closure.conserves_mass:
+            self.couette, self.couette_unbroken = couette_integral_fill(s.H, g.weight, s.fill)
+        else:
+            self.couette, self.couette_unbroken = couette_integral(
+                s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear
+            )
         x, y, bx, by = self.pose
         sc, ss, szc, szs = total
         self.s_theta = x * ss - y * sc + bx * szs - by * szc
@@ -217,14 +270,8 @@ class RigidBearingModel:
         """d wrench / d motion (6, 10) of the last evaluation; nan without a film."""
         if self.status is not Status.CONVERGED:
             return np.full((6, MOTION_SIZE), np.nan)
-        ds = self._integral_gradients()
-        s, g = self.solver, self.grid
-        gradient = np.empty((1, *g.shape))
-        couette_gradient(s.H, g.weight, s.work.active, g.fixed, self.bearing.cavitation.cavity_shear, gradient[0])
-        if self.wall is not None:
-            gradient[0] *= self.wall.slope
-        dc = np.zeros((1, 4))
-        contract_pose(gradient, self.cos_x, self.sin_x, g.z, dc)
+        ds, dc = self._integral_gradients()
+        g = self.grid
         x, y, bx, by = self.pose
         sc, ss, szc, szs = self.integrals + self.wall_integrals
         ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2]
@@ -236,8 +283,8 @@ class RigidBearingModel:
         out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
         out[2] = -6.0 * c0 * R * ds_z
         out[5] = -6.0 * c0 * R**2 * ds_theta
-        out[2, :4] -= c0 * self.axial_speed * dc[0]
-        out[5, :4] -= c0 * R**2 * self.omega * dc[0]
+        out[2] -= c0 * self.axial_speed * dc
+        out[5] -= c0 * R**2 * self.omega * dc
         out[:, :4] *= self.pose_scale
         out[:, 4:8] *= self.pose_scale
         out[:, 8] *= 0.5
@@ -259,33 +306,54 @@ class RigidBearingModel:
         contract_pose(field, self.cos_x, self.sin_x, self.grid.z, out)
         return out[0] * self.pose_scale
 
-    def _integral_gradients(self) -> np.ndarray:
-        """d(S_c, S_s, S_zc, S_zs) / d(scaled pose, scaled rates, vx, vz): (4, 10)."""
+    def _integral_gradients(self) -> tuple[np.ndarray, np.ndarray]:
+        """Gradients of (S_c, S_s, S_zc, S_zs), (4, 10), and of C, (10,), to the scaled pose and rates, vx, vz."""
         s, g, w = self.solver, self.grid, self.solver.work
-        rhs = np.empty((4, w.count))
+        fills = s.closure.conserves_mass
+        rhs = np.empty((5 if fills else 4, w.count))
         load_adjoint_rhs(w.order, w.count, g.weight, self.cos_x, self.sin_x, g.z, w.active, rhs)
-        lam = s.adjoint(rhs)
-        cell, face = s.gap_sensitivity(lam)
-        ds = np.zeros((4, MOTION_SIZE))
-        pose, rates = np.zeros((4, 4)), np.zeros((4, 4))
-        squeeze = lam * np.multiply.outer(-g.width_x, g.width_z) if s.squeeze else None
+        if fills:
+            couette_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, rhs[4])
+        sens = s.sensitivities(s.adjoint(rhs))
         if self.wall is not None:
-            face *= self.wall.face_slope
-            cell *= self.wall.slope
-            if squeeze is not None:
-                cell += squeeze * self.wall.curvature
-                squeeze *= self.wall.slope
-            for k, factor in enumerate((self.cos_x[:, None], self.sin_x[:, None])):
-                direct = self.wall.P_slope * g.weight * factor
-                cell[k] += direct
-                cell[k + 2] += direct * g.z
-        contract_pose(cell, self.cos_x, self.sin_x, g.z, pose)
-        contract_pose(face, self.cos_f, self.sin_f, g.z, pose)
-        if squeeze is not None:
-            contract_pose(squeeze, self.cos_x, self.sin_x, g.z, rates)
-        ds[:, :4], ds[:, 4:8] = pose, rates
-        ds[:, 8:] = s.speed_sensitivity(lam)
-        return ds
+            self._chain_wall(self.wall, sens)
+        out = np.zeros((5, MOTION_SIZE))
+        k = rhs.shape[0]
+        pose, rates = np.zeros((k, 4)), np.zeros((k, 4))
+        contract_pose(sens.cell, self.cos_x, self.sin_x, g.z, pose)
+        contract_pose(sens.face, self.cos_f, self.sin_f, g.z, pose)
+        if sens.rate is not None:
+            contract_pose(sens.rate, self.cos_x, self.sin_x, g.z, rates)
+        out[:k, :4], out[:k, 4:8], out[:k, 8:] = pose, rates, sens.speed
+        out[4, :4] += self._couette_direct()
+        return out[:4], out[4]
+
+    def _couette_direct(self) -> np.ndarray:
+        """Direct gradient (4,) of C to the scaled pose, at fixed pressure and fill."""
+        s, g = self.solver, self.grid
+        gradient = np.empty((1, *g.shape))
+        if s.closure.conserves_mass:
+            gradient[0] = -g.weight * s.fill / s.H**2
+        else:
+            couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+        if self.wall is not None:
+            gradient[0] *= self.wall.slope
+        out = np.zeros((1, 4))
+        contract_pose(gradient, self.cos_x, self.sin_x, g.z, out)
+        return out[0]
+
+    def _chain_wall(self, wall: Wall, sens: Sensitivities) -> None:
+        """From the film's gap to the true gap, and the contact pressure's own part."""
+        g = self.grid
+        sens.face *= wall.face_slope
+        sens.cell *= wall.slope
+        if sens.rate is not None:
+            sens.cell += sens.rate * wall.curvature
+            sens.rate *= wall.slope
+        for k, factor in enumerate((self.cos_x[:, None], self.sin_x[:, None])):
+            direct = wall.P_slope * g.weight * factor
+            sens.cell[k] += direct
+            sens.cell[k + 2] += direct * g.z
 
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation.
@@ -313,9 +381,14 @@ class RigidBearingModel:
         s, g, R = self.solver, self.grid, self.grid.reference_length
         peak = peak_of(s.pressure)[0]
         torque_scale = self.shear_scale * R**2
-        lower, upper = end_flows(
-            s.pressure, s.system.kz, s.fz, s.fx, s.H_t, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed
-        )
+        if s.closure.conserves_mass:
+            inflow = s.inflow()
+            lower, upper = -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
+        else:
+            y = s.system
+            lower, upper = end_flows(
+                s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed
+            )
         flow_scale = c * R**2
         friction = -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta)
         v, f = self.motion, self.wrench

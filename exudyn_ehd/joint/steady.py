@@ -11,7 +11,6 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.film.reynolds import vertex_balance
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.joint.model import RigidBearingModel
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
@@ -104,15 +103,13 @@ def solve_film(
     status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale)
     if status is not Status.CONVERGED:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
-    balance = np.empty(grid.shape)
-    vertex_balance(solver.pressure, solver.system.kx, solver.system.kz, solver.system.b, balance)
     return FilmResult(
         status=status,
         iterations=iterations,
         pressure=solver.pressure * scale,
         gap=gap,
         unbroken=solver.work.active.copy(),
-        inflow=np.where(grid.fixed, balance, 0.0) * c * R**2,
+        inflow=solver.inflow() * c * R**2,
         load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
     )
 
