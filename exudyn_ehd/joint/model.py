@@ -392,7 +392,8 @@ class RigidBearingModel:
         flow_scale = c * R**2
         friction = -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta)
         v, f = self.motion, self.wrench
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
+        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
         out |= {
             "peak_pressure": peak * self.pressure_scale,
             "friction_torque": friction,
