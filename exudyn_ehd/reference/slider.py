@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 
-def plane_slider_pressure(viscosity: float, speed: float, length: float, inlet: float, outlet: float, x: float) -> float:
+def plane_slider_pressure(
+    viscosity: float, speed: float, length: float, inlet: float, outlet: float, x: float
+) -> float:
     """Pressure in Pa of a plane slider of infinite width, ``h = inlet + (outlet - inlet) x / length``.
 
     ``p = 6 mu U L (h1 - h)(h - h2) / ((h1^2 - h2^2) h^2)`` for inlet h1 > outlet h2 (O. Reynolds, 1886).

@@ -138,7 +138,9 @@ def test_squeeze_off_equals_zero_rates_bit_for_bit(make_bearing, closure, film):
 @both_films
 def test_a_wall_out_of_reach_changes_no_bit(make_bearing, closure, film):
     wall = ehd.RegularisedWall(onset=1e-6)
-    plain, walled = (RigidBearingModel(make_bearing(0.8, cavitation=closure(), film=film, contact=k)) for k in (None, wall))
+    plain, walled = (
+        RigidBearingModel(make_bearing(0.8, cavitation=closure(), film=film, contact=k)) for k in (None, wall)
+    )
     rng = np.random.default_rng(4)
     for _ in range(30):
         motion = _random_motion(rng, plain.bearing, largest=0.95)

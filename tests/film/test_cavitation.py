@@ -134,7 +134,7 @@ def test_update_of_the_active_set_twin(make_film, dense_matrix, cut):
         P, pc = np.where(active, rng.normal(size=(12, 6)), np.where(fixed, 0.3, 0.1)), 0.1
         A, scratch = dense_matrix(f.kx, f.kz), P.copy()
         # One policy step: leave below the cavity pressure, join where the cavity would be fed.
-        expected = active & (P >= pc)
+        expected = active & np.greater_equal(P, pc)
         for i, j in zip(*np.nonzero(~active & ~fixed), strict=True):
             expected[i, j] = A[i * 6 + j] @ P.ravel() - f.b[i, j] <= 0.0
         new = active.copy()
@@ -169,7 +169,8 @@ def test_prolonged_set_covers_the_coarse_one():
 
 @pytest.mark.parametrize("spec", (Gumbel, SwiftStieber))
 @pytest.mark.parametrize(
-    "options", [{"cavity_pressure": float("inf")}, {"cavity_pressure": "0"}, {"cavity_shear": -0.1}, {"cavity_shear": 1.1}]
+    "options",
+    [{"cavity_pressure": float("inf")}, {"cavity_pressure": "0"}, {"cavity_shear": -0.1}, {"cavity_shear": 1.1}],
 )
 def test_validation(spec, options):
     with pytest.raises(InputError, match=rf"{spec.__name__}\.{next(iter(options))}"):

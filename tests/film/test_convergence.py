@@ -31,9 +31,7 @@ def _slopes(errors):
 def test_full_sommerfeld_in_theta(make_bearing):
     """Second order: smooth integrands are summed exactly, the fluxes are central differences."""
     exact = _wrench(make_bearing, ehd.FullSommerfeld(), 1024, 10)
-    errors = [
-        abs(_wrench(make_bearing, ehd.FullSommerfeld(), n, 10) - exact).max() for n in (32, 64, 128)
-    ]
+    errors = [abs(_wrench(make_bearing, ehd.FullSommerfeld(), n, 10) - exact).max() for n in (32, 64, 128)]
     slopes = _slopes(errors)
     print("theta", errors, slopes)
     assert (slopes > 1.9).all()

@@ -267,7 +267,9 @@ def test_short_bearing_is_the_limit_of_the_finite_one(make_bearing, make_motion)
     for ratio in (0.2, 0.1, 0.05):
         F = [
             RigidBearingModel(b).evaluate(make_motion(b, (0.5, 0.2))).wrench[:2]
-            for b in (make_bearing(ratio, film=f) for f in (ehd.ShortBearing(n_theta=192), ehd.FiniteLength(n_theta=192)))
+            for b in (
+                make_bearing(ratio, film=f) for f in (ehd.ShortBearing(n_theta=192), ehd.FiniteLength(n_theta=192))
+            )
         ]
         errors.append(np.linalg.norm(F[0] - F[1]) / np.linalg.norm(F[1]))
     assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.25)

@@ -33,7 +33,14 @@ class TestSteady:
         evaluation = model.evaluate(np.array(motion))
         np.testing.assert_array_equal(np.concatenate((film.force, film.moment)), evaluation.wrench)
         q = evaluation.quantities()
-        for name in ("minimum_gap", "friction_torque", "friction_torque_unbroken", "friction_torque_bush", "power_loss", "leakage"):
+        for name in (
+            "minimum_gap",
+            "friction_torque",
+            "friction_torque_unbroken",
+            "friction_torque_bush",
+            "power_loss",
+            "leakage",
+        ):
             assert getattr(film, name) == q[name]
         np.testing.assert_allclose(film.gap[:, 4], c - x * np.cos(film.theta) - y * np.sin(film.theta), rtol=1e-12)
         np.testing.assert_array_equal(film.pressure[:, 0], 1e5)
@@ -43,7 +50,9 @@ class TestSteady:
 
     def test_force_is_the_integral_of_the_pressure(self, make_bearing):
         # Independent quadrature of the returned field: trapezoidal in z, second order in ten intervals.
-        film = ehd.steady(make_bearing(1.0, film=ehd.FiniteLength(n_theta=96, n_z=40)), speed=SPEED, eccentricity_ratio=0.6)
+        film = ehd.steady(
+            make_bearing(1.0, film=ehd.FiniteLength(n_theta=96, n_z=40)), speed=SPEED, eccentricity_ratio=0.6
+        )
         line = np.trapezoid(film.pressure, film.z, axis=1)
         step = 2 * math.pi / 96 * 0.025
         force = [-(line * np.cos(film.theta)).sum() * step, -(line * np.sin(film.theta)).sum() * step]
@@ -174,7 +183,14 @@ class TestEquilibrium:
 
     @pytest.mark.parametrize(
         "wrong",
-        [{"load": (0.0, 0.0)}, {"speed": 0.0}, {"load": (1.0,)}, {"load": (math.nan, 1.0)}, {"speed": math.nan}, {"tilt": 1.0}],
+        [
+            {"load": (0.0, 0.0)},
+            {"speed": 0.0},
+            {"load": (1.0,)},
+            {"load": (math.nan, 1.0)},
+            {"speed": math.nan},
+            {"tilt": 1.0},
+        ],
     )
     def test_input(self, make_bearing, wrong):
         with pytest.raises(ehd.InputError, match="equilibrium"):

@@ -48,9 +48,7 @@ def test_full_sommerfeld(eps, measured):
 def test_half_sommerfeld(eps, measured):
     load, attitude, _, _ = _sealed_ring(eps, ehd.Gumbel())
     measured("So", abs(load / long_bearing.half_sommerfeld_load(eps) - 1.0), 1e-3)
-    measured(
-        "attitude, degrees", abs(attitude - math.degrees(long_bearing.half_sommerfeld_attitude(eps))), 0.02
-    )
+    measured("attitude, degrees", abs(attitude - math.degrees(long_bearing.half_sommerfeld_attitude(eps))), 0.02)
 
 
 def test_reynolds_condition_table(table, measured):

@@ -63,7 +63,18 @@ def test_table_of_coefficients(table):
         eps = row["eps"]
         (kxx, kxy), (kyx, kyy) = short_bearing.stiffness(eps)
         (cxx, cxy), (cyx, cyy) = short_bearing.damping(eps)
-        ours = (short_bearing.load(eps, 1.0), math.degrees(short_bearing.attitude(eps)), kxx, kxy, kyx, kyy, cxx, cxy, cyx, cyy)
+        ours = (
+            short_bearing.load(eps, 1.0),
+            math.degrees(short_bearing.attitude(eps)),
+            kxx,
+            kxy,
+            kyx,
+            kyy,
+            cxx,
+            cxy,
+            cyx,
+            cyy,
+        )
         names = ("So*(D/L)^2", "phi_deg", "Kxx(load)", "Kxy", "Kyx", "Kyy", "Bxx", "Bxy", "Byx", "Byy")
         for value, name in zip(ours, names, strict=True):
             assert value == pytest.approx(row[name], rel=1e-5, abs=1e-6)
@@ -86,7 +97,9 @@ def test_pure_squeeze(make_bearing, measured, eps, cavitated):
 def test_swift_stieber_equals_gumbel(make_bearing):
     """Without pressure flow in theta every column is on its own: one sign of pressure per column, so both closures agree."""
     results = [
-        ehd.steady(make_bearing(0.25, film=FILM, cavitation=k), speed=SPEED, eccentricity_ratio=0.7, velocity=(1e-3, 2e-3))
+        ehd.steady(
+            make_bearing(0.25, film=FILM, cavitation=k), speed=SPEED, eccentricity_ratio=0.7, velocity=(1e-3, 2e-3)
+        )
         for k in (ehd.Gumbel(), ehd.SwiftStieber())
     ]
     np.testing.assert_allclose(results[0].force, results[1].force, rtol=1e-12)

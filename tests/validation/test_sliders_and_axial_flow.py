@@ -71,7 +71,14 @@ def test_axial_flow_through_a_conical_gap(measured, n_z, limit):
     for share, printed in ((4, 1998536.0), (2, 1972128.0), (4 / 3, 1519941.0)):
         j = round(n_z / share)
         exact = slider.conical_gap_pressure(
-            z[j], viscosity=1e-3, length=B, inlet=1e-5, slope=6e-4, speed=22.0, gap_rate=-0.0132, pressures=(0.8e5, 10e5)
+            z[j],
+            viscosity=1e-3,
+            length=B,
+            inlet=1e-5,
+            slope=6e-4,
+            speed=22.0,
+            gap_rate=-0.0132,
+            pressures=(0.8e5, 10e5),
         )
         assert exact == pytest.approx(printed, rel=1e-6)
         worst = max(worst, float(abs(film.pressure[:, j] / exact - 1.0).max()))
@@ -112,5 +119,7 @@ def test_end_pressures_drive_the_axial_flow_of_a_concentric_annulus(make_bearing
     # Q = pi R c^3 dp / (6 mu L) from the high to the low end; the pressure falls linearly.
     bearing = make_bearing(1.0, end_pressures=(3e5, 1e5))
     film = ehd.steady(bearing, speed=0.0, eccentricity_ratio=0.0)
-    np.testing.assert_allclose(film.pressure, 2e5 - 2e5 * film.z[None, :] / bearing.length * np.ones((96, 1)), rtol=1e-12)
+    np.testing.assert_allclose(
+        film.pressure, 2e5 - 2e5 * film.z[None, :] / bearing.length * np.ones((96, 1)), rtol=1e-12
+    )
     assert abs(film.leakage) < 1e-20
