@@ -16,6 +16,9 @@ housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to 
 taken about the joint's origin.
 """
 
+import importlib
+from typing import Any
+
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
@@ -27,20 +30,45 @@ from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
 
+# Exudyn is imported only when one of these is asked for: film studies run without it.
+_COUPLING = {
+    "ConfigureSolver": "settings",
+    "CreateLubricatedJoint": "api",
+    "Free": "api",
+    "Held": "api",
+    "JointHistory": "history",
+    "LubricatedJoint": "api",
+    "Quantity": "history",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _COUPLING:
+        return getattr(importlib.import_module(f"exudyn_ehd.coupling.{_COUPLING[name]}"), name)
+    raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}")
+
+
 __all__ = [
+    "ConfigureSolver",
+    "CreateLubricatedJoint",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",
     "FilmError",
     "FilmResult",
     "FiniteLength",
+    "Free",
     "FullSommerfeld",
     "Gumbel",
+    "Held",
     "InputError",
+    "JointHistory",
     "JournalBearing",
     "Lubricant",
+    "LubricatedJoint",
     "MaximumGap",
     "Periodic",
+    "Quantity",
     "RegularisedWall",
     "ShortBearing",
     "Status",

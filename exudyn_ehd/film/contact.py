@@ -45,14 +45,39 @@ class RegularisedWall:
             raise InputError(f"RegularisedWall.residual must be within 0.01 and 0.9, got {self.residual!r}.")
 
 
+class WallContact:
+    """A `RegularisedWall` in scaled form: contact pressure and gap limiter of one bearing model.
+
+    Parameters
+    ----------
+    wall : RegularisedWall
+    clearance : float
+        Radial clearance, m.
+    """
+
+    friction_coefficient = 0.0
+    transition_speed = 1.0
+
+    def __init__(self, wall: RegularisedWall, clearance: float) -> None:
+        self.onset = wall.onset / clearance
+        self.residual = wall.residual
+        self.level = wall.pressure
+
+    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
+        """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
+        wall_pressure(H, self.onset, self.level, P_out, slope_out)
+
+    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
+        """Replace the scaled gap H (n, m) by the one that the film sees; its first two derivatives come back."""
+        limit_gap(H, self.onset, self.residual, slope_out, curvature_out)
+
+
 @njit(cache=True)
 def wall_pressure(H, onset, pressure, P_out, slope_out):
-    """Contact pressure and its derivative with respect to H, in the unit of ``pressure``; returns the smallest H."""
+    """Contact pressure in the unit of ``pressure`` and its derivative with respect to H."""
     n, m = H.shape
-    smallest = H[0, 0]
     for i in range(n):
         for j in range(m):
-            smallest = min(smallest, H[i, j])
             d = 1.0 - H[i, j] / onset
             if d > 0.0:
                 P_out[i, j] = pressure * d * d
@@ -60,7 +85,6 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
             else:
                 P_out[i, j] = 0.0
                 slope_out[i, j] = 0.0
-    return smallest
 
 
 @njit(cache=True)

@@ -10,6 +10,14 @@ from numba import njit
 
 from exudyn_ehd.film.cavitation import FilmSystem
 from exudyn_ehd.film.direct import Workspace
+from exudyn_ehd.film.flux import (
+    FluxEffect,
+    LinkFlux,
+    conductances_from,
+    couette_fluxes_from,
+    flux_sensitivity,
+    plain_flux,
+)
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds import (
@@ -80,6 +88,8 @@ class FilmSolver:
         False drops the pressure flow in theta (short bearing).
     squeeze : bool
         False leaves the storage term out; ``H_t`` is then never read.
+    flux_effects : tuple of FluxEffect
+        What changes conductances and carriers; empty: the plain film.
 
     Attributes
     ----------
@@ -90,7 +100,13 @@ class FilmSolver:
     """
 
     def __init__(
-        self, grid: FilmGrid, closure: Closure, *, circumferential_pressure_flow: bool = True, squeeze: bool = True
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        *,
+        circumferential_pressure_flow: bool = True,
+        squeeze: bool = True,
+        flux_effects: tuple[FluxEffect, ...] = (),
     ) -> None:
         shape = grid.shape
         self.grid = grid
@@ -102,6 +118,9 @@ class FilmSolver:
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
         self.work = Workspace(*shape)
+        self.flux_effects = flux_effects
+        self.flux = LinkFlux(shape) if flux_effects else None
+        self.ones = np.ones(shape)
         self.vx = 0.0
         self.vz = 0.0
         self.instant = False
@@ -149,8 +168,11 @@ class FilmSolver:
         """
         g, s = self.grid, self.system
         self.vx, self.vz = vx, vz
-        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        if self.flux is None:
+            conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+            couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        else:
+            self._apply_flux_effects(self.flux)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -164,6 +186,14 @@ class FilmSolver:
             steps = self._guess_from_coarse(mass_old, step)
         status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
+
+    def _apply_flux_effects(self, f: LinkFlux) -> None:
+        g, s = self.grid, self.system
+        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
+        for effect in self.flux_effects:
+            effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
+        conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
@@ -205,29 +235,26 @@ class FilmSolver:
         g, s = self.grid, self.system
         cell, face = np.empty_like(lam), np.empty_like(lam)
         speed = np.empty((lam.shape[0], 2))
-        link_flow_sensitivity(
-            lam, s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x,
-            g.width_x, g.width_z, g.link_x, g.link_z, cell, face,
-        )  # fmt: skip
-        speed_sensitivity(lam, self.H, self.HF, g.width_x, g.width_z, g.link_x, speed)
-        if not self.closure.conserves_mass:
+        fills = self.closure.conserves_mass
+        if self.flux is None:
+            link_flow_sensitivity(
+                lam, s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x,
+                g.width_x, g.width_z, g.link_x, g.link_z, cell, face,
+            )  # fmt: skip
+            speed_sensitivity(lam, self.H, self.HF, g.width_x, g.width_z, g.link_x, speed)
+            if fills:
+                couette_sensitivity_fill(
+                    lam, s.fill, s.fx, s.fz, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+                    cell, face, speed,
+                )  # fmt: skip
+        else:
+            f = self.flux
+            flux_sensitivity(
+                lam, s.linear_pressure, s.fill if fills else self.ones, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h,
+                f.cz, f.cz_h, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, cell, face, speed,
+            )  # fmt: skip
+        if not fills:
             return Sensitivities(cell, face, lam * -self.area if self.squeeze else None, speed)
-        couette_sensitivity_fill(
-            lam,
-            s.fill,
-            s.fx,
-            s.fz,
-            self.H,
-            self.HF,
-            self.vx,
-            self.vz,
-            g.width_x,
-            g.width_z,
-            g.link_x,
-            cell,
-            face,
-            speed,
-        )
         storage = lam * (-self.area * s.fill)
         if s.inverse_step == 0.0 or self.instant:
             return Sensitivities(cell, face, storage if self.squeeze else None, speed)

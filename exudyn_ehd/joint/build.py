@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.film.contact import WallContact
+from exudyn_ehd.joint.model import BearingModel, Effects
 from exudyn_ehd.status import InputError
 
 
-def build_model(bearing: JournalBearing) -> RigidBearingModel:
+def collect_effects(bearing: JournalBearing) -> Effects:
+    """The effects that a bearing names, in scaled form."""
+    wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
+    return Effects(limiter=wall, contacts=() if wall is None else (wall,))
+
+
+def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
+    """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
+    return BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+
+
+def build_model(bearing: JournalBearing) -> BearingModel:
     """Model of a bearing for a moving journal.
 
     Raises
@@ -22,4 +34,4 @@ def build_model(bearing: JournalBearing) -> RigidBearingModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
             "concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
-    return RigidBearingModel(bearing)
+    return BearingModel(bearing, effects=collect_effects(bearing))

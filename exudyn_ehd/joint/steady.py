@@ -12,7 +12,8 @@ from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model, build_study_model
+from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
@@ -205,11 +206,11 @@ def steady(
     w = require_number("steady: axial_speed", axial_speed, "m/s")
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
-    model = RigidBearingModel(bearing, start_angle=start)
+    model = build_study_model(bearing, start)
     return _result(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
 
 
-def _evaluate(model: RigidBearingModel, motion: np.ndarray, where: str) -> np.ndarray:
+def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
     evaluation = model.evaluate(motion)
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
@@ -220,7 +221,7 @@ def _evaluate(model: RigidBearingModel, motion: np.ndarray, where: str) -> np.nd
     return evaluation.wrench
 
 
-def _result(model: RigidBearingModel, motion: np.ndarray, where: str) -> SteadyResult:
+def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
     wrench = _evaluate(model, motion, where)
     q = model.quantities()
     peak, angle, _ = model.refined_peak()
@@ -235,7 +236,7 @@ def _result(model: RigidBearingModel, motion: np.ndarray, where: str) -> SteadyR
     return SteadyResult(
         theta=grid.x.copy(),
         z=grid.z * grid.reference_length,
-        pressure=solver.pressure * model.pressure_scale,
+        pressure=model.P * model.pressure_scale,
         gap=solver.H * model.bearing.radial_clearance,
         unbroken=solver.work.active.copy(),
         force=wrench[:3].copy(),
@@ -325,7 +326,7 @@ def equilibrium(
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
     residual = math.inf
@@ -340,7 +341,7 @@ def equilibrium(
     else:
         raise FilmError(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
-            f"ratio {model.eccentricity:.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
+            f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
     K, C = -tangent[:2, :2], -tangent[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
@@ -384,9 +385,9 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
-def _limited_step(model: RigidBearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.wall is not None:
+    if model.effects.limiter is not None:
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

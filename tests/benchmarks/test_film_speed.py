@@ -18,7 +18,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model
 
 pytestmark = pytest.mark.benchmark
 
@@ -45,7 +45,7 @@ class _Follower:
     """Evaluates one state of the orbit after the other."""
 
     def __init__(self, bearing):
-        self.model, self.motions, self.k = RigidBearingModel(bearing), _orbit(bearing), 0
+        self.model, self.motions, self.k = build_model(bearing), _orbit(bearing), 0
 
     def __call__(self):
         evaluation = self.model.evaluate(self.motions[self.k % len(self.motions)])
@@ -121,7 +121,7 @@ class _RelaxedFilm:
     """The same film, solved by SOR from the last pressure, with a tangent by forward differences of all ten components."""
 
     def __init__(self, bearing, relax, tolerance):
-        self.model, self.relax, self.tolerance = RigidBearingModel(bearing), relax, tolerance
+        self.model, self.relax, self.tolerance = build_model(bearing), relax, tolerance
         self.P = np.zeros(self.model.grid.shape)
         self.motions, self.k = _orbit(bearing), 0
         c, R, L = bearing.radial_clearance, bearing.journal_radius, bearing.length

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model
 
 SPEED = 100.0
 CLOSURES = (ehd.FullSommerfeld, ehd.Gumbel, ehd.SwiftStieber)
@@ -46,7 +46,7 @@ def test_random_states(make_bearing, closure, film, pressures):
     cavitation = closure() if closure is ehd.FullSommerfeld else closure(cavity_pressure=pc)
     bearing = make_bearing(0.8, cavitation=cavitation, film=film, end_pressures=tuple(ends))
     rng = np.random.default_rng(7)
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     largest = 0
     for k in range(170):
         motion = _random_motion(rng, bearing)
@@ -71,7 +71,7 @@ def test_random_states(make_bearing, closure, film, pressures):
 @both_films
 def test_many_random_states_of_swift_stieber(make_bearing, film):
     bearing = make_bearing(0.8, film=ehd.FiniteLength(n_theta=96, n_z=10) if film is FILMS[0] else film)
-    rng, model, fresh = np.random.default_rng(11), RigidBearingModel(bearing), RigidBearingModel(bearing)
+    rng, model, fresh = np.random.default_rng(11), build_model(bearing), build_model(bearing)
     for _ in range(4000):
         motion = _random_motion(rng, bearing)
         warm = model.evaluate(motion)
@@ -86,10 +86,10 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
 @both_films
 def test_warm_start_changes_no_bit(make_bearing, closure, film):
     bearing = make_bearing(0.8, cavitation=closure(), film=film)
-    rng, warm = np.random.default_rng(5), RigidBearingModel(bearing)
+    rng, warm = np.random.default_rng(5), build_model(bearing)
     for _ in range(60):
         motion = _random_motion(rng, bearing)
-        a, b = warm.evaluate(motion), RigidBearingModel(bearing).evaluate(motion)
+        a, b = warm.evaluate(motion), build_model(bearing).evaluate(motion)
         np.testing.assert_array_equal(a.wrench, b.wrench)
         np.testing.assert_array_equal(a.tangent(), b.tangent())
         assert a.quantities() == b.quantities()
@@ -103,7 +103,7 @@ def test_only_pressure_differences_count(make_bearing, closure, film):
 
     def model(p):
         cavitation = closure() if closure is ehd.FullSommerfeld else closure(cavity_pressure=p - 2e4)
-        return RigidBearingModel(make_bearing(0.8, cavitation=cavitation, film=film, end_pressures=(p, p + 1e5)))
+        return build_model(make_bearing(0.8, cavitation=cavitation, film=film, end_pressures=(p, p + 1e5)))
 
     low, high = model(0.0), model(lift)
     rng = np.random.default_rng(2)
@@ -122,7 +122,7 @@ def test_only_pressure_differences_count(make_bearing, closure, film):
 @every_closure
 @both_films
 def test_squeeze_off_equals_zero_rates_bit_for_bit(make_bearing, closure, film):
-    on, off = (RigidBearingModel(make_bearing(0.8, cavitation=closure(), film=film, squeeze=s)) for s in (True, False))
+    on, off = (build_model(make_bearing(0.8, cavitation=closure(), film=film, squeeze=s)) for s in (True, False))
     rng = np.random.default_rng(3)
     for _ in range(30):
         motion = _random_motion(rng, on.bearing)
@@ -138,9 +138,7 @@ def test_squeeze_off_equals_zero_rates_bit_for_bit(make_bearing, closure, film):
 @both_films
 def test_a_wall_out_of_reach_changes_no_bit(make_bearing, closure, film):
     wall = ehd.RegularisedWall(onset=1e-6)
-    plain, walled = (
-        RigidBearingModel(make_bearing(0.8, cavitation=closure(), film=film, contact=k)) for k in (None, wall)
-    )
+    plain, walled = (build_model(make_bearing(0.8, cavitation=closure(), film=film, contact=k)) for k in (None, wall))
     rng = np.random.default_rng(4)
     for _ in range(30):
         motion = _random_motion(rng, plain.bearing, largest=0.95)
@@ -154,7 +152,7 @@ def test_a_wall_out_of_reach_changes_no_bit(make_bearing, closure, film):
 @both_films
 def test_a_film_pushes_away_from_a_closing_wall(make_bearing, closure, film):
     # Without spin, any velocity meets a resisting force.
-    model = RigidBearingModel(make_bearing(0.8, cavitation=closure(), film=film))
+    model = build_model(make_bearing(0.8, cavitation=closure(), film=film))
     rng, c = np.random.default_rng(6), model.bearing.radial_clearance
     for _ in range(40):
         motion = _random_motion(rng, model.bearing, largest=0.9)
@@ -167,7 +165,7 @@ def test_a_film_pushes_away_from_a_closing_wall(make_bearing, closure, film):
 @both_films
 def test_cavitation_orders_the_peak_pressure(make_bearing, film):
     """Swift-Stieber's film is pointwise above Gumbel's: it is the smallest supersolution above the cavity pressure."""
-    models = [RigidBearingModel(make_bearing(0.8, cavitation=k(), film=film)) for k in (ehd.Gumbel, ehd.SwiftStieber)]
+    models = [build_model(make_bearing(0.8, cavitation=k(), film=film)) for k in (ehd.Gumbel, ehd.SwiftStieber)]
     rng = np.random.default_rng(8)
     for _ in range(40):
         motion = _random_motion(rng, models[0].bearing)

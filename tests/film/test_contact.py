@@ -24,7 +24,7 @@ def _limited(h):
 def test_twins_and_derivatives():
     H = np.linspace(-0.5, 0.5, 40).reshape(8, 5)
     P, slope = np.empty_like(H), np.empty_like(H)
-    assert wall_pressure(H, ONSET, PRESSURE, P, slope) == H.min()
+    wall_pressure(H, ONSET, PRESSURE, P, slope)
     np.testing.assert_allclose(P, _pressure(H), rtol=1e-13)
     d = 1e-6  # central differences: truncation and rounding both near 1e-9
     np.testing.assert_allclose(slope, (_pressure(H + d) - _pressure(H - d)) / (2 * d), atol=1e-6)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model
 
 EPS, DIRECTION = 0.6, 0.3
 
@@ -18,7 +18,7 @@ def _wrench(make_bearing, cavitation, n_theta, n_z, eps=EPS, direction=DIRECTION
     e = eps * c * np.array([np.cos(direction), np.sin(direction)])
     tilt = 0.1 * c / b.length
     motion = np.array([*e, tilt, -2 * tilt, 5 * c, -3 * c, 0.0, 0.0, speed, 0.0])
-    w = RigidBearingModel(b).evaluate(motion).wrench
+    w = build_model(b).evaluate(motion).wrench
     F = b.reference_force(speed)
     return np.array([w[0] / F, w[1] / F, w[3] / (F * b.length), w[4] / (F * b.length)])
 

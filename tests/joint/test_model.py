@@ -9,7 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.model import BearingModel
 
 CLOSURES = (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber())
 FILMS = (ehd.FiniteLength(n_theta=48, n_z=8), ehd.ShortBearing(n_theta=48, n_z=8))
@@ -28,7 +28,7 @@ def _mirrored(motion, signs):
 @pytest.mark.parametrize("film", FILMS)
 class TestSymmetries:
     def _wrench(self, make_bearing, closure, film, motion, **options):
-        model = RigidBearingModel(make_bearing(1.0, cavitation=closure, film=film, **options))
+        model = build_model(make_bearing(1.0, cavitation=closure, film=film, **options))
         evaluation = model.evaluate(motion)
         assert evaluation.status is ehd.Status.CONVERGED
         return evaluation.wrench, evaluation.tangent(), evaluation.quantities()
@@ -91,7 +91,7 @@ def test_journal_and_housing_torque_differ_by_the_moment_of_the_force(make_beari
     """
     bearing = make_bearing(1.0, cavitation=closure, contact=contact)
     for state in (GENERAL, {"eccentricity": (0.7, -0.2)}, {"eccentricity": (0.2, 0.5), "speed": -2.0}):
-        evaluation = RigidBearingModel(bearing).evaluate(make_motion(bearing, **state))
+        evaluation = build_model(bearing).evaluate(make_motion(bearing, **state))
         x, y, bx, by = evaluation.motion[:4]
         fx, fy, _, mx, my, mz = evaluation.wrench
         q = evaluation.quantities()
@@ -111,7 +111,7 @@ def test_axial_force_is_half_of_the_pressure_on_the_gap(make_bearing, make_motio
     R, L, c = bearing.journal_radius, bearing.length, bearing.radial_clearance
     w = 0.8
     motion = make_motion(bearing, speed=0.0, axial=w / (R * 100.0))
-    force = RigidBearingModel(bearing).evaluate(motion).wrench
+    force = build_model(bearing).evaluate(motion).wrench
     couette = -0.02 * w * 2 * math.pi * R * L / c
     assert force[2] == pytest.approx(couette + math.pi * R * c * (3e5 - 1e5), rel=1e-12)
     np.testing.assert_allclose(force[[0, 1, 3, 4, 5]], 0.0, atol=1e-9)
@@ -122,7 +122,7 @@ def test_axial_force_is_half_of_the_pressure_on_the_gap(make_bearing, make_motio
 def test_a_film_at_rest_has_no_pressure_and_still_damps(make_bearing, make_motion, closure, film):
     bearing = make_bearing(1.0, cavitation=closure, film=film)
     for place in ((0.0, 0.0), (0.5, 0.2)):
-        model = RigidBearingModel(bearing)
+        model = build_model(bearing)
         evaluation = model.evaluate(make_motion(bearing, place, speed=0.0))
         assert evaluation.status is ehd.Status.CONVERGED
         assert not model.solver.pressure.any()
@@ -139,7 +139,7 @@ def test_a_film_at_rest_has_no_pressure_and_still_damps(make_bearing, make_motio
 def test_damping_at_rest_bounds_the_force_of_any_slow_motion(make_bearing, make_motion, closure):
     # The whole film damps in the tangent at rest; a closing motion meets at least half of it.
     bearing = make_bearing(1.0, cavitation=closure)
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     damping = -model.evaluate(make_motion(bearing, speed=0.0)).tangent()[0, 4]
     force = -model.evaluate(make_motion(bearing, velocity=(1e-3, 0.0), speed=0.0)).wrench[0]
     velocity = 1e-3 * bearing.radial_clearance * 100.0
@@ -159,7 +159,7 @@ def test_damping_at_rest_bounds_the_force_of_any_slow_motion(make_bearing, make_
 )
 def test_states_without_a_film(make_bearing, make_motion, state, status):
     bearing = make_bearing(1.0)
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     good = make_motion(bearing, (0.3, 0.2))
     before = model.evaluate(good).wrench
     evaluation = model.evaluate(make_motion(bearing, **state))
@@ -175,7 +175,7 @@ def test_a_wall_carries_a_journal_beyond_the_bore(make_bearing, make_motion):
     bearing = make_bearing(1.0, contact=ehd.RegularisedWall(onset=2e-6, pressure=1e9))
     forces = []
     for reach in (0.97, 1.0, 1.05):
-        evaluation = RigidBearingModel(bearing).evaluate(make_motion(bearing, (reach, 0.0)))
+        evaluation = build_model(bearing).evaluate(make_motion(bearing, (reach, 0.0)))
         assert evaluation.status is ehd.Status.CONVERGED
         forces.append((-evaluation.wrench[0], evaluation.quantities()["contact_load"]))
     loads = np.array(forces)
@@ -194,7 +194,7 @@ def test_power_loss_is_the_dissipation_of_the_film(make_bearing, make_motion, ec
     film = ehd.FiniteLength(n_theta=n_theta, n_z=n_theta // 6)
     bearing = make_bearing(1.0, cavitation=ehd.FullSommerfeld(), film=film)
     motion = make_motion(bearing, eccentricity, (0.1, 0.2), (0.2, -0.1), (0.1, 0.1), 1.0, 0.5)
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     loss = model.evaluate(motion).quantities()["power_loss"]
     R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
     s, g = model.solver, model.grid
@@ -210,7 +210,7 @@ def test_power_loss_is_the_dissipation_of_the_film(make_bearing, make_motion, ec
 
 def test_power_loss_of_a_steady_journal_is_torque_times_speed(make_bearing, make_motion):
     bearing = make_bearing(1.0)
-    q = RigidBearingModel(bearing).evaluate(make_motion(bearing, (0.6, 0.1))).quantities()
+    q = build_model(bearing).evaluate(make_motion(bearing, (0.6, 0.1))).quantities()
     assert q["power_loss"] == pytest.approx(-q["friction_torque"] * 100.0, rel=1e-12)
     assert abs(q["friction_torque_unbroken"]) < abs(q["friction_torque"])
 
@@ -218,7 +218,7 @@ def test_power_loss_of_a_steady_journal_is_torque_times_speed(make_bearing, make
 def test_the_ruptured_film_shears_its_share(make_bearing, make_motion):
     # Friction is linear in the share between "unbroken only" and "all".
     q = [
-        RigidBearingModel(b).evaluate(make_motion(b, (0.6, 0.1))).quantities()
+        build_model(b).evaluate(make_motion(b, (0.6, 0.1))).quantities()
         for b in (make_bearing(1.0, cavitation=ehd.SwiftStieber(cavity_shear=s)) for s in (0.0, 0.5, 1.0))
     ]
     torque = [x["friction_torque"] for x in q]
@@ -230,7 +230,7 @@ def test_the_ruptured_film_shears_its_share(make_bearing, make_motion):
 def test_mass_balance(make_bearing, make_motion, state):
     """Leakage = rate at which the clearance shrinks (no source inside a periodic film without cavitation), to rounding."""
     bearing = make_bearing(1.0, cavitation=ehd.FullSommerfeld(), end_pressures=(1e5, 4e5))
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     q = model.evaluate(make_motion(bearing, **state)).quantities()
     R, c = bearing.journal_radius, bearing.radial_clearance
     growth = (model.solver.H_t * np.outer(model.grid.width_x, model.grid.width_z)).sum() * c * R**2
@@ -241,7 +241,7 @@ def test_leakage_of_a_concentric_annulus(make_bearing, make_motion):
     # Q = pi R c^3 dp / (6 mu L) towards the low pressure, plus the Couette flow pi R c w.
     bearing = make_bearing(1.0, cavitation=ehd.FullSommerfeld(), end_pressures=(4e5, 1e5))
     R, L, c = bearing.journal_radius, bearing.length, bearing.radial_clearance
-    q = RigidBearingModel(bearing).evaluate(make_motion(bearing, axial=0.3)).quantities()
+    q = build_model(bearing).evaluate(make_motion(bearing, axial=0.3)).quantities()
     expected = math.pi * R * c**3 * 3e5 / (6 * 0.02 * L) + math.pi * R * c * 0.3 * R * 100.0
     assert q["leakage_upper"] == pytest.approx(expected, rel=1e-11)
     assert q["leakage_lower"] == pytest.approx(-expected, rel=1e-11)
@@ -250,11 +250,12 @@ def test_leakage_of_a_concentric_annulus(make_bearing, make_motion):
 def test_refined_peak_hides_the_grid(make_bearing, make_motion):
     """Turning the journal by parts of a column: the largest vertex ripples, the peak of the parabola a third of that."""
     bearing = make_bearing(1.0, film=ehd.FiniteLength(n_theta=48, n_z=10))
-    model, values = RigidBearingModel(bearing), []
+    model, values = build_model(bearing), []
     for angle in np.linspace(0.0, 2 * np.pi / 48, 9):
         q = model.evaluate(make_motion(bearing, (0.6 * math.cos(angle), 0.6 * math.sin(angle)))).quantities()
         peak, theta, z = model.refined_peak()
-        values.append((q["peak_pressure"], peak, theta - angle))
+        assert q["peak_pressure"] == peak
+        values.append((model.solver.pressure.max() * model.pressure_scale, peak, theta - angle))
         assert abs(z) < 1e-3 * bearing.length
     vertex, refined, place = np.ptp(values, axis=0) / np.mean(values, axis=0)
     assert refined < 0.5 * vertex  # the rest is the rupture line, which snaps to columns
@@ -266,7 +267,7 @@ def test_short_bearing_is_the_limit_of_the_finite_one(make_bearing, make_motion)
     errors = []
     for ratio in (0.2, 0.1, 0.05):
         F = [
-            RigidBearingModel(b).evaluate(make_motion(b, (0.5, 0.2))).wrench[:2]
+            build_model(b).evaluate(make_motion(b, (0.5, 0.2))).wrench[:2]
             for b in (
                 make_bearing(ratio, film=f) for f in (ehd.ShortBearing(n_theta=192), ehd.FiniteLength(n_theta=192))
             )
@@ -281,4 +282,4 @@ def test_only_journals_that_may_move_are_built(make_bearing):
         build_model("bearing")
     with pytest.raises(ehd.InputError, match="MaximumGap"):
         build_model(make_bearing(1.0, inlet=ehd.MaximumGap()))
-    assert isinstance(build_model(make_bearing(1.0)), RigidBearingModel)
+    assert isinstance(build_model(make_bearing(1.0)), BearingModel)

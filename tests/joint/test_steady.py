@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.joint.steady import whirl_threshold
 from exudyn_ehd.reference import short_bearing
 
@@ -28,7 +28,7 @@ class TestSteady:
         args = {"tilt": (1e-4, -2e-4), "velocity": (1e-3, 2e-3), "axial_speed": 0.4}
         film = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.4, direction=0.7, **args)
         x, y = 0.4 * c * math.cos(0.7), 0.4 * c * math.sin(0.7)
-        model = RigidBearingModel(bearing)
+        model = build_model(bearing)
         motion = [x, y, 1e-4, -2e-4, 1e-3, 2e-3, 0, 0, SPEED, 0.4]
         evaluation = model.evaluate(np.array(motion))
         np.testing.assert_array_equal(np.concatenate((film.force, film.moment)), evaluation.wrench)
@@ -137,7 +137,7 @@ class TestEquilibrium:
         bearing = make_bearing(1.0, film=FILM)
         W = 0.8 * bearing.reference_force(SPEED)
         result = ehd.equilibrium(bearing, speed=SPEED, load=(W, 0.3 * W), tilt=tilt)
-        model = RigidBearingModel(bearing)
+        model = build_model(bearing)
         base = np.array([*result.position, *tilt, 0, 0, 0, 0, SPEED, 0])
         active = None
         for matrix, first, step in ((result.stiffness, 0, 1e-6 * 25e-6), (result.damping, 4, 1e-6 * 25e-6 * SPEED)):

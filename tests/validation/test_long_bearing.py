@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.model import RigidBearingModel
+from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.reference import long_bearing
 
 R, C, MU, SPEED, WIDTH = 0.025, 25e-6, 0.02, 100.0, 0.01
@@ -75,7 +75,7 @@ def test_mid_plane_of_a_wide_bearing(make_bearing, measured, eps):
     bearing = make_bearing(
         10.0, film=ehd.FiniteLength(n_theta=180, n_z=20, stretch=0.0), cavitation=ehd.FullSommerfeld()
     )
-    model = RigidBearingModel(bearing)
+    model = build_model(bearing)
     model.evaluate(np.array([-eps * bearing.radial_clearance, 0, 0, 0, 0, 0, 0, 0, SPEED, 0], dtype=float))
     p = model.solver.pressure[:, 10] * model.pressure_scale * bearing.clearance_ratio**2 / (MU * SPEED)
     exact = np.array([long_bearing.full_sommerfeld_pressure(eps, t) for t in model.grid.x])
