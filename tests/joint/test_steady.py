@@ -160,6 +160,35 @@ class TestEquilibrium:
             assert result.eccentricity_ratio == pytest.approx(eps, rel=1e-8)
             assert result.attitude_angle == pytest.approx(film.attitude_angle, rel=1e-7)
 
+    @pytest.mark.parametrize("closure", CLOSURES)
+    def test_finds_every_tilted_load_that_the_film_can_carry(self, make_bearing, closure):
+        """Loads of random tilted positions, up to 98 % of the gap at an end. (A prescribed tilt carries a bounded load only.)"""
+        rng = np.random.default_rng(1)
+        for _ in range(40):
+            bearing = make_bearing(rng.choice([0.25, 1.0, 2.0]), film=FILM, cavitation=closure)
+            share, reach = rng.uniform(0.0, 0.8), rng.uniform(0.1, 0.98)
+            direction, turn = rng.uniform(0.0, 2 * math.pi, 2)
+            slope = reach * share * 2.0 * bearing.radial_clearance / bearing.length
+            tilt = (slope * math.cos(turn), slope * math.sin(turn))
+            spin = float(rng.choice([-1.0, 1.0])) * SPEED
+            film = ehd.steady(
+                bearing, speed=spin, eccentricity_ratio=reach * (1.0 - share), direction=direction, tilt=tilt
+            )
+            result = ehd.equilibrium(bearing, speed=spin, load=tuple(-film.force[:2]), tilt=tilt)
+            assert result.residual < 1e-10
+            assert result.iterations <= 30
+
+    @pytest.mark.parametrize("So", (1e-9, 1e-12, 1e-15))
+    def test_loads_near_rounding(self, make_bearing, So):
+        # The force's rounding is 1e-16 of the reference force or less; what is left of the load's digits counts.
+        bearing = make_bearing(1.0, film=FILM)
+        result = ehd.equilibrium(bearing, speed=SPEED, load=(So * bearing.reference_force(SPEED), 0.0))
+        assert result.residual <= max(1e-10, 1e-16 / So)
+        assert result.iterations <= 5
+        assert result.eccentricity_ratio < So
+        # Half speed whirl; the central difference of the wedge on 64 columns is (2 pi / 64)^2 / 24 = 4e-4 too small.
+        assert result.whirl_ratio == pytest.approx(0.5, rel=5e-4)
+
     def test_tilt_and_wall(self, make_bearing):
         W = 3.0 * make_bearing(1.0).reference_force(SPEED)
         tilted = ehd.equilibrium(make_bearing(1.0, film=FILM), speed=SPEED, load=(W, 0.0), tilt=(3e-4, 0.0))
