@@ -65,7 +65,12 @@ class LubricatedJoint:
 
     @property
     def history(self) -> JointHistory:
-        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind."""
+        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
+
+        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record goes on with it, any other
+        starts a new one.
+        """
         return self.element.snapshot(self.mbs)
 
     def AddSensor(

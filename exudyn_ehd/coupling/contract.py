@@ -40,12 +40,28 @@ class Evaluation(Protocol):
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
         ...
 
+    def history(self) -> Any:
+        """What the film remembers if this state is accepted; opaque to the coupling."""
+        ...
+
 
 class JointModel(Protocol):
-    """A film: a pure function of the motion (10,) of the journal axis in the housing's joint frame."""
+    """A film: a pure function of the motion (10,) of the journal axis in the housing's joint frame, and of its memory."""
 
     @property
     def bearing(self) -> Any: ...
-    def evaluate(self, motion: np.ndarray) -> Evaluation:
-        """Evaluate the film at [x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w] (m, rad, m/s, rad/s)."""
+    @property
+    def remembers(self) -> bool:
+        """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
+        ...
+
+    def initial_history(self, motion: np.ndarray) -> Any:
+        """Memory at the start of a run, at this motion."""
+        ...
+
+    def evaluate(self, motion: np.ndarray, history: Any = None, step: float = 0.0) -> Evaluation:
+        """Evaluate the film at [x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w] (m, rad, m/s, rad/s).
+
+        ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s].
+        """
         ...

@@ -26,11 +26,21 @@ _START_OF_STEP = exu.ConfigurationType.StartOfStep
 class Trial:
     """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked."""
 
-    __slots__ = ("evaluation", "motion", "q", "q_t", "status")
+    __slots__ = ("evaluation", "memory", "motion", "q", "q_t", "status", "step")
 
-    def __init__(self, q: list[float], q_t: list[float], motion: np.ndarray, evaluation: Evaluation | None) -> None:
+    def __init__(
+        self,
+        q: list[float],
+        q_t: list[float],
+        memory: Any,
+        step: float,
+        motion: np.ndarray,
+        evaluation: Evaluation | None,
+    ) -> None:
         self.q = q
         self.q_t = q_t
+        self.memory = memory
+        self.step = step
         self.motion = motion
         self.evaluation = evaluation
         if evaluation is not None:
@@ -60,9 +70,11 @@ class FilmElement:
         self._record = Record()
         self._trial: Trial | None = None
         self._start = np.nan
-        self._run: tuple[Any, Any] = (None, None)
+        self._run: tuple[Any, Any] = (self, self)
+        self._solver: Any = None
+        self._uses_memory = False
+        self._memory: Any = None
         self._bound = False
-        self._motion = np.zeros(10)
         self._loads = np.zeros((4, 3))
 
     # --- user functions -------------------------------------------------------------------------------------------
@@ -73,9 +85,9 @@ class FilmElement:
         run = solvers.stored_solvers(mbs)
         if start != self._start or run[0] is not self._run[0] or run[1] is not self._run[1]:
             self._accept(mbs, start, run)
-        trial = self._try(mbs, q, q_t, _CURRENT)
+        trial = self._try(mbs, q, q_t, _CURRENT, t)
         if trial.status != Status.CONVERGED:
-            self._fail(mbs, t, trial)
+            self._fail(t, trial)
             return np.full(len(q), np.nan)
         assert trial.evaluation is not None
         housing, journal = self.sides
@@ -88,20 +100,34 @@ class FilmElement:
         self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        trial = self._try(mbs, q, q_t, _CURRENT)
+        trial = self._try(mbs, q, q_t, _CURRENT, t)
         if trial.status != Status.CONVERGED:
-            self._fail(mbs, t, trial)
+            self._fail(t, trial)
             return np.full((len(q), len(q)), np.nan)
         stiffness, damping = self._derivatives(mbs, trial)
         return -(f_q * stiffness + f_qt * damping)
 
     # --- evaluation -----------------------------------------------------------------------------------------------
 
-    def _try(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> Trial:
+    def _try(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any, time: float) -> Trial:
         """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there."""
+        # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
+        memory = self._memory if time >= self._start else None
+        step = 0.0 if memory is None else time - self._start
         last = self._trial
-        if last is not None and last.q == q and last.q_t == q_t:
+        if last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory:
             return last
+        motion = self._move(mbs, q, q_t, configuration)
+        evaluation = None
+        # a sum is finite only if all its terms are
+        if np.isfinite(motion.sum()):
+            evaluation = self.model.evaluate(motion) if memory is None else self.model.evaluate(motion, memory, step)
+            self.evaluations += 1
+        self._trial = Trial(q, q_t, memory, step, motion, evaluation)
+        return self._trial
+
+    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+        """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
         if not self._bound:
             self._bind(mbs)
         housing, journal = self.sides
@@ -111,13 +137,7 @@ class FilmElement:
         journal.update(mbs, qv[n:], qv_t[n:], configuration)
         motion = np.empty(10)
         kinematics.relative_motion(housing.frame, journal.frame, motion)
-        evaluation = None
-        # a sum is finite only if all its terms are
-        if np.isfinite(motion.sum()):
-            evaluation = self.model.evaluate(motion)
-            self.evaluations += 1
-        self._trial = Trial(q, q_t, motion, evaluation)
-        return self._trial
+        return motion
 
     def _bind(self, mbs: Any) -> None:
         for side in self.sides:
@@ -155,9 +175,9 @@ class FilmElement:
 
     # --- failures -------------------------------------------------------------------------------------------------
 
-    def _fail(self, mbs: Any, t: float, trial: Trial) -> None:
+    def _fail(self, t: float, trial: Trial) -> None:
         """Return if the solver can still reject the step, else raise."""
-        if not solvers.can_reject_step(mbs):
+        if not solvers.can_reject_step(self._solver):
             raise FilmError(self._message(t, trial))
 
     def _message(self, t: float, trial: Trial) -> str:
@@ -181,18 +201,46 @@ class FilmElement:
     # --- accepted steps -------------------------------------------------------------------------------------------
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
-        """Record the state at the start of the current step, exactly as accepted."""
-        self._start, self._run = start, run
-        row = self._row(mbs, start, _START_OF_STEP)
+        """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
+        if run[0] is not self._run[0] or run[1] is not self._run[1]:
+            self._solver = solvers.running_solver(self._run, run)
+            self._run = run
+            # the time of a static solve is a load parameter: the film is the steady one
+            self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
+            # a run that starts behind the record goes on with it, any other begins anew
+            if not self._uses_memory or not start > self._record.last_time:
+                self._memory = None
+        elif start < self._start:
+            self._memory = None
+        if self._uses_memory and self._memory is None:
+            self._start = start
+            self._memory = self._first_memory(mbs)
+        trial = self._look(mbs, start, _START_OF_STEP)
+        row = self._row(start, trial)
         if row is not None:
             self._record.append(row)
+            if self._uses_memory and start > self._start:
+                assert trial.evaluation is not None
+                self._memory = trial.evaluation.history()
+                self._trial = None
+        self._start = start
 
-    def _row(self, mbs: Any, time: float, configuration: Any) -> np.ndarray | None:
+    def _first_memory(self, mbs: Any) -> Any:
+        q, q_t = read_state(mbs, self.sides, _START_OF_STEP)
+        motion = self._move(mbs, q, q_t, _START_OF_STEP)
+        self._trial = None
+        return self.model.initial_history(motion) if np.isfinite(motion.sum()) else None
+
+    def _look(self, mbs: Any, time: float, configuration: Any) -> Trial:
+        """Evaluate the film at the state that Exudyn holds in ``configuration``."""
         q, q_t = read_state(mbs, self.sides, configuration)
-        trial = self._try(mbs, q, q_t, configuration)
+        trial = self._try(mbs, q, q_t, configuration, time)
         if configuration != _CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
             # the markers' Jacobians were not brought to this state: never reuse it
             self._trial = None
+        return trial
+
+    def _row(self, time: float, trial: Trial) -> np.ndarray | None:
         if trial.evaluation is None or trial.status != Status.CONVERGED:
             return None
         bearing = self.model.bearing
@@ -201,11 +249,16 @@ class FilmElement:
 
     def current_row(self, mbs: Any) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
-        return self._row(mbs, mbs.systemData.GetTime(_CURRENT), _CURRENT)
+        time = mbs.systemData.GetTime(_CURRENT)
+        return self._row(time, self._look(mbs, time, _CURRENT))
 
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""
         final = None
-        if mbs.systemIsConsistent and mbs.systemData.GetTime(_CURRENT) > self._record.last_time:
-            final = self.current_row(mbs)
+        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        configuration = _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        if mbs.systemIsConsistent:
+            time = mbs.systemData.GetTime(configuration)
+            if time > self._record.last_time:
+                final = self._row(time, self._look(mbs, time, configuration))
         return self._record.snapshot(final)

@@ -482,4 +482,4 @@ class BearingModel:
 
 def _ring_integral(row: np.ndarray) -> float:
     """Integral over the circumference of a row of vertex values."""
-    return float(row.mean() * 2.0 * math.pi)
+    return float(row.sum() * (2.0 * math.pi / row.size))

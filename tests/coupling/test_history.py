@@ -211,6 +211,44 @@ def test_lasting_failure_ends_a_static_run_with_the_reason():
     assert history.time[-1] == mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep) > 0.0
 
 
+def test_error_elsewhere_in_a_static_run_leaves_no_row_of_the_failed_state():
+    """The film is fine, but another user function raises in the middle of a load step."""
+    mbs, joint, journal = scene(toy.ToyFilm())
+    scenes.hold_axially_and_in_spin(mbs, exu.ObjectIndex(0), journal)
+
+    def load(mbs, t, vector):
+        if t > 0.6:
+            raise ValueError("no such load")
+        return [0, -100.0 * t, 0]
+
+    marker = mbs.AddMarker(exu.itemInterface.MarkerBodyRigid(bodyNumber=journal))
+    mbs.AddLoad(
+        exu.itemInterface.LoadForceVector(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=load)
+    )
+    mbs.Assemble()
+    settings = scenes.settings(1, 1)
+    settings.staticSolver.numberOfLoadSteps = 4
+    with pytest.raises(exu.ExudynError):
+        mbs.SolveStatic(settings)
+    assert joint.history.time.tolist() == [0.0, 0.25, 0.5]
+
+
+def test_plot_sensor_draws(monkeypatch):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    mbs, joint, _ = scene(toy.ToyFilm())
+    sensor = joint.AddSensor(api.Quantity.ECCENTRICITY)
+    mbs.Assemble()
+    mbs.SolveDynamic(scenes.settings(0.001, 10))
+    monkeypatch.setattr(plt, "show", lambda *args, **kwargs: None)
+    mbs.PlotSensor(sensorNumbers=[sensor], components=[1])
+    assert plt.get_fignums()
+    plt.close("all")
+
+
 @pytest.mark.parametrize("solver", [exu.DynamicSolverType.RK44, exu.DynamicSolverType.ExplicitEuler], ids=str)
 def test_failure_raises_at_once_under_explicit_solvers(solver):
     film = FragileFilm(wall(2e-5), stiffness=0.0, damping=0.0)
@@ -285,3 +323,108 @@ def test_sensor_agrees_with_the_record():
         np.testing.assert_array_equal(data[:, 1:], expected.reshape(len(history.time), -1))
     with pytest.raises(InputError):
         joint.AddSensor("minimum_gap")
+
+
+class LaggingEvaluation(toy.ToyEvaluation):
+    """A force that follows the eccentricity with a lag: m' = (x - m) / tau by backward Euler."""
+
+    def __init__(self, model, motion, memory, step):
+        super().__init__(model, motion)
+        weight = 1.0 if step == np.inf else step / (model.tau + step)
+        self.new = memory + weight * (motion[0] - memory)
+        self.wrench[0] -= model.extra * self.new
+        self._tangent[0, 0] -= model.extra * weight
+        if model.fails(motion):
+            self.status = Status.NOT_CONVERGED
+
+    def history(self):
+        assert self.count == self.model.count, "stale evaluation"
+        return self.new
+
+
+class LaggingFilm(FragileFilm):
+    """Toy film with a memory of one number."""
+
+    tau, extra = 3e-4, 1e6
+
+    def __init__(self, fails):
+        super().__init__(fails, remembers=True)
+
+    def initial_history(self, motion):
+        self.count += 1
+        return 0.5 * motion[0]
+
+    def evaluate(self, motion, history=None, step=0.0):
+        self.count += 1
+        self.asked.append(step)
+        # without a memory the lag is over
+        return LaggingEvaluation(self, motion.copy(), history or 0.0, np.inf if history is None else step)
+
+
+@pytest.mark.parametrize(
+    ("solver", "rejecting"),
+    [
+        (exu.DynamicSolverType.GeneralizedAlpha, False),
+        (exu.DynamicSolverType.GeneralizedAlpha, True),
+        (exu.DynamicSolverType.RK44, False),
+    ],
+    ids=str,
+)
+def test_memory_advances_on_accepted_steps_only(solver, rejecting):
+    """Replaying the accepted states gives every recorded force: nothing else was remembered."""
+    film = LaggingFilm(lambda m: False)
+    calls = []
+
+    def fails(motion):
+        calls.append(motion)
+        return rejecting and len(calls) in (9, 30, 31, 60)
+
+    film.fails = fails
+    mbs, joint, _ = scene(film)
+    mbs.Assemble()
+    settings = scenes.settings(0.001, 20)
+    mbs.SolveDynamic(settings, updateInitialValues=True, solverType=solver)
+    film.fails = lambda m: False
+    # and a second run goes on where the first one ended
+    settings.timeIntegration.startTime, settings.timeIntegration.endTime = 0.001, 0.002
+    mbs.SolveDynamic(settings, solverType=solver)
+    history = joint.history
+    assert len(history.time) == 41 or (rejecting and len(history.time) > 41)
+    memory = 0.5 * history.motion[0, 0]
+    for k, motion in enumerate(history.motion):
+        step = history.time[k] - history.time[max(k - 1, 0)]
+        memory += step / (film.tau + step) * (motion[0] - memory)
+        # the same few operations in another order
+        assert history.force[k, 0] == pytest.approx(film.law(motion)[0][0] - film.extra * memory, rel=1e-12, abs=1e-12)
+
+
+def test_static_solve_asks_for_the_steady_film():
+    film = LaggingFilm(lambda m: False)
+    mbs, joint, journal = scene(film)
+    scenes.hold_axially_and_in_spin(mbs, exu.ObjectIndex(0), journal)
+    mbs.Assemble()
+    mbs.SolveStatic(scenes.settings(1, 1))
+    assert set(film.asked) == {0.0}
+    assert len(joint.history.time) == 2
+
+
+def test_runs_after_a_failed_one_know_their_solver():
+    """A run that an exception ended leaves its solver looking busy; the next runs must not mistake it for theirs."""
+    film = FragileFilm(wall(2e-5), stiffness=0.0, damping=0.0)
+    mbs, joint, journal = scene(film)
+    scenes.hold_axially_and_in_spin(mbs, exu.ObjectIndex(0), journal)
+    mbs.Assemble()
+    settings = scenes.settings(0.002, 20)
+    for solver in (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.RK44) * 2:
+        film.asked.clear()
+        with pytest.raises(exu.ExudynError) as caught:
+            mbs.SolveDynamic(settings, solverType=solver)
+        assert isinstance(caught.value.__cause__, FilmError)
+        failures = sum(film.fails(m) for m in film.asked)
+        # the explicit solver ends at the first failure, the implicit one after halving 1e-4 s down to 1e-8 s
+        assert failures == 1 if solver == exu.DynamicSolverType.RK44 else failures >= 13
+        assert joint.history.time[0] == 0.0
+        assert np.all(joint.history.eccentricity[:, 0] <= 2e-5)
+    film.stiffness, film.fails = 2e6, lambda m: False
+    mbs.SolveStatic(scenes.settings(1, 1))
+    assert joint.history.time.tolist() == [0.0, 1.0]

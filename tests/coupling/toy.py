@@ -55,6 +55,7 @@ class ToyFilm:
     )
     count: int = 0
     linear: bool = False
+    remembers: bool = False
 
     def evaluate(self, motion):
         self.count += 1
