@@ -444,7 +444,8 @@ class BearingModel:
         poiseuille = 6.0 * self.s_theta
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
+        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
         out |= {
             "peak_pressure": self.refined_peak()[0],
