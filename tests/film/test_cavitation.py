@@ -149,7 +149,19 @@ def test_a_singular_start_is_reported():
     fixed = np.zeros(shape, dtype=bool)
     zero, P = np.zeros(shape), np.zeros(shape)
     ok, steps, _, _ = solve_active_set(
-        zero, zero, zero, fixed, 0.0, np.ones(shape, dtype=bool), w.order, w.number, w.band, w.inv_diag, w.unknowns, P
+        zero,
+        zero,
+        zero,
+        fixed,
+        0.0,
+        np.ones(shape, dtype=bool),
+        w.order,
+        w.old_order,
+        w.number,
+        w.band,
+        w.inv_diag,
+        w.unknowns,
+        P,
     )
     assert not ok
     assert steps == 1

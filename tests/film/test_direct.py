@@ -44,7 +44,7 @@ def test_against_sparse_solution(make_film, dense_matrix, name, cut, n, m):
         P = np.where(active, 0.0, np.random.default_rng(seed).normal(size=(n, m)))
         known = P.copy()
         ok, count, width = solve_on_active(
-            f.kx, f.kz, f.b, active, w.order, w.number, w.band, w.inv_diag, w.unknowns, P
+            f.kx, f.kz, f.b, active, w.order, w.old_order, 0, 0, w.number, w.band, w.inv_diag, w.unknowns, P
         )
         assert ok
         assert count == active.sum()
@@ -69,13 +69,58 @@ def test_numbering_and_band_are_the_matrix(make_film, dense_matrix, cut):
             assert sorted(w.order[:count]) == list(np.flatnonzero(active))
             assert (w.number[~active] == -1).all()
             np.testing.assert_array_equal(w.number.ravel()[w.order[:count]], np.arange(count))
-            assemble_band(f.kx, f.kz, w.number, w.order, count, width, w.band)
+            assemble_band(f.kx, f.kz, w.number, w.order, count, width, 0, w.band)
             A = np.zeros((count, count))
             for r in range(count):
                 for d in range(min(width, count - 1 - r) + 1):
                     A[r, r + d] = A[r + d, r] = w.band[r, d]
             o = w.order[:count]
             np.testing.assert_allclose(A, dense_matrix(f.kx, f.kz)[np.ix_(o, o)], atol=1e-13)
+
+
+@pytest.mark.parametrize("cut", (True, False))
+def test_factoring_behind_the_first_change_gives_the_same_bits(make_film, cut):
+    n, m = 24, 7
+    f = make_film(11, n, m)
+    rng = np.random.default_rng(12)
+    for _ in range(60):
+        old = np.ones((n, m), dtype=bool)
+        if cut:
+            old[2:5] = False
+        old &= rng.random((n, m)) > 0.03
+        new = old.copy()
+        # changes anywhere, near the end, and none
+        i, j = int(rng.integers(n)), int(rng.integers(m))
+        new[i, j] = not new[i, j]
+        w, full = Workspace(n, m), Workspace(n, m)
+        P, Q = np.zeros((n, m)), np.zeros((n, m))
+        _, count, width = solve_on_active(
+            f.kx, f.kz, f.b, old, w.order, w.old_order, 0, 0, w.number, w.band, w.inv_diag, w.unknowns, P
+        )
+        w.old_order[:] = w.order
+        P[~new] = 0.0
+        got = solve_on_active(
+            f.kx, f.kz, f.b, new, w.order, w.old_order, count, width, w.number, w.band, w.inv_diag, w.unknowns, P
+        )
+        expected = solve_on_active(
+            f.kx,
+            f.kz,
+            f.b,
+            new,
+            full.order,
+            full.old_order,
+            0,
+            0,
+            full.number,
+            full.band,
+            full.inv_diag,
+            full.unknowns,
+            Q,
+        )
+        assert got == expected
+        np.testing.assert_array_equal(P, Q)
+        k, reach = got[1], got[2] + 1
+        np.testing.assert_array_equal(w.band[:k, :reach], full.band[:k, :reach])
 
 
 def test_known_neighbours_move_to_the_right(make_film, dense_matrix):
@@ -96,8 +141,8 @@ def test_many_right_hand_sides(make_film, dense_matrix, count_rhs):
     active = _active_sets(14, 6, 7)["ring"]
     w = Workspace(14, 6)
     count, width = number_cells(active, f.kx, w.order, w.number)
-    assemble_band(f.kx, f.kz, w.number, w.order, count, width, w.band)
-    assert factor_band(w.band, count, width, w.inv_diag)
+    assemble_band(f.kx, f.kz, w.number, w.order, count, width, 0, w.band)
+    assert factor_band(w.band, count, width, 0, w.inv_diag)
     b = np.random.default_rng(8).normal(size=(count_rhs, count))
     many = b.copy()
     solve_many(w.band, w.inv_diag, count, width, many)
@@ -115,7 +160,7 @@ def test_a_singular_film_is_refused(make_film):
     f = make_film(9)
     w = Workspace(12, 6)
     ok, _, _ = solve_on_active(
-        np.zeros_like(f.kx), np.zeros_like(f.kz), f.b, np.ones((12, 6), dtype=bool), w.order, w.number, w.band,
+        np.zeros_like(f.kx), np.zeros_like(f.kz), f.b, np.ones((12, 6), dtype=bool), w.order, w.old_order, 0, 0, w.number, w.band,
         w.inv_diag, w.unknowns, np.zeros((12, 6)),
     )  # fmt: skip
     assert not ok
