@@ -36,6 +36,12 @@ def example():
 
 
 @pytest.fixture(scope="session")
+def planar_rotor():
+    """The scene `PlanarRotor` of mechanisms/planar.py."""
+    return load_module(ROOT / "tests" / "mechanisms" / "planar.py").PlanarRotor
+
+
+@pytest.fixture(scope="session")
 def make_bearing() -> Callable[..., ehd.JournalBearing]:
     """A bearing of R = 25 mm, psi = 0.001, mu = 0.02 Pa s; everything can be replaced."""
 
