@@ -84,9 +84,9 @@ class BushEquations:
         """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t) on a fixed pattern.
 
         Exact without carrier and without viscosity; mass-proportional damping is exact too. Left out: a viscosity's
-        change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved velocities
-        and inertia forces with its attitude, of the size of its angular velocity. Newton's method then takes more
-        iterations; its result is the same.
+        change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved
+        velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method then
+        takes more iterations; its result is the same.
         """
         u, v = self.displacements(q), self.velocities(q, q_t)
         values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
