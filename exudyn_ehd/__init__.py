@@ -5,7 +5,8 @@ Module map
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`
-coupling  Exudyn: `CreateLubricatedJoint`, film element, kinematics, histories, sensors
+solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
+coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -30,52 +31,90 @@ from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
 
-# Exudyn is imported only when one of these is asked for: film studies run without it.
-_COUPLING = {
-    "ConfigureSolver": "settings",
-    "CreateLubricatedJoint": "api",
-    "Free": "api",
-    "Held": "api",
-    "JointHistory": "history",
-    "LubricatedJoint": "api",
-    "Quantity": "history",
+# Imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid.
+_LAZY = {
+    "ConfigureSolver": "coupling.settings",
+    "CreateLubricatedJoint": "coupling.api",
+    "Free": "coupling.api",
+    "Held": "coupling.api",
+    "JointHistory": "coupling.history",
+    "LubricatedJoint": "coupling.api",
+    "Quantity": "coupling.history",
+    "CarriedOuter": "coupling.bush_object",
+    "CreateFlexibleBush": "coupling.bush_object",
+    "FixedOuter": "coupling.bush_object",
+    "FlexibleBush": "coupling.bush_object",
+    "FreeOuter": "coupling.bush_object",
+    "Support": "coupling.bush_object",
+    "FactorReuse": "coupling.sparse_newton",
+    "SolveDynamicSparse": "coupling.sparse_newton",
+    "ANCFBush": "solid.bush",
+    "BushMesh": "solid.mesh",
+    "DeadPressure": "solid.loads",
+    "FollowerPressure": "solid.loads",
+    "HollowCylinder": "solid.mesh",
+    "LineLoad": "solid.loads",
+    "Rayleigh": "solid.bush",
+    "SaintVenantKirchhoff": "solid.total_lagrange",
+    "SurfaceLoad": "solid.loads",
+    "mesh_from_arrays": "solid.mesh",
+    "mesh_from_fem": "solid.mesh",
 }
 
 
 def __getattr__(name: str) -> Any:
-    if name in _COUPLING:
-        return getattr(importlib.import_module(f"exudyn_ehd.coupling.{_COUPLING[name]}"), name)
+    if name in _LAZY:
+        return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
     raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}")
 
 
 __all__ = [
+    "ANCFBush",
+    "BushMesh",
+    "CarriedOuter",
     "ConfigureSolver",
+    "CreateFlexibleBush",
     "CreateLubricatedJoint",
+    "DeadPressure",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",
+    "FactorReuse",
     "FilmError",
     "FilmResult",
     "FiniteLength",
+    "FixedOuter",
+    "FlexibleBush",
+    "FollowerPressure",
     "Free",
+    "FreeOuter",
     "FullSommerfeld",
     "Gumbel",
     "Held",
+    "HollowCylinder",
     "InputError",
     "JointHistory",
     "JournalBearing",
+    "LineLoad",
     "Lubricant",
     "LubricatedJoint",
     "MaximumGap",
     "Periodic",
     "Quantity",
+    "Rayleigh",
     "RegularisedWall",
+    "SaintVenantKirchhoff",
     "ShortBearing",
+    "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "Support",
+    "SurfaceLoad",
     "SwiftStieber",
     "bearing_grid",
     "equilibrium",
+    "mesh_from_arrays",
+    "mesh_from_fem",
     "slider_grid",
     "solve_film",
     "steady",

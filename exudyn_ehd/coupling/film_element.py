@@ -111,6 +111,8 @@ class FilmElement:
 
     def _try(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any, time: float) -> Trial:
         """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there."""
+        # a list compares as a whole; other callers than Exudyn may hand over arrays
+        q, q_t = list(q), list(q_t)
         # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
         memory = self._memory if time >= self._start else None
         step = 0.0 if memory is None else time - self._start
