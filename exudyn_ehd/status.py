@@ -16,6 +16,7 @@ class Status(enum.IntEnum):
     NOT_CONVERGED = 1
     NO_FILM = 2
     NOT_FINITE = 3
+    NO_PRESSURE = 4
 
     @property
     def advice(self) -> str:
@@ -29,6 +30,8 @@ _ADVICE = {
     "step size, and please report the state.",
     Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact effect, "
     "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
+    Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; use "
+    "RoelandsPressure instead of BarusPressure, or name an elastic liner or bush.",
     Status.NOT_FINITE: "the state handed to the film is not finite; reduce the step size and check the masses and "
     "loads of the model.",
 }

@@ -181,7 +181,8 @@ class _Newton:
                 self.baseline = self.baseline or iteration
                 self.excess += iteration - self.baseline
                 return True
-            first = max(first, error) if newton.adaptInitialResidual else first
+            if iteration == 1 and newton.adaptInitialResidual:
+                first = max(first, error)
             if error > self.reuse.contractivity * previous:
                 self.factor = None
         self.factor = None

@@ -298,7 +298,15 @@ class FEMData(Protocol):
 def mesh_from_fem(
     fem: FEMData, *, bore_radius: float, origin: tuple = (0.0, 0.0, 0.0), axis: tuple = (0.0, 0.0, 1.0)
 ) -> BushMesh:
-    """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra; see `mesh_from_arrays`."""
+    """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra.
+
+    Parameters
+    ----------
+    fem : FEMinterface
+        Exudyn's, with Hex20 elements (Abaqus C3D20 order) only.
+    bore_radius, origin, axis
+        As in `mesh_from_arrays`, which also says what comes back and what is refused.
+    """
     sets = [np.asarray(block["Hex20"], dtype=int) for block in fem.elements if len(block.get("Hex20", ())) > 0]
     other = sorted({key for block in fem.elements for key in block if key not in ("Name", "Hex20") and len(block[key])})
     if not sets or other:

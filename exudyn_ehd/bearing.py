@@ -1,0 +1,142 @@
+"""What a scene writes: one frozen, validated description per bearing. Effects are named or absent."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import dataclass
+
+from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.contact import RegularisedWall
+from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.grid import FiniteLength, ShortBearing
+from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.status import InputError, require_number, require_vector
+
+SMALLEST_CLEARANCE_RATIO = 1e-4
+LARGEST_CLEARANCE_RATIO = 1e-2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Periodic:
+    """The film closes around the bearing."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MaximumGap:
+    """The film starts with ambient pressure on the line of maximum gap, as in the classical tables.
+
+    Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving one, so
+    that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
+    """
+
+
+Film = FiniteLength | ShortBearing
+Cavitation = FullSommerfeld | Gumbel | SwiftStieber | ElrodAdams
+Inlet = Periodic | MaximumGap
+
+
+@dataclass(frozen=True, kw_only=True)
+class JournalBearing:
+    """A journal bearing, described once for steady studies and joints alike.
+
+    Parameters
+    ----------
+    journal_radius : float
+        R, m.
+    length : float
+        L, m.
+    radial_clearance : float
+        c = bore radius - journal radius, m. A ratio c/R outside 1e-4 to 1e-2 warns.
+    lubricant : Lubricant
+    film : FiniteLength or ShortBearing
+        Film model and grid.
+    cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
+        What happens below the cavity pressure.
+    inlet : Periodic or MaximumGap
+        Circumferential condition.
+    end_pressures : (float, float)
+        Gauge pressures at z = -L/2 and z = +L/2, Pa.
+    squeeze : bool
+        False leaves the squeeze term out (quasi-static film: no damping).
+    contact : RegularisedWall or None
+        What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+
+    Raises
+    ------
+    InputError
+        For values that can't be meant.
+    """
+
+    journal_radius: float
+    length: float
+    radial_clearance: float
+    lubricant: Lubricant
+    film: Film = FiniteLength()
+    cavitation: Cavitation = SwiftStieber()
+    inlet: Inlet = Periodic()
+    end_pressures: tuple[float, float] = (0.0, 0.0)
+    squeeze: bool = True
+    contact: RegularisedWall | None = None
+
+    def __post_init__(self) -> None:
+        require_number(
+            "JournalBearing.journal_radius", self.journal_radius, "m", above=0.0, hint="it is half the diameter."
+        )
+        require_number("JournalBearing.length", self.length, "m", above=0.0)
+        require_number(
+            "JournalBearing.radial_clearance", self.radial_clearance, "m", above=0.0,
+            hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
+        )  # fmt: skip
+        _require_type("lubricant", self.lubricant, (Lubricant,))
+        _require_type("film", self.film, (FiniteLength, ShortBearing))
+        _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
+        _require_type("inlet", self.inlet, (Periodic, MaximumGap))
+        _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
+        if not isinstance(self.squeeze, bool):
+            raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
+        self._check_pressures()
+        self._check_clearance()
+
+    def _check_pressures(self) -> None:
+        pc = self.cavitation.cavity_pressure
+        lowest = min(*self.end_pressures, 0.0 if isinstance(self.inlet, MaximumGap) else math.inf)
+        if pc > lowest:
+            raise InputError(
+                f"{type(self.cavitation).__name__}.cavity_pressure must not exceed the pressures at the film's edges "
+                f"({lowest:g} Pa), got {pc:g} Pa; both are gauge pressures."
+            )
+
+    def _check_clearance(self) -> None:
+        if self.contact is not None and not self.contact.onset < self.radial_clearance:
+            raise InputError(
+                f"RegularisedWall.onset must be below the radial clearance {self.radial_clearance:g} m, got "
+                f"{self.contact.onset:g} m; the wall would touch a concentric journal."
+            )
+        ratio = self.radial_clearance / self.journal_radius
+        if not SMALLEST_CLEARANCE_RATIO <= ratio <= LARGEST_CLEARANCE_RATIO:
+            warnings.warn(
+                f"JournalBearing: the clearance ratio c/R is {ratio:.3g}, outside {SMALLEST_CLEARANCE_RATIO:g} to "
+                f"{LARGEST_CLEARANCE_RATIO:g}; radial_clearance is radial (bore radius - journal radius), not diametral, "
+                "and in metres.",
+                stacklevel=4,
+            )
+
+    @property
+    def clearance_ratio(self) -> float:
+        """psi = c/R."""
+        return self.radial_clearance / self.journal_radius
+
+    def reference_force(self, speed: float) -> float:
+        """L D mu |omega| / psi^2 in N, the unit of the Sommerfeld number, for a spin ``speed`` in rad/s."""
+        area = 2.0 * self.journal_radius * self.length
+        return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
+
+
+def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None:
+    if not isinstance(value, types):
+        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
+        raise InputError(
+            f"JournalBearing.{argument} must be {names}, got {value!r}; options are objects, not strings or classes."
+        )

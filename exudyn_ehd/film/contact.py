@@ -1,0 +1,103 @@
+"""A stiff smooth wall that takes over before the gap vanishes.
+
+For a gap h below the onset h0, with s = h / h0:
+
+* contact pressure ``p_w = pressure (1 - s)^2`` (continuous first derivative, still rising for h < 0), and
+* the film sees ``h0 g(s)``, ``g = 1 - a tanh((1 - s) / a)``, a = 1 - residual gap share: equal to s up to second derivatives at
+  s = 1 and never below ``residual h0``, so that the Reynolds equation keeps a solution while surfaces press on each other.
+
+The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.status import InputError, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class RegularisedWall:
+    """Stiff smooth wall for gaps below an onset.
+
+    Parameters
+    ----------
+    onset : float
+        Gap at which the wall starts to act, m; a few roughness heights. Must be below the radial clearance.
+    pressure : float
+        Contact pressure at zero gap, Pa.
+    residual : float
+        Share of the onset that the film gap never falls below, 0.01 to 0.9.
+    """
+
+    onset: float
+    pressure: float = 1e9
+    residual: float = 0.2
+
+    def __post_init__(self) -> None:
+        require_number("RegularisedWall.onset", self.onset, "m", above=0.0)
+        require_number("RegularisedWall.pressure", self.pressure, "Pa", above=0.0)
+        require_number("RegularisedWall.residual", self.residual, at_least=0.01)
+        if self.residual > 0.9:
+            raise InputError(f"RegularisedWall.residual must be within 0.01 and 0.9, got {self.residual!r}.")
+
+
+class WallContact:
+    """A `RegularisedWall` in scaled form: contact pressure and gap limiter of one bearing model.
+
+    Parameters
+    ----------
+    wall : RegularisedWall
+    clearance : float
+        Radial clearance, m.
+    """
+
+    friction_coefficient = 0.0
+    transition_speed = 1.0
+
+    def __init__(self, wall: RegularisedWall, clearance: float) -> None:
+        self.onset = wall.onset / clearance
+        self.residual = wall.residual
+        self.level = wall.pressure
+
+    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
+        """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
+        wall_pressure(H, self.onset, self.level, P_out, slope_out)
+
+    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
+        """Replace the scaled gap H (n, m) by the one that the film sees; its first two derivatives come back."""
+        limit_gap(H, self.onset, self.residual, slope_out, curvature_out)
+
+
+@njit(cache=True)
+def wall_pressure(H, onset, pressure, P_out, slope_out):
+    """Contact pressure in the unit of ``pressure`` and its derivative with respect to H."""
+    n, m = H.shape
+    for i in range(n):
+        for j in range(m):
+            d = 1.0 - H[i, j] / onset
+            if d > 0.0:
+                P_out[i, j] = pressure * d * d
+                slope_out[i, j] = -2.0 * pressure * d / onset
+            else:
+                P_out[i, j] = 0.0
+                slope_out[i, j] = 0.0
+
+
+@njit(cache=True)
+def limit_gap(H, onset, residual, slope_out, curvature_out):
+    """Replace H by the gap that the film sees, in place; first and second derivative (n, m) come back."""
+    n, m = H.shape
+    a = 1.0 - residual
+    for i in range(n):
+        for j in range(m):
+            slope_out[i, j] = 1.0
+            curvature_out[i, j] = 0.0
+            if H[i, j] < onset:
+                t = np.tanh((1.0 - H[i, j] / onset) / a)
+                H[i, j] = onset * (1.0 - a * t)
+                slope_out[i, j] = 1.0 - t * t
+                curvature_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset)

@@ -1,0 +1,180 @@
+"""Integrals of pressure and shear over the film, and the flows through its edges.
+
+Scaled integrals, W = integration weights of (theta, z/R), P = p c^2 / (12 mu R^2):
+
+    S_c = sum P W cos,  S_s = sum P W sin,  S_zc = sum P W z cos,  S_zs = sum P W z sin,  C = sum W share / H
+
+With one normal e_r, fixed in the housing, and one point per vertex, the pressure on the journal gives
+
+    F = -(12 mu R^4 / c^2) (S_c, S_s),   M = (12 mu R^5 / c^2) (S_zs, -S_zc).
+
+Shear: on the bush acts ``tau = mu U/h - (h/2) dp/dx``, on the journal, at the same point, its opposite. The Poiseuille part,
+summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It splits e x F between the two
+surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half of it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True, fastmath=_FAST)
+def pressure_integrals(P, weight, cos_x, sin_x, z, out):
+    """S_c, S_s, S_zc, S_zs -> out (4,)."""
+    n, m = P.shape
+    out[:] = 0.0
+    for i in range(n):
+        s0 = 0.0
+        s1 = 0.0
+        for j in range(m):
+            pw = P[i, j] * weight[i, j]
+            s0 += pw
+            s1 += pw * z[j]
+        out[0] += s0 * cos_x[i]
+        out[1] += s0 * sin_x[i]
+        out[2] += s1 * cos_x[i]
+        out[3] += s1 * sin_x[i]
+
+
+@njit(cache=True, fastmath=_FAST)
+def couette_integral(H, weight, active, fixed, cavity_share):
+    """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
+    n, m = H.shape
+    whole = 0.0
+    unbroken = 0.0
+    for i in range(n):
+        for j in range(m):
+            s = weight[i, j] / H[i, j]
+            if active[i, j] or fixed[i, j]:
+                unbroken += s
+            else:
+                whole += s
+    return unbroken + cavity_share * whole, unbroken
+
+
+@njit(cache=True, fastmath=_FAST)
+def couette_gradient(H, weight, active, fixed, cavity_share, out):
+    """dC/dH -> out (n, m)."""
+    n, m = H.shape
+    for i in range(n):
+        for j in range(m):
+            share = 1.0 if (active[i, j] or fixed[i, j]) else cavity_share
+            out[i, j] = -share * weight[i, j] / (H[i, j] * H[i, j])
+
+
+@njit(cache=True, fastmath=_FAST)
+def couette_integral_fill(H, weight, fill):
+    """(C with the fill as share, C where the film is full)."""
+    n, m = H.shape
+    whole = 0.0
+    full = 0.0
+    for i in range(n):
+        for j in range(m):
+            s = weight[i, j] / H[i, j]
+            whole += fill[i, j] * s
+            if fill[i, j] >= 1.0:
+                full += s
+    return whole, full
+
+
+@njit(cache=True)
+def couette_adjoint_rhs(order, count, weight, H, active, rhs_out):
+    """dC/dfill at the cavitated unknowns: rhs_out (count,)."""
+    m = H.shape[1]
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        rhs_out[r] = 0.0 if active[i, j] else weight[i, j] / H[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
+    """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped."""
+    m = z.size
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        w = weight[i, j] if active[i, j] else 0.0
+        rhs_out[0, r] = w * cos_x[i]
+        rhs_out[1, r] = w * sin_x[i]
+        rhs_out[2, r] = w * cos_x[i] * z[j]
+        rhs_out[3, r] = w * sin_x[i] * z[j]
+
+
+@njit(cache=True)
+def scatter(values, order, count, out):
+    """Unknowns (k, count) -> fields (k, n, m), zero elsewhere."""
+    out[:] = 0.0
+    m = out.shape[2]
+    for k in range(values.shape[0]):
+        for r in range(count):
+            out[k, order[r] // m, order[r] % m] = values[k, r]
+
+
+@njit(cache=True)
+def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, active, fixed):
+    """Scaled volume flow that leaves through z = -L/2 and z = +L/2.
+
+    The flux through the link next to the end, corrected by the balance of the end's half control volume where the film
+    next to it is unbroken.
+    """
+    n, m = P.shape
+    lower = 0.0
+    upper = 0.0
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        q = -(fz[i, 0] - kz[i, 0] * (P[i, 1] - P[i, 0]))
+        if active[i, 1]:
+            q -= fx[i, 0] - fx[prv, 0]
+            if squeeze:
+                q -= H_t[i, 0] * width_x[i] * width_z[0]
+        lower += q
+        e = m - 1
+        q = fz[i, e - 1] - kz[i, e - 1] * (P[i, e] - P[i, e - 1])
+        if active[i, e - 1]:
+            q -= fx[i, e] - fx[prv, e]
+            if squeeze:
+                q -= H_t[i, e] * width_x[i] * width_z[e]
+        upper += q
+    return lower, upper
+
+
+@njit(cache=True)
+def peak_of(P):
+    """Largest value of P (n, m) and its vertex."""
+    n, m = P.shape
+    best = P[0, 0]
+    where = (0, 0)
+    for i in range(n):
+        for j in range(m):
+            if P[i, j] > best:
+                best = P[i, j]
+                where = (i, j)
+    return best, where[0], where[1]
+
+
+def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) -> tuple[float, float, float]:
+    """Peak of P and its position from parabolas through the largest vertex and its neighbours in x and in z."""
+    value, i, j = peak_of(P)
+    n, m = P.shape
+    peak, position_x, position_z = value, x[i], z[j]
+    if periodic or 0 < i < n - 1:
+        step = x[1] - x[0] if n > 1 else 0.0
+        before, after = P[i - 1, j], P[(i + 1) % n, j]
+        curvature = before - 2.0 * value + after
+        if curvature < 0.0:
+            shift = 0.5 * (before - after) / curvature
+            peak += -0.125 * (before - after) ** 2 / curvature
+            position_x += shift * step
+    if 0 < j < m - 1:
+        h0, h1 = z[j] - z[j - 1], z[j + 1] - z[j]
+        d0, d1 = (value - P[i, j - 1]) / h0, (P[i, j + 1] - value) / h1
+        second = (d1 - d0) / (h0 + h1)
+        slope = (d0 * h1 + d1 * h0) / (h0 + h1)
+        if second < 0.0:
+            peak += -0.25 * slope * slope / second
+            position_z += -0.5 * slope / second
+    return float(peak), float(position_x), float(position_z)

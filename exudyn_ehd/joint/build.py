@@ -1,0 +1,42 @@
+"""From a bearing's description to its model: the only place that asks whether an effect is present."""
+
+from __future__ import annotations
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.contact import WallContact
+from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.warmup import compile_kernels
+from exudyn_ehd.status import InputError
+
+
+def collect_effects(bearing: JournalBearing) -> Effects:
+    """The effects that a bearing names, in scaled form."""
+    wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
+    return Effects(limiter=wall, contacts=() if wall is None else (wall,))
+
+
+def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
+    """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
+    model = BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model
+
+
+def build_model(bearing: JournalBearing) -> BearingModel:
+    """Model of a bearing for a moving journal.
+
+    Raises
+    ------
+    InputError
+        If the bearing is described by something else, or by an option that only a prescribed position allows.
+    """
+    if not isinstance(bearing, JournalBearing):
+        raise InputError(f"bearing must be a JournalBearing(...), got {bearing!r}.")
+    if isinstance(bearing.inlet, MaximumGap):
+        raise InputError(
+            "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
+            "concentric journal and jumps with a moving one; use inlet=Periodic()."
+        )
+    model = BearingModel(bearing, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model

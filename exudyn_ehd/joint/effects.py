@@ -1,0 +1,87 @@
+"""The seams of a bearing model: what an effect must offer to take part. Absent effects are absent from these tuples.
+
+All fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by the model's ``pressure_scale``; contact pressures and
+pressure laws are in Pa.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.film.flux import FluxEffect
+
+__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor"]
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What a bearing remembers between accepted steps; absent effects leave None.
+
+    Attributes
+    ----------
+    mass : (n, m) array or None
+        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
+    wear : (n, m) array or None
+        Scaled wear depth of the bore.
+    temperature : float, (n, m) array or None
+        Film temperature, K.
+    """
+
+    mass: np.ndarray | None = None
+    wear: np.ndarray | None = None
+    temperature: float | np.ndarray | None = None
+
+
+class GapTerm(Protocol):
+    """Adds to the gap of the rigid surfaces; must not depend on the motion."""
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
+
+
+class GapLimiter(Protocol):
+    """Keeps the gap that the film sees above zero where surfaces touch."""
+
+    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
+        """Replace the gap H in place; d(film gap)/dH and its derivative come back."""
+
+
+class Contact(Protocol):
+    """A pressure between the surfaces that depends on the true gap alone."""
+
+    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
+        """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Boundary friction coefficient; 0 for a frictionless contact."""
+
+    @property
+    def transition_speed(self) -> float:
+        """Sliding speed over which Coulomb friction is regularised, m/s."""
+
+
+class PressureLaw(Protocol):
+    """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
+
+    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever the law: the
+    complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
+    """
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), mu(p)/mu_0 = dp/dq and its derivative with respect to q (1/Pa); False where q has no p."""
+
+
+class ShearFactor(Protocol):
+    """Factor on the viscosity of Couette shear and of the fluxes that depends on the gap and on the sliding speed."""
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """mu/mu_0 at the vertices with its derivatives with respect to H and vx."""

@@ -1,0 +1,216 @@
+"""Exact tangent of a bearing's wrench: adjoint solves for the load integrals, then the chain rule to the motion.
+
+For an integral S = sum w p with the film's residual r(p, H, H_t, v) = 0: ``dS = -lam . dr`` at fixed p with ``A^T lam = w``, plus what depends on
+the motion directly. Four integrals carry force and moments; shear needs a fifth where fill or pressure enter it, and gap terms
+two more for their slopes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_ehd.film.gap import contract_pose
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
+from exudyn_ehd.film.pose_gradient import plain_pose_gradient
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.solver import Sensitivities
+    from exudyn_ehd.joint.model import BearingModel, ContactFields
+
+SIZE = 10
+
+
+def wrench_tangent(model: BearingModel) -> np.ndarray:
+    """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``."""
+    film, contact, dc, extra = _integral_gradients(model)
+    ds = film + contact
+    x, y, bx, by = model.pose
+    sc, ss, szc, szs = model.total
+    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] + extra[0]
+    ds_theta[:4] += (ss, -sc, szs, -szc)
+    ds_z = -(bx * ds[0] + by * ds[1]) + extra[1]
+    ds_z[2:4] -= (sc, ss)
+    R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
+    out = np.empty((6, SIZE))
+    out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
+    out[2] = -c0 * (6.0 * R * ds_z + model.axial_speed * dc)
+    out[5] = -c0 * R**2 * (6.0 * ds_theta + model.omega * dc)
+    if model.limiter_fields is not None:
+        out[2, :4] += 6.0 * c0 * R * _end_gradient(model)
+    out[:, :4] *= model.pose_scale
+    out[:, 4:8] *= model.pose_scale
+    out[:, 8] *= 0.5
+    out[:, 9] *= 0.5 / R
+    out[2, 9] -= c0 * model.couette
+    out[5, 8] -= c0 * R**2 * model.couette
+    if model.contact_fields is not None:
+        _add_contact_friction(model, model.contact_fields, out)
+    return out
+
+
+def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), the contacts' S, C (10,), slopes' S (2, 10)."""
+    s, g = model.solver, model.grid
+    rows = _adjoint_rows(model)
+    k = rows.shape[0]
+    lam = s.adjoint(rows)
+    gradient = np.zeros((k, SIZE))
+    if is_plain(model):
+        plain_pose_gradient(
+            lam, s.system.linear_pressure, s.H, s.HF, model.cos_x, model.sin_x, model.cos_f, model.sin_f, g.z, s.vx, s.vz,
+            s.flow_x, float(s.squeeze), g.width_x, g.width_z, g.link_x, g.link_z, gradient,
+        )  # fmt: skip
+    else:
+        field_gradient(model, lam, gradient)
+    dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
+    at = 4
+    if _shear_needs_adjoint(model):
+        dc = gradient[at]
+        at += 1
+    _add_couette_direct(model, dc)
+    if model.extra_slope_x is not None:
+        extra = gradient[at : at + 2]
+    contact = np.zeros((4, SIZE))
+    if model.contact_fields is not None:
+        _contact_gradients(model, model.contact_fields, contact, extra)
+    return gradient[:4], contact, dc, extra
+
+
+def is_plain(model: BearingModel) -> bool:
+    """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
+    return model.limiter_fields is None and model.solver.flux is None and not model.solver.closure.conserves_mass
+
+
+def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, for any film."""
+    s, g = model.solver, model.grid
+    sens = s.sensitivities(lam)
+    if model.limiter_fields is not None:
+        _chain_limiter(model, sens)
+    pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
+    contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
+    contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
+    if sens.rate is not None:
+        contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
+    gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
+
+
+def _shear_needs_adjoint(model: BearingModel) -> bool:
+    return model.solver.closure.conserves_mass or model.effects.pressure_law is not None
+
+
+def _adjoint_rows(model: BearingModel) -> np.ndarray:
+    """Weights of the integrals at the unknowns, (k, count)."""
+    s, g, w = model.solver, model.grid, model.solver.work
+    shear = _shear_needs_adjoint(model)
+    rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
+    load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
+    at = w.order[: w.count]
+    full = w.active.ravel()[at]
+    P_q = None
+    if model.effects.pressure_law is not None:
+        assert model.P_q is not None
+        P_q = model.P_q.ravel()[at]
+        rows[:4] *= P_q
+    weight = g.weight.ravel()[at]
+    if shear:
+        ratio = 1.0 if model.ratio is None else model.ratio.ravel()[at]
+        per_gap = weight / s.H.ravel()[at]
+        by_pressure = 0.0 if model.ratio_q is None else per_gap * model.ratio_q.ravel()[at]
+        rows[4] = np.where(full, by_pressure, per_gap * ratio if s.closure.conserves_mass else 0.0)
+    if model.extra_slope_x is not None and model.extra_slope_z is not None:
+        for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
+            row[:] = np.where(full, weight * slope.ravel()[at], 0.0)
+            if P_q is not None:
+                row *= P_q
+    return rows
+
+
+def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
+    """Add the direct gradient of C to the scaled pose and speeds, at fixed pressure and fill."""
+    s, g = model.solver, model.grid
+    gradient = np.empty((1, *g.shape))
+    if model.ratio is not None and model.ratio_h is not None and model.ratio_v is not None:
+        density = g.weight * model.share() / s.H
+        gradient[0] = density * (model.ratio_h - model.ratio / s.H)
+        dc[8] += float(np.sum(density * model.ratio_v))
+    elif s.closure.conserves_mass:
+        gradient[0] = -g.weight * s.fill / s.H**2
+    else:
+        couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+    if model.limiter_fields is not None:
+        gradient[0] *= model.limiter_fields.slope
+    out = np.zeros((1, 4))
+    contract_pose(gradient, model.cos_x, model.sin_x, g.z, out)
+    dc[:4] += out[0]
+
+
+def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
+    """From the film's gap to the true gap."""
+    f = model.limiter_fields
+    assert f is not None
+    sens.face *= f.face_slope
+    sens.cell *= f.slope
+    if sens.rate is not None:
+        sens.cell += sens.rate * f.curvature
+        sens.rate *= f.slope
+
+
+def _contact_gradients(model: BearingModel, f: ContactFields, contact: np.ndarray, extra: np.ndarray) -> None:
+    """Add the contacts' gradients to the pose to ``contact`` (4, 10) and ``extra`` (2, 10), in the film's pressure unit."""
+    g = model.grid
+    slope = np.sum(f.slope, axis=0) * g.weight / model.pressure_scale
+    fields = [slope * model.cos_x[:, None], slope * model.sin_x[:, None]]
+    fields += [fields[0] * g.z, fields[1] * g.z]
+    if model.extra_slope_x is not None and model.extra_slope_z is not None:
+        fields += [slope * model.extra_slope_x, slope * model.extra_slope_z]
+    out = np.zeros((len(fields), 4))
+    contract_pose(np.array(fields), model.cos_x, model.sin_x, g.z, out)
+    contact[:, :4] += out[:4]
+    if len(fields) == 6:
+        extra[:, :4] += out[4:]
+
+
+def _end_gradient(model: BearingModel) -> np.ndarray:
+    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter acts on the gap."""
+    f = model.limiter_fields
+    assert f is not None
+    field = np.zeros((1, *model.grid.shape))
+    step = model.grid.width_x[0]
+    field[0, :, -1] = model.end_pressures[1] * step * f.slope[:, -1]
+    field[0, :, 0] = -model.end_pressures[0] * step * f.slope[:, 0]
+    out = np.zeros((1, 4))
+    contract_pose(field, model.cos_x, model.sin_x, model.grid.z, out)
+    return out[0]
+
+
+def _add_contact_friction(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
+    """Add the gradient of the contacts' friction wrench to ``out`` (6, 10), SI units."""
+    g, R = model.grid, model.grid.reference_length
+    for k, contact in enumerate(model.effects.contacts):
+        if contact.friction_coefficient == 0.0:
+            continue
+        g_theta, g_z, dg = model.slip(contact)
+        slope = f.slope[k] * g.weight * contact.friction_coefficient * R**2
+        c_field, s_field = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
+        grads = np.zeros((5, 4))
+        fields = np.array([c_field, s_field, c_field * g.z, s_field * g.z, slope])
+        contract_pose(fields, model.cos_x, model.sin_x, g.z, grads)
+        values = np.array([*f.integrals[k], f.normal[k]]) * contact.friction_coefficient * R**2
+        theta = _friction_row(R, 1.0, 0.0)
+        axial = _friction_row(R, 0.0, 1.0)
+        out[:, :4] += (g_theta * theta + g_z * axial) @ grads * model.pose_scale
+        out[:, 8] += (dg[0, 0] * theta + dg[1, 0] * axial) @ values
+        out[:, 9] += (dg[0, 1] * theta + dg[1, 1] * axial) @ values
+
+
+def _friction_row(R: float, theta: float, axial: float) -> np.ndarray:
+    """Map (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for a slip direction."""
+    out = np.zeros((6, 5))
+    out[0, 1], out[1, 0], out[2, 4] = theta, -theta, -axial
+    out[3, 2], out[3, 1] = R * theta, -R * axial
+    out[4, 3], out[4, 0] = R * theta, R * axial
+    out[5, 4] = -R * theta
+    return out

@@ -1,0 +1,485 @@
+"""One lubricated bearing between two rigid surfaces as a pure function of its relative motion.
+
+Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in it is
+
+    motion = [x, y, bx, by, dx/dt, dy/dt, dbx/dt, dby/dt, omega, w]
+
+with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w. The wrench acts on
+the journal, moment about O; the housing receives exactly the opposite about the same point.
+
+Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)`` reads the history
+at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
+from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.loads import (
+    couette_integral,
+    couette_integral_fill,
+    end_flows,
+    pressure_integrals,
+    refined_peak,
+)
+from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
+from exudyn_ehd.joint.gradients import wrench_tangent
+from exudyn_ehd.status import Status
+
+MOTION_SIZE = 10
+
+
+@dataclass(frozen=True)
+class Effects:
+    """What takes part in a bearing model beside the plain film; empty by default.
+
+    Attributes
+    ----------
+    gap_terms : tuple of GapTerm
+    limiter : GapLimiter or None
+    contacts : tuple of Contact
+    flux : tuple of FluxEffect
+    pressure_law : PressureLaw or None
+    shear_factor : ShearFactor or None
+    """
+
+    gap_terms: tuple[GapTerm, ...] = ()
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    pressure_law: PressureLaw | None = None
+    shear_factor: ShearFactor | None = None
+
+
+@dataclass(eq=False)
+class Evaluation:
+    """One film evaluation.
+
+    Attributes
+    ----------
+    status : Status
+    motion : (10,) array
+    wrench : (6,) array
+        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film.
+    iterations : int
+        Linear solves spent.
+    """
+
+    status: Status
+    motion: np.ndarray
+    wrench: np.ndarray
+    iterations: int
+    _model: BearingModel = field(repr=False)
+    _serial: int = field(repr=False)
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10), exact for the current active set, from the stored factor.
+
+        Raises
+        ------
+        RuntimeError
+            If the model has evaluated another state since.
+        """
+        self._require_current()
+        return self._model.tangent()
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of this state in SI units; see `BearingModel.quantities`."""
+        self._require_current()
+        return self._model.quantities()
+
+    def history(self) -> History | None:
+        """What the bearing remembers if this state is accepted; None without effects that remember."""
+        self._require_current()
+        return self._model.history()
+
+    def _require_current(self) -> None:
+        if self._model.serial != self._serial:
+            raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
+
+
+class ContactFields:
+    """Buffers of the contacts and of the gap limiter; allocated only if there are any."""
+
+    def __init__(self, shape: tuple[int, int], contacts: tuple[Contact, ...]) -> None:
+        self.P = [np.zeros(shape) for _ in contacts]
+        self.slope = [np.zeros(shape) for _ in contacts]
+        self.integrals = np.zeros((len(contacts), 4))
+        self.normal = np.zeros(len(contacts))
+
+
+class LimiterFields:
+    """Derivatives of the film's gap with respect to the true gap, at vertices and links."""
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self.slope, self.curvature = np.zeros(shape), np.zeros(shape)
+        self.face_slope, self.face_curvature = np.zeros(shape), np.zeros(shape)
+
+
+class BearingModel:
+    """Film between a rigid journal and a rigid bore, with the effects that a scene names.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    start_angle : float
+        theta of the first grid column, rad; the line of ambient pressure if the bearing's inlet is `MaximumGap`.
+    effects : Effects
+    """
+
+    def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
+        R, c = bearing.journal_radius, bearing.radial_clearance
+        self.bearing = bearing
+        self.effects = Effects() if effects is None else effects
+        self.grid = bearing_grid(
+            R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
+            start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
+        )  # fmt: skip
+        self.solver = FilmSolver(
+            self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
+            circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
+        )  # fmt: skip
+        self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
+        self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
+        self.half_length = 0.5 * bearing.length / R
+        self.pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
+        shape = self.grid.shape
+        self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
+        self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
+        self.extra: np.ndarray | None = None
+        self.extra_slope_x: np.ndarray | None = None
+        self.extra_slope_z: np.ndarray | None = None
+        self.ratio: np.ndarray | None = None
+        self.ratio_q: np.ndarray | None = None
+        self.ratio_h: np.ndarray | None = None
+        self.ratio_v: np.ndarray | None = None
+        self.P_q: np.ndarray | None = None
+        self.set_viscosity_ratio(1.0)
+        self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.serial = 0
+        self.status = Status.NOT_FINITE
+        self.integrals = np.zeros(4)
+
+    def set_viscosity_ratio(self, ratio: float) -> None:
+        """Scale the film to ``ratio`` times the lubricant's reference viscosity (one temperature for the whole film)."""
+        b = self.bearing
+        mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
+        self.pressure_scale = 12.0 * mu * R**2 / c**2
+        self.force_scale = self.pressure_scale * R**2
+        self.shear_scale = mu * R**2 / c
+        self.end_pressures = np.array(b.end_pressures) / self.pressure_scale
+        self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
+
+    def forget(self) -> None:
+        """Drop the warm start. It never changes a result, only the time it takes."""
+        self.solver.forget()
+
+    def initial_history(self, motion: np.ndarray) -> History | None:
+        """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
+        if not self.remembers:
+            return None
+        self._set_motion(motion)
+        self._set_gap(None)
+        return History(mass=self.solver.H.copy())
+
+    def history(self) -> History | None:
+        """History after the last evaluation.
+
+        Raises
+        ------
+        RuntimeError
+            If that evaluation found no film.
+        """
+        if self.status is not Status.CONVERGED:
+            raise RuntimeError(
+                f"BearingModel.history: the last evaluation ended with {self.status.name}; there is no history to keep."
+            )
+        if not self.remembers:
+            return None
+        return History(mass=self.solver.fill * self.solver.H)
+
+    def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
+        """Evaluate the film.
+
+        Parameters
+        ----------
+        motion : (10,) array
+            Relative motion in the joint frame, SI units; see the module's docstring.
+        history : History, optional
+            At the last accepted step; None asks for the steady film.
+        step : float
+            Time since then, s; 0 asks for the force at that very instant.
+
+        Returns
+        -------
+        Evaluation
+            With ``status`` other than CONVERGED the wrench is nan.
+        """
+        self.serial += 1
+        self._set_motion(motion)
+        self.wrench = np.full(6, np.nan)
+        self.iterations = 0
+        self.status = self._solve(history, step)
+        if self.status is Status.CONVERGED:
+            self.wrench = self._loads()
+        return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
+
+    def _set_motion(self, motion: np.ndarray) -> None:
+        self.motion = np.array(motion, dtype=float)
+        self.pose = self.motion[:4] * self.pose_scale
+        self.rate = self.motion[4:8] * self.pose_scale
+        self.omega, self.axial_speed = float(self.motion[8]), float(self.motion[9])
+
+    def _set_gap(self, history: History | None) -> float:
+        """Gaps of the present motion into the film solver; returns the smallest true gap, scaled."""
+        s, z = self.solver, self.grid.z
+        rigid_gap(self.pose, self.cos_x, self.sin_x, z, 1.0, s.H)
+        rigid_gap(self.pose, self.cos_f, self.sin_f, z, 1.0, s.HF)
+        if s.squeeze:
+            rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
+        smallest = 1.0 - float(largest_eccentricity(self.pose, self.half_length))
+        if self.effects.gap_terms:
+            self._add_gap_terms(history)
+            smallest = min(float(s.H.min()), float(s.HF.min()))
+        if self.contact_fields is not None:
+            for k, contact in enumerate(self.effects.contacts):
+                contact.pressure(s.H, self.contact_fields.P[k], self.contact_fields.slope[k])
+        if self.effects.limiter is not None:
+            self._limit_gap(self.effects.limiter)
+        return smallest
+
+    def _add_gap_terms(self, history: History | None) -> None:
+        """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
+        s, g = self.solver, self.grid
+        self.extra = np.sum([term.field(history) for term in self.effects.gap_terms], axis=0)
+        self.extra_slope_x = (np.roll(self.extra, -1, axis=0) - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
+        self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
+        s.H += self.extra
+        s.HF += 0.5 * (self.extra + np.roll(self.extra, -1, axis=0))
+
+    def _limit_gap(self, limiter: GapLimiter) -> None:
+        """The gap that the film sees, and its rate."""
+        s, f = self.solver, self.limiter_fields
+        assert f is not None
+        limiter.limit(s.H, f.slope, f.curvature)
+        limiter.limit(s.HF, f.face_slope, f.face_curvature)
+        if s.squeeze:
+            f.curvature *= s.H_t
+            s.H_t *= f.slope
+
+    def _solve(self, history: History | None, step: float) -> Status:
+        if not np.all(np.isfinite(self.motion)):
+            return Status.NOT_FINITE
+        self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
+        if self.effects.limiter is None and self.minimum_gap <= 0.0:
+            return Status.NO_FILM
+        ends, cavity = self.end_pressures, self.cavity_pressure
+        law = self.effects.pressure_law
+        if law is not None:
+            known = law.transform(np.array([*ends, cavity]) * self.pressure_scale) / self.pressure_scale
+            ends, cavity = known[:2], float(known[2])
+        P = self.solver.pressure
+        P[:, 0], P[:, -1] = ends
+        mass = history.mass if history is not None and self.remembers else None
+        status, self.iterations = self.solver.solve(
+            0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
+        )
+        if status is Status.CONVERGED and (law is not None or self.effects.shear_factor is not None):
+            status = self._apply_rheology()
+        elif status is Status.CONVERGED:
+            self.P = self.solver.pressure
+        return status
+
+    def _apply_rheology(self) -> Status:
+        """Pressure from the transformed one; viscosity ratio at the vertices with its derivatives to q, H and vx."""
+        s, shape = self.solver, self.grid.shape
+        self.P = s.pressure
+        ratio, ratio_q = np.ones(shape), np.zeros(shape)
+        ratio_h, ratio_v = np.zeros(shape), np.zeros(shape)
+        self.P_q = None
+        if self.effects.pressure_law is not None:
+            self.P = np.empty(shape)
+            if not self.effects.pressure_law.inverse(s.pressure * self.pressure_scale, self.P, ratio, ratio_q):
+                return Status.NO_PRESSURE
+            self.P /= self.pressure_scale
+            ratio_q *= self.pressure_scale
+            self.P_q = ratio.copy()
+        if self.effects.shear_factor is not None:
+            factor, factor_h, factor_v = np.empty(shape), np.empty(shape), np.empty(shape)
+            self.effects.shear_factor.factor(s.H, s.vx, factor, factor_h, factor_v)
+            ratio_h = ratio * factor_h
+            ratio_v = ratio * factor_v
+            ratio_q *= factor
+            ratio *= factor
+        self.ratio, self.ratio_q, self.ratio_h, self.ratio_v = ratio, ratio_q, ratio_h, ratio_v
+        return Status.CONVERGED
+
+    def share(self) -> np.ndarray:
+        """Share of a full film's shear that acts at each vertex (n, m)."""
+        s = self.solver
+        if s.closure.conserves_mass:
+            return s.fill
+        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
+
+    def _couette(self) -> tuple[float, float]:
+        s, g = self.solver, self.grid
+        if self.ratio is not None:
+            density = g.weight * self.ratio / s.H
+            unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
+            return float(np.sum(density * self.share())), float(np.sum(density[unbroken]))
+        if s.closure.conserves_mass:
+            return couette_integral_fill(s.H, g.weight, s.fill)
+        return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
+
+    def _loads(self) -> np.ndarray:
+        s, g = self.solver, self.grid
+        pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
+        self.total = self.integrals
+        self.extra_theta = self.extra_z = 0.0
+        if self.extra_slope_x is not None and self.extra_slope_z is not None:
+            self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
+            self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+        if self.contact_fields is not None:
+            self._contact_loads(self.contact_fields)
+        self.couette, self.couette_unbroken = self._couette()
+        x, y, bx, by = self.pose
+        sc, ss, szc, szs = self.total
+        self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
+        self.s_z = -(bx * sc + by * ss) + self.extra_z
+        R, fs = g.reference_length, self.force_scale
+        ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
+        wrench = np.array(
+            [
+                -fs * sc,
+                -fs * ss,
+                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - ends)),
+                fs * R * szs,
+                -fs * R * szc,
+                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * self.s_theta),
+            ]
+        )
+        self.contact_wrench = np.zeros(6)
+        if self.contact_fields is not None:
+            self._add_contact_friction(self.contact_fields)
+            wrench += self.contact_wrench
+        return wrench
+
+    def _contact_loads(self, f: ContactFields) -> None:
+        """Integrals of the contact pressures, added to the film's in the unit of its pressures."""
+        g = self.grid
+        for k in range(len(f.P)):
+            pressure_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
+            f.normal[k] = float(np.sum(f.P[k] * g.weight))
+            if self.extra_slope_x is not None and self.extra_slope_z is not None:
+                self.extra_theta += float(np.sum(f.P[k] * g.weight * self.extra_slope_x)) / self.pressure_scale
+                self.extra_z += float(np.sum(f.P[k] * g.weight * self.extra_slope_z)) / self.pressure_scale
+        self.total = self.integrals + f.integrals.sum(axis=0) / self.pressure_scale
+
+    def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
+        """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
+        R = self.grid.reference_length
+        v = np.array([R * self.omega, self.axial_speed])
+        size = math.sqrt(float(v @ v) + contact.transition_speed**2)
+        slope = (np.eye(2) - np.outer(v, v) / size**2) / size
+        slope[:, 0] *= R
+        return v[0] / size, v[1] / size, slope
+
+    def _add_contact_friction(self, f: ContactFields) -> None:
+        """Coulomb friction of the contacts at the bore's points: force against the slip, with its lever arms."""
+        R = self.grid.reference_length
+        for k, contact in enumerate(self.effects.contacts):
+            if contact.friction_coefficient == 0.0:
+                continue
+            g_theta, g_z, _ = self.slip(contact)
+            c, s, zc, zs = f.integrals[k] * contact.friction_coefficient * R**2
+            n = f.normal[k] * contact.friction_coefficient * R**2
+            self.contact_wrench += (
+                g_theta * s,
+                -g_theta * c,
+                -g_z * n,
+                R * (g_theta * zc - g_z * s),
+                R * (g_theta * zs + g_z * c),
+                -g_theta * R * n,
+            )
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) of the last evaluation; nan without a film."""
+        if self.status is not Status.CONVERGED:
+            return np.full((6, MOTION_SIZE), np.nan)
+        return wrench_tangent(self)
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of the last evaluation.
+
+        Returns
+        -------
+        dict
+            ``minimum_gap`` (m, over the whole bearing with its edges), ``eccentricity_ratio`` (at the mid-plane),
+            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from parabolas through the largest vertex),
+            ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
+            ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
+            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
+            contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
+            by contact), ``contact_torque`` (Nm, its friction on the journal about O).
+        """
+        c = self.bearing.radial_clearance
+        out = {
+            "minimum_gap": self.minimum_gap,
+            "eccentricity_ratio": math.hypot(self.pose[0], self.pose[1]),
+            "largest_eccentricity_ratio": float(largest_eccentricity(self.pose, self.half_length)),
+        }
+        if self.status is not Status.CONVERGED:
+            return out
+        R = self.grid.reference_length
+        torque_scale = self.shear_scale * R**2
+        lower, upper = self._end_flows()
+        flow_scale = c * R**2
+        poiseuille = 6.0 * self.s_theta
+        friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
+        v, f = self.motion, self.wrench
+        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
+        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
+        out |= {
+            "peak_pressure": self.refined_peak()[0],
+            "friction_torque": friction,
+            "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
+            "friction_torque_bush": -float(self.wrench[5]),
+            "power_loss": -power,
+            "leakage": flow_scale * (lower + upper),
+            "leakage_lower": flow_scale * lower,
+            "leakage_upper": flow_scale * upper,
+            "contact_load": math.hypot(load[0], load[1]),
+            "contact_torque": float(self.contact_wrench[5]),
+        }
+        return out
+
+    def _contact_torque(self) -> float:
+        """Contact friction on the journal about its own axis."""
+        f, (x, y, bx, by) = self.contact_wrench, self.motion[:4]
+        return float(f[5] - (x * f[1] - y * f[0] - bx * f[3] - by * f[4]))
+
+    def _end_flows(self) -> tuple[float, float]:
+        s, g = self.solver, self.grid
+        if s.closure.conserves_mass:
+            inflow = s.inflow()
+            return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
+        y = s.system
+        return end_flows(s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed)
+
+    def refined_peak(self) -> tuple[float, float, float]:
+        """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
+        peak, theta, z = refined_peak(self.P, self.grid.x, self.grid.z, True)
+        return peak * self.pressure_scale, theta, z * self.grid.reference_length
+
+
+def _ring_integral(row: np.ndarray) -> float:
+    """Integral over the circumference of a row of vertex values."""
+    return float(row.sum() * (2.0 * math.pi / row.size))

@@ -1,0 +1,438 @@
+"""Studies without a multibody model: any gap, a prescribed position, the equilibrium under a load with K and C."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.cavitation import SwiftStieber
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.solver import Closure, FilmSolver
+from exudyn_ehd.joint.build import build_model, build_study_model
+from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
+
+LARGEST_LOAD_STEPS = 100
+LOAD_TOLERANCE = 1e-10
+# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
+FORCE_ROUNDING = 1e-16
+
+
+@dataclass(frozen=True, eq=False)
+class FilmResult:
+    """Film of any gap, from `solve_film`.
+
+    Attributes
+    ----------
+    status : Status
+    iterations : int
+        Linear solves.
+    pressure : (n, m) array
+        Gauge pressure, Pa.
+    gap : (n, m) array
+        m.
+    unbroken : (n, m) bool array
+        Where the film is not cavitated (prescribed vertices excluded).
+    inflow : (n, m) array
+        Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
+    load : float
+        Integral of the pressure, N.
+    """
+
+    status: Status
+    iterations: int
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    inflow: np.ndarray
+    load: float
+
+
+def solve_film(
+    grid: FilmGrid,
+    gap: np.ndarray,
+    *,
+    lubricant: Lubricant,
+    surface_speed: tuple[float, float] = (0.0, 0.0),
+    gap_rate: np.ndarray | None = None,
+    cavitation: Closure | None = None,
+    boundary: float | np.ndarray = 0.0,
+) -> FilmResult:
+    """Solve the Reynolds equation for any gap, on a bearing's ring or on a slider.
+
+    Parameters
+    ----------
+    grid : FilmGrid
+        From `bearing_grid` or `slider_grid`.
+    gap : (n, m) array
+        Film thickness at the vertices, m, > 0. On links between columns the mean of both neighbours is used.
+    lubricant : Lubricant
+    surface_speed : (float, float)
+        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
+    gap_rate : (n, m) array, optional
+        dh/dt at fixed position, m/s; None: steady.
+    cavitation : closure, optional
+        Default `SwiftStieber`.
+    boundary : float or (n, m) array
+        Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
+
+    Raises
+    ------
+    InputError
+        For shapes that do not fit or a gap that is not positive.
+    FilmError
+        If the film could not be solved.
+    """
+    gap = np.asarray(gap, dtype=float)
+    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
+        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
+    if gap_rate is not None and np.shape(gap_rate) != grid.shape:
+        raise InputError(f"solve_film: gap_rate must have shape {grid.shape}, got {np.shape(gap_rate)}.")
+    closure = SwiftStieber() if cavitation is None else cavitation
+    speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
+    c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
+    scale = 12.0 * lubricant.viscosity * R**2 / c**2
+    solver = FilmSolver(grid, closure, squeeze=gap_rate is not None)
+    solver.H[:] = gap / c
+    solver.HF[:] = 0.5 * (solver.H + np.roll(solver.H, -1, axis=0))
+    if gap_rate is not None:
+        solver.H_t[:] = np.asarray(gap_rate) / c
+    solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
+    solver.coarse = None
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale)
+    if status is not Status.CONVERGED:
+        raise FilmError(f"solve_film: {status.name}: {status.advice}")
+    return FilmResult(
+        status=status,
+        iterations=iterations,
+        pressure=solver.pressure * scale,
+        gap=gap,
+        unbroken=solver.work.active.copy(),
+        inflow=solver.inflow() * c * R**2,
+        load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyResult:
+    """One position of the journal. Frame and signs as in `exudyn_ehd.joint.model`; SI units.
+
+    Attributes
+    ----------
+    theta, z : (n,), (m,) arrays
+        Grid, rad and m.
+    pressure, gap : (n, m) arrays
+        Pa (gauge) and m.
+    unbroken : (n, m) bool array
+        Where the film is not cavitated.
+    force, moment : (3,) arrays
+        On the journal, moment about the joint origin.
+    minimum_gap, peak_pressure, peak_angle : float
+        m, Pa, rad; peak from parabolas through the largest vertex.
+    friction_torque, friction_torque_unbroken, friction_torque_bush : float
+        Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
+    power_loss, leakage, contact_load : float
+        W, m3/s out of both ends, N.
+    sommerfeld_number, attitude_angle : float
+        So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
+        rotation, rad.
+    status, iterations : Status, int
+    """
+
+    theta: np.ndarray
+    z: np.ndarray
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    minimum_gap: float
+    peak_pressure: float
+    peak_angle: float
+    friction_torque: float
+    friction_torque_unbroken: float
+    friction_torque_bush: float
+    power_loss: float
+    leakage: float
+    contact_load: float
+    sommerfeld_number: float
+    attitude_angle: float
+    status: Status
+    iterations: int
+
+
+def steady(
+    bearing: JournalBearing,
+    *,
+    speed: float,
+    eccentricity_ratio: float,
+    direction: float = 0.0,
+    tilt: tuple[float, float] = (0.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.0),
+    axial_speed: float = 0.0,
+) -> SteadyResult:
+    """Film at a prescribed position.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    speed : float
+        Relative spin omega, rad/s.
+    eccentricity_ratio : float
+        e/c at the mid-plane.
+    direction : float
+        Angle of the eccentricity from x, rad.
+    tilt : (float, float)
+        Slopes (bx, by) of the journal axis, rad.
+    velocity : (float, float)
+        dx/dt, dy/dt, m/s.
+    axial_speed : float
+        w, m/s.
+
+    Raises
+    ------
+    InputError
+        For values that are not numbers.
+    FilmError
+        If there is no film at this position.
+    """
+    e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
+    angle = require_number("steady: direction", direction, "rad")
+    b = require_vector("steady: tilt", tilt, 2, "rad")
+    v = require_vector("steady: velocity", velocity, 2, "m/s")
+    omega = require_number("steady: speed", speed, "rad/s")
+    w = require_number("steady: axial_speed", axial_speed, "m/s")
+    position = e * math.cos(angle), e * math.sin(angle)
+    start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
+    model = build_study_model(bearing, start)
+    return _result(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
+
+
+def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
+    evaluation = model.evaluate(motion)
+    if evaluation.status is not Status.CONVERGED:
+        gap = evaluation.quantities().get("minimum_gap", math.nan)
+        raise FilmError(
+            f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {evaluation.status.advice}"
+        )
+    return evaluation.wrench
+
+
+def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
+    wrench = _evaluate(model, motion, where)
+    q = model.quantities()
+    peak, angle, _ = model.refined_peak()
+    force = math.hypot(wrench[0], wrench[1])
+    reference = model.bearing.reference_force(motion[8])
+    eccentric = math.hypot(motion[0], motion[1]) > 0.0
+    attitude = math.nan
+    if eccentric and force > 0.0:
+        turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
+        attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
+    solver, grid = model.solver, model.grid
+    return SteadyResult(
+        theta=grid.x.copy(),
+        z=grid.z * grid.reference_length,
+        pressure=model.P * model.pressure_scale,
+        gap=solver.H * model.bearing.radial_clearance,
+        unbroken=solver.work.active.copy(),
+        force=wrench[:3].copy(),
+        moment=wrench[3:].copy(),
+        minimum_gap=q["minimum_gap"],
+        peak_pressure=peak,
+        peak_angle=angle,
+        friction_torque=q["friction_torque"],
+        friction_torque_unbroken=q["friction_torque_unbroken"],
+        friction_torque_bush=q["friction_torque_bush"],
+        power_loss=q["power_loss"],
+        leakage=q["leakage"],
+        contact_load=q["contact_load"],
+        sommerfeld_number=force / reference if reference > 0.0 else math.nan,
+        attitude_angle=attitude,
+        status=model.status,
+        iterations=model.iterations,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class EquilibriumResult:
+    """Equilibrium of an aligned or tilted journal under a steady load.
+
+    Attributes
+    ----------
+    position : (2,) array
+        x, y of the journal axis at the mid-plane, m.
+    eccentricity_ratio, attitude_angle : float
+        e/c; angle from the load to the eccentricity in the sense of rotation, rad.
+    stiffness, damping : (2, 2) arrays
+        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame.
+    whirl_ratio : float
+        Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
+    critical_mass : float
+        Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at any.
+    residual : float
+        Largest component of film force + load, divided by the load.
+    iterations : int
+        Film evaluations.
+    film : SteadyResult
+    """
+
+    position: np.ndarray
+    eccentricity_ratio: float
+    attitude_angle: float
+    stiffness: np.ndarray
+    damping: np.ndarray
+    whirl_ratio: float
+    critical_mass: float
+    residual: float
+    iterations: int
+    film: SteadyResult = field(repr=False)
+
+
+def equilibrium(
+    bearing: JournalBearing, *, speed: float, load: tuple[float, float], tilt: tuple[float, float] = (0.0, 0.0)
+) -> EquilibriumResult:
+    """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
+
+    Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
+    the bearing and costs nothing near the solution.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        With ``inlet=Periodic()``.
+    speed : float
+        Relative spin, rad/s, not 0.
+    load : (float, float)
+        Force on the journal in x and y, N, not zero.
+    tilt : (float, float)
+        Slopes (bx, by), held fixed, rad.
+
+    Raises
+    ------
+    InputError
+        For a zero load or speed, or an inlet that a moving journal can't have.
+    FilmError
+        If no equilibrium was found.
+    """
+    force = require_vector("equilibrium: load", load, 2, "N")
+    omega = require_number("equilibrium: speed", speed, "rad/s")
+    b = require_vector("equilibrium: tilt", tilt, 2, "rad")
+    size = float(np.hypot(*force))
+    if size == 0.0 or omega == 0.0:
+        raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    if isinstance(bearing.inlet, MaximumGap):
+        raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+    model = build_model(bearing)
+    motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
+    motion[:2] = _first_guess(bearing, omega, force, b)
+    residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
+    for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
+        wrench = _evaluate(model, motion, "equilibrium")
+        unbalance = wrench[:2] + force
+        tangent = model.tangent()
+        residual = float(np.max(np.abs(unbalance))) / size
+        if residual < max(LOAD_TOLERANCE, rounding):
+            break
+        motion[:2] += _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+    else:
+        raise FilmError(
+            f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
+            f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
+        )
+    K, C = -tangent[:2, :2], -tangent[:2, 4:6]
+    ratio, mass = whirl_threshold(K, C, abs(omega))
+    film = _result(model, motion, "equilibrium")
+    return EquilibriumResult(
+        position=motion[:2].copy(),
+        eccentricity_ratio=float(np.hypot(*motion[:2])) / bearing.radial_clearance,
+        attitude_angle=film.attitude_angle,
+        stiffness=K,
+        damping=C,
+        whirl_ratio=ratio,
+        critical_mass=mass,
+        residual=residual,
+        iterations=count,
+        film=film,
+    )
+
+
+def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
+    """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
+
+    The guess only saves steps. It stays inside the gap that the tilt leaves.
+    """
+    target = float(np.hypot(*force)) / bearing.reference_force(omega)
+    ratio = (0.5 * bearing.length / bearing.journal_radius) ** 2
+    room = 1.0 - 0.5 * bearing.length * float(np.hypot(*tilt)) / bearing.radial_clearance
+    lower, upper = 0.0, 1.0
+    for _ in range(40):
+        eps = 0.5 * (lower + upper)
+        s = 1.0 - eps * eps
+        short = ratio * eps / (2.0 * s * s) * math.sqrt(math.pi**2 * s + 16.0 * eps * eps)
+        long = 3.0 * eps * math.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps * eps) * s)
+        if short * long / (short + long + 1e-300) < target:
+            lower = eps
+        else:
+            upper = eps
+    eps = lower * max(room, 0.02)
+    angle = math.atan2(force[1], force[0]) + math.copysign(
+        math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps), omega
+    )
+    return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
+
+
+def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
+    if model.effects.limiter is not None:
+        longest = 0.3 * model.bearing.radial_clearance
+        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
+    c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
+    scale = 1.0
+    for s in (-half, half):
+        e = motion[:2] + s * motion[2:4]
+        allowed = float(np.hypot(*e)) + 0.6 * (c - float(np.hypot(*e)))
+        a, b, d = float(step @ step), float(e @ step), float(e @ e) - allowed**2
+        if a > 0.0:
+            scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
+    return scale * step
+
+
+def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
+    """Whirl ratio and critical mass of a rigid rotor on one bearing (half of a symmetric rotor on two).
+
+    With ``det(M s^2 + C s + K) = 0`` at ``s = i gamma omega``::
+
+        k = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy) / (Cxx + Cyy),
+        (gamma omega)^2 = ((k - Kxx)(k - Kyy) - Kxy Kyx) / (Cxx Cyy - Cxy Cyx),   M = k / (gamma omega)^2.
+
+    Source: J. W. Lund, J. Tribology 109 (1987) 37, derived again from the determinant.
+
+    Parameters
+    ----------
+    stiffness, damping : (2, 2) arrays
+    omega : float
+        Spin, rad/s, > 0.
+
+    Returns
+    -------
+    whirl_ratio, critical_mass : float
+        (nan, inf) if stable at any mass; (nan, 0) if k is not positive, that is unstable at any mass.
+    """
+    (kxx, kxy), (kyx, kyy) = stiffness
+    (cxx, cxy), (cyx, cyy) = damping
+    trace = cxx + cyy
+    if trace <= 0.0:
+        return math.nan, 0.0
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
+    if k <= 0.0:
+        return math.nan, 0.0
+    square = ((k - kxx) * (k - kyy) - kxy * kyx) / (cxx * cyy - cxy * cyx)
+    if square <= 0.0:
+        return math.nan, math.inf
+    return math.sqrt(square) / omega, k / square
