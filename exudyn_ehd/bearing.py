@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
@@ -12,6 +13,10 @@ from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.status import InputError, require_number, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.reduce import ModalBush
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -61,6 +66,8 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    bush : ModalBush, ANCFBush or None
+        Flexible bush, whose outer surface moves with the housing; None: a rigid bore.
 
     Raises
     ------
@@ -78,6 +85,7 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    bush: ModalBush | ANCFBush | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -98,6 +106,8 @@ class JournalBearing:
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
         self._check_pressures()
         self._check_clearance()
+        if self.bush is not None:
+            _check_bush(self)
 
     def _check_pressures(self) -> None:
         pc = self.cavitation.cavity_pressure
@@ -139,4 +149,28 @@ def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None
         names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
         raise InputError(
             f"JournalBearing.{argument} must be {names}, got {value!r}; options are objects, not strings or classes."
+        )
+
+
+def _check_bush(bearing: JournalBearing) -> None:
+    """Refuse a bush that is none, or whose bore is another than the film's."""
+    # imported here: a rigid bearing needs no solid
+    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.mesh import HollowCylinder
+    from exudyn_ehd.solid.reduce import ModalBush
+
+    _require_type("bush", bearing.bush, (ModalBush, ANCFBush, type(None)))
+    mesh = bearing.bush.mesh if bearing.bush is not None else None
+    if not isinstance(mesh, HollowCylinder):
+        return
+    radius = bearing.journal_radius + bearing.radial_clearance
+    if abs(mesh.inner_radius - radius) > 0.02 * radius:
+        raise InputError(
+            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got "
+            f"HollowCylinder.inner_radius = {mesh.inner_radius:g} m."
+        )
+    if mesh.length < bearing.length * (1.0 - 1e-9):
+        raise InputError(
+            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m, got HollowCylinder.length "
+            f"= {mesh.length:g} m."
         )

@@ -15,9 +15,19 @@ def collect_effects(bearing: JournalBearing) -> Effects:
     return Effects(limiter=wall, contacts=() if wall is None else (wall,))
 
 
+def _model(bearing: JournalBearing, start_angle: float) -> BearingModel:
+    effects = collect_effects(bearing)
+    if bearing.bush is None:
+        return BearingModel(bearing, start_angle=start_angle, effects=effects)
+    # imported here: a rigid bearing needs no solid
+    from exudyn_ehd.joint.bush import elastic_model
+
+    return elastic_model(bearing, start_angle, effects)
+
+
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
-    model = BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    model = _model(bearing, start_angle)
     compile_kernels(model)
     return model
 
@@ -37,6 +47,6 @@ def build_model(bearing: JournalBearing) -> BearingModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
             "concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
-    model = BearingModel(bearing, effects=collect_effects(bearing))
+    model = _model(bearing, 0.0)
     compile_kernels(model)
     return model

@@ -22,9 +22,12 @@ if TYPE_CHECKING:
 SIZE = 10
 
 
-def wrench_tangent(model: BearingModel) -> np.ndarray:
-    """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``."""
-    film, contact, dc, extra = _integral_gradients(model)
+def wrench_tangent(model: BearingModel, gradient: np.ndarray | None = None) -> np.ndarray:
+    """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``.
+
+    ``gradient`` (k, 10) of the integrals of `adjoint_rows`, if they are known already.
+    """
+    film, contact, dc, extra = _integral_gradients(model, film_gradient(model) if gradient is None else gradient)
     ds = film + contact
     x, y, bx, by = model.pose
     sc, ss, szc, szs = model.total
@@ -50,13 +53,12 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     return out
 
 
-def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), the contacts' S, C (10,), slopes' S (2, 10)."""
+def film_gradient(model: BearingModel) -> np.ndarray:
+    """Gradients (k, 10) of the film's integrals to (scaled pose, scaled rates, vx, vz)."""
     s, g = model.solver, model.grid
-    rows = _adjoint_rows(model)
-    k = rows.shape[0]
+    rows = adjoint_rows(model)
     lam = s.adjoint(rows)
-    gradient = np.zeros((k, SIZE))
+    gradient = np.zeros((rows.shape[0], SIZE))
     if is_plain(model):
         plain_pose_gradient(
             lam, s.system.linear_pressure, s.H, s.HF, model.cos_x, model.sin_x, model.cos_f, model.sin_f, g.z, s.vx, s.vz,
@@ -64,9 +66,16 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
         )  # fmt: skip
     else:
         field_gradient(model, lam, gradient)
+    return gradient
+
+
+def _integral_gradients(
+    model: BearingModel, gradient: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), the contacts' S, C (10,), slopes' S (2, 10)."""
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
     at = 4
-    if _shear_needs_adjoint(model):
+    if shear_needs_adjoint(model):
         dc = gradient[at]
         at += 1
     _add_couette_direct(model, dc)
@@ -83,28 +92,29 @@ def is_plain(model: BearingModel) -> bool:
     return model.limiter_fields is None and model.solver.flux is None and not model.solver.closure.conserves_mass
 
 
-def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
     if model.limiter_fields is not None:
-        _chain_limiter(model, sens)
+        chain_limiter(model, sens)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
     contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
     if sens.rate is not None:
         contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
+    return sens
 
 
-def _shear_needs_adjoint(model: BearingModel) -> bool:
+def shear_needs_adjoint(model: BearingModel) -> bool:
     return model.solver.closure.conserves_mass or model.effects.pressure_law is not None
 
 
-def _adjoint_rows(model: BearingModel) -> np.ndarray:
+def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
     s, g, w = model.solver, model.grid, model.solver.work
-    shear = _shear_needs_adjoint(model)
+    shear = shear_needs_adjoint(model)
     rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
     at = w.order[: w.count]
@@ -130,24 +140,29 @@ def _adjoint_rows(model: BearingModel) -> np.ndarray:
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
     """Add the direct gradient of C to the scaled pose and speeds, at fixed pressure and fill."""
+    if model.ratio_v is not None:
+        dc[8] += float(np.sum(model.grid.weight * model.share() / model.solver.H * model.ratio_v))
+    out = np.zeros((1, 4))
+    contract_pose(couette_field(model), model.cos_x, model.sin_x, model.grid.z, out)
+    dc[:4] += out[0]
+
+
+def couette_field(model: BearingModel) -> np.ndarray:
+    """dC/dH (1, n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
     gradient = np.empty((1, *g.shape))
-    if model.ratio is not None and model.ratio_h is not None and model.ratio_v is not None:
-        density = g.weight * model.share() / s.H
-        gradient[0] = density * (model.ratio_h - model.ratio / s.H)
-        dc[8] += float(np.sum(density * model.ratio_v))
+    if model.ratio is not None and model.ratio_h is not None:
+        gradient[0] = g.weight * model.share() / s.H * (model.ratio_h - model.ratio / s.H)
     elif s.closure.conserves_mass:
         gradient[0] = -g.weight * s.fill / s.H**2
     else:
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
     if model.limiter_fields is not None:
         gradient[0] *= model.limiter_fields.slope
-    out = np.zeros((1, 4))
-    contract_pose(gradient, model.cos_x, model.sin_x, g.z, out)
-    dc[:4] += out[0]
+    return gradient
 
 
-def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
+def chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
     f = model.limiter_fields
     assert f is not None
@@ -199,14 +214,14 @@ def _add_contact_friction(model: BearingModel, f: ContactFields, out: np.ndarray
         fields = np.array([c_field, s_field, c_field * g.z, s_field * g.z, slope])
         contract_pose(fields, model.cos_x, model.sin_x, g.z, grads)
         values = np.array([*f.integrals[k], f.normal[k]]) * contact.friction_coefficient * R**2
-        theta = _friction_row(R, 1.0, 0.0)
-        axial = _friction_row(R, 0.0, 1.0)
+        theta = friction_row(R, 1.0, 0.0)
+        axial = friction_row(R, 0.0, 1.0)
         out[:, :4] += (g_theta * theta + g_z * axial) @ grads * model.pose_scale
         out[:, 8] += (dg[0, 0] * theta + dg[1, 0] * axial) @ values
         out[:, 9] += (dg[0, 1] * theta + dg[1, 1] * axial) @ values
 
 
-def _friction_row(R: float, theta: float, axial: float) -> np.ndarray:
+def friction_row(R: float, theta: float, axial: float) -> np.ndarray:
     """Map (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for a slip direction."""
     out = np.zeros((6, 5))
     out[0, 1], out[1, 0], out[2, 4] = theta, -theta, -axial

@@ -141,6 +141,10 @@ class SteadyResult:
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    bore_displacement : (n, m) array or None
+        Of a flexible bore, m, positive outward; None for a rigid one.
+    bore_coordinates : (k,) array or None
+        Of a flexible bore, m.
     """
 
     theta: np.ndarray
@@ -163,6 +167,8 @@ class SteadyResult:
     attitude_angle: float
     status: Status
     iterations: int
+    bore_displacement: np.ndarray | None = None
+    bore_coordinates: np.ndarray | None = None
 
 
 def steady(
@@ -213,7 +219,7 @@ def steady(
 
 
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    evaluation = model.evaluate(motion)
+    evaluation = model.evaluate_steady(motion)
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -256,6 +262,7 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
+        **model.bore_fields(),
     )
 
 
@@ -335,7 +342,7 @@ def equilibrium(
     for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
         wrench = _evaluate(model, motion, "equilibrium")
         unbalance = wrench[:2] + force
-        tangent = model.tangent()
+        tangent = model.steady_tangent()
         residual = float(np.max(np.abs(unbalance))) / size
         if residual < max(LOAD_TOLERANCE, rounding):
             break

@@ -1,15 +1,18 @@
-"""A bush reduced to what its bore does under an oil film: static modes of film-like pressures.
+"""A bush reduced to what its bore does under an oil film: static modes of smooth pressures.
 
 With the outer surface fixed and small strain, a pressure p on the bore displaces it by ``H K^-1 H^T A p`` (H: radial bore
-displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The bore's compliance alone selects
-nothing: it falls only like one over the order of a pressure wave. Film pressures do: the sample is the positive part of the
-short bearing's pressure,
+displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The modes are the displacements
+under the pressures
 
-    p ~ -(dh/dtheta) / h^3 (1 - zeta^2),   h = 1 + (eps + tau zeta) cos(theta - phi),   zeta = 2 z / length,
+    p = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,   zeta = 2 z / length,
 
-at eccentricity ratios eps from moderate to high, aligned and tilted (tau), for loads all around (phi). The displacements under the
-sample span the candidates; their principal directions in the norm of the strain energy (proper orthogonal decomposition) are the
-modes, as many as keep the error of every sampled bore displacement below the tolerance times its largest value.
+with Legendre's polynomials P_l, and under uniform and axially linear pressure, which pressurised ends need. N and L are the smallest
+ones for which films of a short bearing,
+
+    p ~ -(dh/dtheta) / h^3 (1 - zeta^2),   h = 1 + (eps + tau zeta) cos(theta - phi),
+
+displace the reduced bore as they displace the mesh, within the tolerance in the root mean square. The sampled eccentricity ratios
+are moderate: where a rigid bearing's pressure is sharper, an elastic bore flattens it.
 
 The modes have no mass of their own: under a film the bush follows quasi-statically, and its mass belongs to the body that
 carries it.
@@ -19,16 +22,27 @@ Source of the idea: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature, face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
-from exudyn_ehd.status import InputError, require_integer, require_number
+from exudyn_ehd.status import InputError, require_number
+
+SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-4, 0.2
+LARGEST_WAVE, LARGEST_AXIAL = 24, 10
+# Eccentricity ratios, directions (rad) and tilts (share of the gap left at the loaded side) of the sampled films.
+SAMPLE_ECCENTRICITIES = (0.5, 0.7)
+SAMPLE_DIRECTIONS = (0.3, 1.1)
+SAMPLE_TILTS = (0.4, -0.4)
+
+Pressure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,20 +56,18 @@ class ModalBush:
     material : SaintVenantKirchhoff
         Its density is not used.
     tolerance : float
-        Largest error of a sampled bore displacement over its largest value, 1e-5 to 0.2.
+        Error of the bore's displacement under sampled films in the root mean square over the bore, over that displacement;
+        2e-4 to 0.2. The default takes TILTED modes for a bush as long as the bore's diameter (ALIGNED without tilt).
     tilted : bool
-        False leaves tilted films out of the sample, which halves the modes; for journals that stay parallel.
-    directions : int
-        Load directions of the sample.
+        False leaves out the modes that are odd in z: for journals that stay parallel.
     quadrature : Quadrature
         Of the stiffness.
     """
 
     mesh: HollowCylinder | BushMesh
     material: SaintVenantKirchhoff
-    tolerance: float = 0.01
+    tolerance: float = 0.02
     tilted: bool = True
-    directions: int = 24
     quadrature: Quadrature = IRONS14
 
     def __post_init__(self) -> None:
@@ -66,12 +78,12 @@ class ModalBush:
             )
         if not isinstance(self.material, SaintVenantKirchhoff):
             raise InputError(f"ModalBush.material must be a SaintVenantKirchhoff(...), got {self.material!r}.")
-        tolerance = require_number("ModalBush.tolerance", self.tolerance, at_least=1e-5)
-        if tolerance > 0.2:
+        tolerance = require_number("ModalBush.tolerance", self.tolerance, at_least=SMALLEST_TOLERANCE)
+        if tolerance > LARGEST_TOLERANCE:
             raise InputError(
-                f"ModalBush.tolerance must be within 1e-5 and 0.2, got {tolerance:g}; 0.01 is a good start."
+                f"ModalBush.tolerance must be within {SMALLEST_TOLERANCE:g} and {LARGEST_TOLERANCE:g}, got "
+                f"{tolerance:g}; 0.02 is a good start."
             )
-        require_integer("ModalBush.directions", self.directions, at_least=8)
         if not isinstance(self.tilted, bool):
             raise InputError(f"ModalBush.tilted must be True or False, got {self.tilted!r}.")
 
@@ -91,9 +103,9 @@ class BoreModes:
         Nodal displacements of every mode on the whole mesh, bush frame; the largest radial bore displacement of a mode is 1, so
         that its coordinate is in m.
     stiffness : ndarray, shape (k,)
-        Modal stiffness [N/m]; the modes are orthogonal.
+        Modal stiffness [N/m]; the modes are orthogonal in energy and on the bore, the softest come first.
     error : float
-        Largest error of a sampled bore displacement over its largest value.
+        Error under the sampled films, as in `ModalBush`.
     """
 
     mesh: BushMesh
@@ -114,46 +126,38 @@ class BoreModes:
         return np.ascontiguousarray((H @ bore.T).reshape(T.shape + (self.count,)))
 
 
-# Eccentricity ratios of the sampled films, and tilts as share of the gap left at the loaded side.
-SAMPLE_ECCENTRICITIES = (0.5, 0.8, 0.93)
-SAMPLE_TILTS = (0.6, -0.6)
-
-
 def bore_modes(bush: ModalBush) -> BoreModes:
-    """Compute the modes of a bush: one factorisation of its stiffness, one solve per sampled pressure.
+    """Compute the modes of a bush: one factorisation of its stiffness, one solve per pressure.
 
     Raises
     ------
     InputError
-        If the sample can't meet the tolerance with fewer modes than pressures.
+        If the tolerance takes more waves than the search allows.
     """
     mesh = bush.build_mesh()
+    bore, size = mesh.bore, len(mesh.nodes)
     solid = TotalLagrange(mesh=mesh, material=bush.material, quadrature=bush.quadrature)
-    loads = sample_loads(mesh.bore, len(mesh.nodes), bush.directions, bush.tilted)
-    free = np.ones(3 * len(mesh.nodes), dtype=bool)
+    free = np.ones(3 * size, dtype=bool)
     free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
     K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
-    factor = splu(K, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+    factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    pressures, orders = candidate_pressures(bush.tilted)
+    samples = sample_pressures(bush.tilted)
+    loads = pressure_loads(bore, size, [*pressures, *samples])
     solutions = np.zeros((loads.shape[1], free.size))
     solutions[:, free] = factor.solve(np.ascontiguousarray(loads[free])).T
-    radial = _radial(mesh.bore, solutions.reshape(len(solutions), -1, 3)[:, mesh.bore.nodes])
-    size = np.abs(radial).max(axis=1)
-    energy = (solutions @ loads) / np.outer(size, size)
-    values, vectors = eigh(0.5 * (energy + energy.T))
-    values, vectors = values[::-1], vectors[:, ::-1]
-    keep, error = _enough(radial / size[:, None], vectors, bush.tolerance)
-    if keep == 0:
-        raise InputError(
-            f"ModalBush.tolerance {bush.tolerance:g} can't be met with {len(values)} sampled pressures (error {error:.2g}); "
-            "raise directions."
-        )
-    coefficients = vectors[:, :keep].T / size
-    shape = coefficients @ radial
-    peak = shape[np.arange(keep), np.argmax(np.abs(shape), axis=1)]
+    radial = _radial(bore, solutions.reshape(len(solutions), -1, 3)[:, bore.nodes])
+    compliance = solutions @ loads
+    chosen, error = _enough(compliance, radial, orders, bush)
+    part = radial[chosen]
+    vectors = eigh(part @ part.T, compliance[np.ix_(chosen, chosen)])[1][:, ::-1]
+    shape = vectors.T @ part
+    peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
+    coefficients = vectors.T / peak[:, None]
     return BoreModes(
         mesh=mesh,
-        displacements=(coefficients / peak[:, None] @ solutions).reshape(keep, -1, 3),
-        stiffness=values[:keep] / peak**2,
+        displacements=(coefficients @ solutions[chosen]).reshape(len(chosen), -1, 3),
+        stiffness=1.0 / peak**2,
         error=error,
     )
 
@@ -164,47 +168,84 @@ def _radial(bore: Surface, displacements: np.ndarray) -> np.ndarray:
     return np.einsum("kai,ai->ka", displacements[..., :2], direction)
 
 
-def _enough(radial: np.ndarray, vectors: np.ndarray, tolerance: float) -> tuple[int, float]:
-    """Smallest number of principal directions that meets the tolerance, and its error; 0 if all are needed.
+def _enough(
+    compliance: np.ndarray, radial: np.ndarray, orders: np.ndarray, bush: ModalBush
+) -> tuple[np.ndarray, float]:
+    """Indices of the candidates up to the smallest orders (N, L) that meet the tolerance, and the error."""
+    count = len(orders)
+    exact = radial[count:]
+    scale = np.linalg.norm(exact, axis=1)
+    best: tuple[np.ndarray, float] | None = None
+    for axial in range(0, LARGEST_AXIAL + 1, 1 if bush.tilted else 2):
+        for wave in range(2, LARGEST_WAVE + 1):
+            chosen = np.flatnonzero((orders[:, 0] <= wave) & (orders[:, 1] <= axial))
+            if best is not None and len(chosen) >= len(best[0]):
+                break
+            part = np.linalg.solve(compliance[np.ix_(chosen, chosen)], compliance[chosen, count:])
+            error = float((np.linalg.norm(part.T @ radial[chosen] - exact, axis=1) / scale).max())
+            if error <= bush.tolerance:
+                best = chosen, error
+                break
+    if best is None:
+        raise InputError(
+            f"ModalBush.tolerance {bush.tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial order "
+            f"{LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
+        )
+    return best
 
-    The projection of snapshot t in the energy norm is ``sum_k vectors[t, k] (vectors[:, k] . radial)``.
-    """
-    low, high = 1, len(vectors) - 1
 
-    def worst(count: int) -> float:
-        V = vectors[:, :count]
-        return float(np.abs(V @ (V.T @ radial) - radial).max())
+def candidate_pressures(tilted: bool) -> tuple[list[Pressure], np.ndarray]:
+    """Pressures of the modes and their orders (k, 2) in theta and z; the axially linear and uniform ones come first."""
 
-    if worst(high) > tolerance:
-        return 0, worst(high)
-    while low < high:
-        middle = (low + high) // 2
-        if worst(middle) <= tolerance:
-            high = middle
-        else:
-            low = middle + 1
-    return low, worst(low)
+    def wave(n: int, axial: int, phase: float) -> Pressure:
+        unit = np.eye(LARGEST_AXIAL + 1)[axial]
+        return lambda theta, zeta: np.cos(n * theta - phase) * legval(zeta, unit) * (1.0 - zeta**2)
+
+    pressures: list[Pressure] = [lambda theta, zeta: np.ones_like(zeta)]
+    orders = [(0, 0)]
+    if tilted:
+        pressures.append(lambda theta, zeta: zeta)
+        orders.append((0, 1))
+    for axial in range(0, LARGEST_AXIAL + 1, 1 if tilted else 2):
+        for n in range(LARGEST_WAVE + 1):
+            for phase in (0.0, 0.5 * np.pi)[: 2 if n else 1]:
+                pressures.append(wave(n, axial, phase))
+                orders.append((n, axial))
+    return pressures, np.array(orders)
 
 
-def sample_loads(bore: Surface, nodes: int, directions: int, tilted: bool, points: int = 4) -> np.ndarray:
-    """Consistent nodal forces, radially outward, of the sampled film pressures.
+def sample_pressures(tilted: bool) -> list[Pressure]:
+    """Films that judge the modes."""
+
+    def film(eps: float, share: float, phi: float) -> Pressure:
+        def pressure(theta: np.ndarray, zeta: np.ndarray) -> np.ndarray:
+            local = eps + share * (1.0 - eps) * zeta
+            h = 1.0 + local * np.cos(theta - phi)
+            return np.maximum(local * np.sin(theta - phi), 0.0) / h**3 * (1.0 - zeta**2)
+
+        return pressure
+
+    tilts = (0.0, *SAMPLE_TILTS) if tilted else (0.0,)
+    return [film(e, t, d) for e in SAMPLE_ECCENTRICITIES for t in tilts for d in SAMPLE_DIRECTIONS]
+
+
+def pressure_loads(bore: Surface, nodes: int, pressures: list[Pressure], points: int = 5) -> np.ndarray:
+    """Consistent nodal forces, radially outward, of pressures on a bore.
 
     Parameters
     ----------
     bore : Surface
     nodes : int
         Number of nodes of the mesh.
-    directions : int
-        Load directions.
-    tilted : bool
-        With tilted films.
+    pressures : list of functions (theta [rad], zeta) -> p [Pa]
+        zeta runs from -1 to 1 over the bore's length.
     points : int
         Gauss points per face and direction.
 
     Returns
     -------
     ndarray, shape (3 nodes, k)
-        [N] for pressures of 1 Pa at their peaks.
+        [N]
     """
     natural, weight = face_gauss(points)
     value, slope = face_shapes(natural)
@@ -212,23 +253,11 @@ def sample_loads(bore: Surface, nodes: int, directions: int, tilted: bool, point
     x = np.einsum("qa,fai->fqi", value, corner)
     tangent = np.einsum("qar,fai->fqri", slope, corner)
     area = np.linalg.norm(np.cross(tangent[:, :, 0], tangent[:, :, 1]), axis=2) * weight
-    theta, zeta = np.arctan2(x[..., 1], x[..., 0]), 2.0 * x[..., 2] / np.ptp(bore.z)
-    pressure = sample_pressures(theta.ravel(), zeta.ravel(), directions, tilted).reshape(area.shape + (-1,))
+    theta = np.arctan2(x[..., 1], x[..., 0])
+    zeta = (2.0 * x[..., 2] - bore.z.min() - bore.z.max()) / np.ptp(bore.z)
     direction = x[..., :2] / np.linalg.norm(x[..., :2], axis=2)[..., None]
-    share = np.einsum("fq,fqk,fqi,qa->faik", area, pressure, direction, value, optimize=True)
-    loads = np.zeros((nodes, 3, share.shape[-1]))
-    np.add.at(loads[:, :2], bore.faces, share)
+    loads = np.zeros((nodes, 3, len(pressures)))
+    for k, pressure in enumerate(pressures):
+        share = np.einsum("fq,fqi,qa->fai", area * pressure(theta, zeta), direction, value)
+        np.add.at(loads[:, :2, k], bore.faces, share)
     return loads.reshape(3 * nodes, -1)
-
-
-def sample_pressures(theta: np.ndarray, zeta: np.ndarray, directions: int, tilted: bool) -> np.ndarray:
-    """Sampled pressures at points theta [rad], zeta = 2 z / length, shape (n, k); each with peak 1 over the points."""
-    columns = []
-    for eps in SAMPLE_ECCENTRICITIES:
-        for share in (0.0, *SAMPLE_TILTS) if tilted else (0.0,):
-            local = eps + share * (1.0 - eps) * zeta
-            for phi in 2.0 * np.pi * np.arange(directions) / directions:
-                h = 1.0 + local * np.cos(theta - phi)
-                p = np.maximum(local * np.sin(theta - phi), 0.0) / h**3 * (1.0 - zeta**2)
-                columns.append(p / p.max())
-    return np.stack(columns, axis=1)

@@ -1,0 +1,52 @@
+"""From a bush's description to a bearing model with a flexible bore."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.linalg import splu
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.bore import ModalBore, NodalBore
+from exudyn_ehd.joint.elastic import ElasticBearingModel
+from exudyn_ehd.joint.model import Effects
+from exudyn_ehd.joint.settle import DenseElasticity, ModalElasticity
+from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.reduce import ModalBush, bore_modes
+
+
+def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
+    """Model of a bearing whose ``bush`` is not None."""
+    bush = bearing.bush
+    if isinstance(bush, ModalBush):
+        modes = bore_modes(bush)
+        return ElasticBearingModel(
+            bearing,
+            lambda grid: ModalBore(modes, grid),
+            elasticity=ModalElasticity(modes.stiffness),
+            start_angle=start_angle,
+            effects=effects,
+        )
+    assert isinstance(bush, ANCFBush)
+    mesh = bush.build_mesh()
+    return ElasticBearingModel(
+        bearing,
+        lambda grid: NodalBore(mesh.bore, grid),
+        elasticity=DenseElasticity(lambda: bore_stiffness(bush)),
+        start_angle=start_angle,
+        effects=effects,
+    )
+
+
+def bore_stiffness(bush: ANCFBush) -> np.ndarray:
+    """Stiffness (k, k) of a mesh at rest condensed on the x and y displacements of its bore nodes, N/m; outer surface fixed."""
+    mesh = bush.build_mesh()
+    solid = bush.solid(mesh)
+    free = np.ones(3 * len(mesh.nodes), dtype=bool)
+    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
+    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
+    factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    places = (np.cumsum(free) - 1)[(3 * mesh.bore.nodes[:, None] + np.arange(2)).ravel()]
+    unit = np.zeros((K.shape[0], len(places)))
+    unit[places, np.arange(len(places))] = 1.0
+    stiffness = np.linalg.inv(factor.solve(unit)[places])
+    return 0.5 * (stiffness + stiffness.T)
