@@ -12,6 +12,7 @@ from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
+from exudyn_ehd.film.steps import SteppedGap
 from exudyn_ehd.joint.build import build_model, build_study_model
 from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
@@ -39,6 +40,10 @@ class FilmResult:
         Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
     load : float
         Integral of the pressure, N.
+    fill : (n, m) array
+        Film fraction; ones for closures that do not conserve mass.
+    content : (n, m) array
+        fill times gap, m: the ``history`` of the next step.
     """
 
     status: Status
@@ -48,6 +53,8 @@ class FilmResult:
     unbroken: np.ndarray
     inflow: np.ndarray
     load: float
+    fill: np.ndarray
+    content: np.ndarray
 
 
 def solve_film(
@@ -59,6 +66,9 @@ def solve_film(
     gap_rate: np.ndarray | None = None,
     cavitation: Closure | None = None,
     boundary: float | np.ndarray = 0.0,
+    stepped_gap: bool = False,
+    history: np.ndarray | None = None,
+    step: float = 0.0,
 ) -> FilmResult:
     """Solve the Reynolds equation for any gap, on a bearing's ring or on a slider.
 
@@ -67,7 +77,7 @@ def solve_film(
     grid : FilmGrid
         From `bearing_grid` or `slider_grid`.
     gap : (n, m) array
-        Film thickness at the vertices, m, > 0. On links between columns the mean of both neighbours is used.
+        Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
@@ -77,6 +87,14 @@ def solve_film(
         Default `SwiftStieber`.
     boundary : float or (n, m) array
         Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
+    stepped_gap : bool
+        True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
+        `exudyn_ehd.film.steps`.
+    history : (n, m) array, optional
+        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its squeeze, so
+        that ``gap_rate`` is not needed. None: the film is steady.
+    step : float
+        Time since ``history``, s, > 0 with it.
 
     Raises
     ------
@@ -86,24 +104,29 @@ def solve_film(
         If the film could not be solved.
     """
     gap = np.asarray(gap, dtype=float)
-    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
-        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
-    if gap_rate is not None and np.shape(gap_rate) != grid.shape:
-        raise InputError(f"solve_film: gap_rate must have shape {grid.shape}, got {np.shape(gap_rate)}.")
     closure = SwiftStieber() if cavitation is None else cavitation
+    _check_film(grid, gap, gap_rate, closure, history, step)
     speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
     c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
     scale = 12.0 * lubricant.viscosity * R**2 / c**2
-    solver = FilmSolver(grid, closure, squeeze=gap_rate is not None)
-    solver.H[:] = gap / c
-    solver.HF[:] = 0.5 * (solver.H + np.roll(solver.H, -1, axis=0))
-    if gap_rate is not None:
-        solver.H_t[:] = np.asarray(gap_rate) / c
+    H = gap / c
+    rate, mass = None if gap_rate is None else np.asarray(gap_rate) / c, None
+    if history is not None:
+        mass = np.asarray(history) / c
+        rate = (H - mass) / step
+    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=(SteppedGap(H),) if stepped_gap else ())
+    solver.H[:] = H
+    solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
+    if rate is not None:
+        solver.H_t[:] = rate
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
-    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale)
+    status, iterations = solver.solve(
+        speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale, mass, step
+    )
     if status is not Status.CONVERGED:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
+    fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
     return FilmResult(
         status=status,
         iterations=iterations,
@@ -112,7 +135,36 @@ def solve_film(
         unbroken=solver.work.active.copy(),
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
+        fill=fill,
+        content=fill * gap,
     )
+
+
+def _check_film(
+    grid: FilmGrid,
+    gap: np.ndarray,
+    gap_rate: np.ndarray | None,
+    closure: Closure,
+    history: np.ndarray | None,
+    step: float,
+) -> None:
+    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
+        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
+    for name, field_ in (("gap_rate", gap_rate), ("history", history)):
+        if field_ is not None and np.shape(field_) != grid.shape:
+            raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {np.shape(field_)}.")
+    if history is None:
+        return
+    require_number("solve_film: step", step, "s", above=0.0, hint="it is the time since the history.")
+    if not closure.conserves_mass:
+        raise InputError(
+            f"solve_film: history is for closures that conserve mass, got {type(closure).__name__}; use "
+            "cavitation=ElrodAdams(...), or gap_rate for the squeeze of a film without memory."
+        )
+    if gap_rate is not None:
+        raise InputError(
+            "solve_film: give history or gap_rate, not both: the film's change since history is its squeeze."
+        )
 
 
 @dataclass(frozen=True, eq=False)
