@@ -239,7 +239,8 @@ def steady(
     tilt : (float, float)
         Slopes (bx, by) of the journal axis, rad.
     velocity : (float, float)
-        dx/dt, dy/dt, m/s.
+        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets this
+        velocity, so that full parts are squeezed at once and cavities keep their oil content.
     axial_speed : float
         w, m/s.
 
@@ -256,14 +257,35 @@ def steady(
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
+    require_oil(bearing, "steady", w)
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
     model = build_study_model(bearing, start)
     return _result(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
 
 
+def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
+    """Raise `InputError` if a steady mass-conserving film has no source of oil and would starve to nothing."""
+    closure = bearing.cavitation
+    if not closure.conserves_mass or axial_speed != 0.0 or isinstance(bearing.inlet, MaximumGap) or bearing.supply:
+        return
+    if max(bearing.end_pressures) <= closure.cavity_pressure:
+        raise InputError(
+            f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity pressure "
+            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give the bearing "
+            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or ElrodAdams(cavity_pressure=-1e5) below "
+            "ambient pressure."
+        )
+
+
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    evaluation = model.evaluate(motion)
+    history = None
+    if model.remembers and np.any(motion[4:8]):
+        at_rest = motion.copy()
+        at_rest[4:8] = 0.0
+        _evaluate(model, at_rest, where)
+        history = model.history()
+    evaluation = model.evaluate(motion, history)
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -352,6 +374,10 @@ def equilibrium(
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
     the bearing and costs nothing near the solution.
 
+    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping that of a
+    sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion. A transient
+    joint has what lies between.
+
     Parameters
     ----------
     bearing : JournalBearing
@@ -378,6 +404,7 @@ def equilibrium(
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+    require_oil(bearing, "equilibrium")
     model = build_model(bearing)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
@@ -395,7 +422,7 @@ def equilibrium(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
             f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
-    K, C = -tangent[:2, :2], -tangent[:2, 4:6]
+    K, C = -tangent[:2, :2], -_rate_tangent(model, motion, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = _result(model, motion, "equilibrium")
     return EquilibriumResult(
@@ -410,6 +437,13 @@ def equilibrium(
         iterations=count,
         film=film,
     )
+
+
+def _rate_tangent(model: BearingModel, motion: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+    """Tangent whose rate columns hold for a sudden velocity in the steady film; see `equilibrium`."""
+    if not model.remembers:
+        return tangent
+    return model.evaluate(motion, model.history()).tangent()
 
 
 def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
