@@ -22,12 +22,15 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "AxialGroove",
+    "CircumferentialGroove",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",
@@ -36,11 +39,13 @@ __all__ = [
     "FiniteLength",
     "FullSommerfeld",
     "Gumbel",
+    "Hole",
     "InputError",
     "JournalBearing",
     "Lubricant",
     "MaximumGap",
     "Periodic",
+    "Pocket",
     "RegularisedWall",
     "ShortBearing",
     "Status",

@@ -11,6 +11,7 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -61,6 +62,8 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket
+        Areas with a prescribed supply pressure; empty: none.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    supply: tuple[SupplyArea, ...] = ()
 
     def __post_init__(self) -> None:
         require_number(
@@ -96,8 +100,25 @@ class JournalBearing:
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
+        self._check_supply()
         self._check_pressures()
         self._check_clearance()
+
+    def _check_supply(self) -> None:
+        if self.supply == ():
+            return
+        check_supply(self.supply, self.journal_radius, self.length, self.film)
+        if isinstance(self.inlet, MaximumGap):
+            raise InputError(
+                "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its grooves; use "
+                "inlet=Periodic()."
+            )
+        lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
+        if pc > lowest:
+            raise InputError(
+                f"JournalBearing.supply: pressures must not be below {type(self.cavitation).__name__}.cavity_pressure "
+                f"({pc:g} Pa), got {lowest:g} Pa; both are gauge pressures."
+            )
 
     def _check_pressures(self) -> None:
         pc = self.cavitation.cavity_pressure

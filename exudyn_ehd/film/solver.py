@@ -145,6 +145,12 @@ class FilmSolver:
         """Drop the warm start; the next solution starts from a coarser grid."""
         self.work.warm = False
 
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        if self.coarse is not None:
+            self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
+            self.coarse.refresh_fixed()
+
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:

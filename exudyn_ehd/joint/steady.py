@@ -187,6 +187,8 @@ class SteadyResult:
         Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
     power_loss, leakage, contact_load : float
         W, m3/s out of both ends, N.
+    supply_flows : (k,) array
+        m3/s out of every area of ``bearing.supply``.
     sommerfeld_number, attitude_angle : float
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
@@ -209,6 +211,7 @@ class SteadyResult:
     power_loss: float
     leakage: float
     contact_load: float
+    supply_flows: np.ndarray
     sommerfeld_number: float
     attitude_angle: float
     status: Status
@@ -324,6 +327,7 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
+        supply_flows=model.supply_flows(),
         sommerfeld_number=force / reference if reference > 0.0 else math.nan,
         attitude_angle=attitude,
         status=model.status,
