@@ -216,6 +216,8 @@ class FilmSolver:
     def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
         coarse = self.coarse
         assert coarse is not None
+        if self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any():
+            return 0  # the coarser grid has lost the supply and would starve
         coarse.H[:] = self.H[::2, ::2]
         coarse.HF[:] = self.H[1::2, ::2]
         coarse.H_t[:] = self.H_t[::2, ::2]
