@@ -18,6 +18,7 @@ taken about the joint's origin.
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
@@ -31,6 +32,7 @@ __version__ = "0.1.0"
 __all__ = [
     "AxialGroove",
     "CircumferentialGroove",
+    "ClassicSOR",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",

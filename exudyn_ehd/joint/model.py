@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.choice import film_solver
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
@@ -29,7 +30,6 @@ from exudyn_ehd.film.loads import (
     pressure_integrals,
     refined_peak,
 )
-from exudyn_ehd.film.solver import FilmSolver
 from exudyn_ehd.film.supply import SupplyMap
 from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
 from exudyn_ehd.joint.gradients import wrench_tangent
@@ -146,10 +146,9 @@ class BearingModel:
         )  # fmt: skip
         self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
         self.needs_spin = self.supply is not None and self.supply.rotating
-        self.solver = FilmSolver(
-            self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
-            circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
-        )  # fmt: skip
+        self.solver = film_solver(
+            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux
+        )
         self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
         self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
         self.half_length = 0.5 * bearing.length / R
