@@ -36,6 +36,8 @@ from exudyn_ehd.film.solver import FilmSolver, Sensitivities
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
 LARGEST_SWEEPS = 20_000
+# Beyond this sum of |P| (1/s) the sweeps have diverged.
+LARGEST_SUM = 1e100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -189,10 +191,10 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
                 P[i, j] += step
                 change += abs(step)
                 total += abs(P[i, j])
+        if not total < LARGEST_SUM:
+            return -sweep
         if change <= tolerance * total:
             return sweep
-        if not np.isfinite(total):
-            return -sweep
     return -largest_sweeps
 
 
