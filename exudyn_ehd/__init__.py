@@ -22,6 +22,7 @@ from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
+from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
@@ -44,6 +45,7 @@ __all__ = [
     "Hole",
     "InputError",
     "JournalBearing",
+    "LongBearing",
     "Lubricant",
     "MaximumGap",
     "Periodic",

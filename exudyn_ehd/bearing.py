@@ -12,6 +12,7 @@ from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
+from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.status import InputError, require_number, require_vector
@@ -51,7 +52,7 @@ class JournalBearing:
     radial_clearance : float
         c = bore radius - journal radius, m. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
-    film : FiniteLength, ShortBearing or ClassicSOR
+    film : FiniteLength, ShortBearing, LongBearing or ClassicSOR
         Film model and grid.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
         What happens below the cavity pressure.
@@ -94,14 +95,15 @@ class JournalBearing:
             hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
         )  # fmt: skip
         _require_type("lubricant", self.lubricant, (Lubricant,))
-        _require_type("film", self.film, (FiniteLength, ShortBearing, ClassicSOR))
+        _require_type("film", self.film, (FiniteLength, ShortBearing, LongBearing, ClassicSOR))
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
-        check_film(self.film, self.cavitation)
+        open_ring = isinstance(self.inlet, MaximumGap)
+        check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()

@@ -19,9 +19,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.choice import film_solver
+from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
-from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
@@ -140,10 +139,9 @@ class BearingModel:
         R, c = bearing.journal_radius, bearing.radial_clearance
         self.bearing = bearing
         self.effects = Effects() if effects is None else effects
-        self.grid = bearing_grid(
-            R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
-            start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
-        )  # fmt: skip
+        self.grid = film_grid(
+            bearing.film, R, bearing.length, start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap)
+        )
         self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
         self.needs_spin = self.supply is not None and self.supply.rotating
         self.solver = film_solver(
@@ -489,6 +487,8 @@ class BearingModel:
 
     def _end_flows(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
+        if not g.link_z.any():
+            return 0.0, 0.0
         if s.closure.conserves_mass:
             inflow = s.inflow()
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
