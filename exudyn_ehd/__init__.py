@@ -22,6 +22,7 @@ from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
+from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
@@ -43,6 +44,7 @@ __all__ = [
     "FullSommerfeld",
     "Gumbel",
     "Hole",
+    "ImpedanceMap",
     "InputError",
     "JournalBearing",
     "LongBearing",

@@ -6,12 +6,13 @@ from exudyn_ehd.film.cavitation import Gumbel
 from exudyn_ehd.film.classic import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.flux import FluxEffect
 from exudyn_ehd.film.grid import FilmGrid, FiniteLength, ShortBearing, bearing_grid
+from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.film.long_bearing import LongBearing, LongSolver, long_bearing_grid
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.supply import AxialGroove, SupplyArea
 from exudyn_ehd.status import InputError
 
-Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing
+Film = FiniteLength | ShortBearing | ClassicSOR | LongBearing | ImpedanceMap
 
 
 def check_film(

@@ -13,7 +13,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.steps import SteppedGap
-from exudyn_ehd.joint.build import build_model, build_study_model
+from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
@@ -409,7 +409,7 @@ def equilibrium(
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "equilibrium")
-    model = build_model(bearing)
+    model = build_study_model(bearing, 0.0)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
     residual = math.inf
