@@ -22,10 +22,14 @@ from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
+from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
@@ -70,8 +74,11 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "ANCFBush",
+    "AxialGroove",
     "BushMesh",
     "CarriedOuter",
+    "CircumferentialGroove",
+    "ClassicSOR",
     "ConfigureSolver",
     "CreateFlexibleBush",
     "CreateLubricatedJoint",
@@ -91,15 +98,19 @@ __all__ = [
     "FullSommerfeld",
     "Gumbel",
     "Held",
+    "Hole",
     "HollowCylinder",
+    "ImpedanceMap",
     "InputError",
     "JointHistory",
     "JournalBearing",
     "LineLoad",
+    "LongBearing",
     "Lubricant",
     "LubricatedJoint",
     "MaximumGap",
     "Periodic",
+    "Pocket",
     "Quantity",
     "Rayleigh",
     "RegularisedWall",

@@ -145,6 +145,12 @@ class FilmSolver:
         """Drop the warm start; the next solution starts from a coarser grid."""
         self.work.warm = False
 
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        if self.coarse is not None:
+            self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
+            self.coarse.refresh_fixed()
+
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
@@ -210,6 +216,8 @@ class FilmSolver:
     def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
         coarse = self.coarse
         assert coarse is not None
+        if self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any():
+            return 0  # the coarser grid has lost the supply and would starve
         coarse.H[:] = self.H[::2, ::2]
         coarse.HF[:] = self.H[1::2, ::2]
         coarse.H_t[:] = self.H_t[::2, ::2]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
+from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.joint.impedance import ImpedanceModel
 from exudyn_ehd.joint.model import BearingModel, Effects
 from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
@@ -22,7 +24,7 @@ def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingMod
     return model
 
 
-def build_model(bearing: JournalBearing) -> BearingModel:
+def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
     """Model of a bearing for a moving journal.
 
     Raises
@@ -37,6 +39,8 @@ def build_model(bearing: JournalBearing) -> BearingModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
             "concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
+    if isinstance(bearing.film, ImpedanceMap):
+        return ImpedanceModel(bearing)
     model = BearingModel(bearing, effects=collect_effects(bearing))
     compile_kernels(model)
     return model

@@ -19,8 +19,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
-from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
@@ -28,7 +28,7 @@ from exudyn_ehd.film.loads import (
     pressure_integrals,
     refined_peak,
 )
-from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.film.supply import SupplyMap
 from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
 from exudyn_ehd.joint.gradients import wrench_tangent
 from exudyn_ehd.status import Status
@@ -138,14 +138,14 @@ class BearingModel:
         R, c = bearing.journal_radius, bearing.radial_clearance
         self.bearing = bearing
         self.effects = Effects() if effects is None else effects
-        self.grid = bearing_grid(
-            R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
-            start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
-        )  # fmt: skip
-        self.solver = FilmSolver(
-            self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
-            circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
-        )  # fmt: skip
+        self.grid = film_grid(
+            bearing.film, R, bearing.length, start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap)
+        )
+        self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
+        self.needs_spin = self.supply is not None and self.supply.rotating
+        self.solver = film_solver(
+            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux
+        )
         self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
         self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
         self.half_length = 0.5 * bearing.length / R
@@ -205,7 +205,9 @@ class BearingModel:
             return None
         return History(mass=self.solver.fill * self.solver.H)
 
-    def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> Evaluation:
         """Evaluate the film.
 
         Parameters
@@ -216,6 +218,9 @@ class BearingModel:
             At the last accepted step; None asks for the steady film.
         step : float
             Time since then, s; 0 asks for the force at that very instant.
+        spin : float
+            Angle of the journal against the housing about the bearing's axis, rad; only read if ``needs_spin`` (supply areas in
+            the journal).
 
         Returns
         -------
@@ -226,6 +231,8 @@ class BearingModel:
         self._set_motion(motion)
         self.wrench = np.full(6, np.nan)
         self.iterations = 0
+        if self.supply is not None and self.supply.turn(spin):
+            self.solver.refresh_fixed()
         self.status = self._solve(history, step)
         if self.status is Status.CONVERGED:
             self.wrench = self._loads()
@@ -287,6 +294,9 @@ class BearingModel:
             ends, cavity = known[:2], float(known[2])
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends
+        if self.supply is not None:
+            fed = self.supply.pressures()
+            self.supply.prescribe((fed if law is None else law.transform(fed)) / self.pressure_scale, P)
         mass = history.mass if history is not None and self.remembers else None
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
@@ -427,7 +437,8 @@ class BearingModel:
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about O).
+            by contact), ``contact_torque`` (Nm, its friction on the journal about O); with supply areas also ``supply_flow``
+            (m3/s, out of all of them).
         """
         c = self.bearing.radial_clearance
         out = {
@@ -459,7 +470,15 @@ class BearingModel:
             "contact_load": math.hypot(load[0], load[1]),
             "contact_torque": float(self.contact_wrench[5]),
         }
+        if self.supply is not None:
+            out["supply_flow"] = float(self.supply_flows().sum())
         return out
+
+    def supply_flows(self) -> np.ndarray:
+        """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
+        if self.supply is None:
+            return np.zeros(0)
+        return self.supply.flows(self.solver.inflow()) * self.bearing.radial_clearance * self.grid.reference_length**2
 
     def _contact_torque(self) -> float:
         """Contact friction on the journal about its own axis."""
@@ -468,6 +487,8 @@ class BearingModel:
 
     def _end_flows(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
+        if not g.link_z.any():
+            return 0.0, 0.0
         if s.closure.conserves_mass:
             inflow = s.inflow()
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
