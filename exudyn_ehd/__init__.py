@@ -22,15 +22,23 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.oils import oil
+from exudyn_ehd.film.shear import CarreauShear
+from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "BarusPressure",
+    "CarreauShear",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",
+    "FilmEnergy",
     "FilmError",
     "FilmResult",
     "FiniteLength",
@@ -39,15 +47,21 @@ __all__ = [
     "InputError",
     "JournalBearing",
     "Lubricant",
+    "LumpedThermal",
     "MaximumGap",
     "Periodic",
     "RegularisedWall",
+    "ReynoldsTemperature",
+    "RoelandsPressure",
     "ShortBearing",
     "Status",
     "SteadyResult",
     "SwiftStieber",
+    "VogelTemperature",
+    "WaltherTemperature",
     "bearing_grid",
     "equilibrium",
+    "oil",
     "slider_grid",
     "solve_film",
     "steady",

@@ -11,6 +11,7 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -61,6 +62,8 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    thermal : LumpedThermal, FilmEnergy or None
+        Temperature of the film; None: isothermal.
 
     Raises
     ------
@@ -78,6 +81,7 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    thermal: LumpedThermal | FilmEnergy | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -93,6 +97,7 @@ class JournalBearing:
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")

@@ -30,7 +30,16 @@ from exudyn_ehd.film.loads import (
     refined_peak,
 )
 from exudyn_ehd.film.solver import FilmSolver
-from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
+from exudyn_ehd.joint.effects import (
+    Contact,
+    FluxEffect,
+    GapLimiter,
+    GapTerm,
+    History,
+    PressureLaw,
+    ShearFactor,
+    ThermalEffect,
+)
 from exudyn_ehd.joint.gradients import wrench_tangent
 from exudyn_ehd.status import Status
 
@@ -49,6 +58,7 @@ class Effects:
     flux : tuple of FluxEffect
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
+    thermal : ThermalEffect or None
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -57,6 +67,7 @@ class Effects:
     flux: tuple[FluxEffect, ...] = ()
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
+    thermal: ThermalEffect | None = None
 
 
 @dataclass(eq=False)
@@ -162,6 +173,8 @@ class BearingModel:
         self.ratio_h: np.ndarray | None = None
         self.ratio_v: np.ndarray | None = None
         self.P_q: np.ndarray | None = None
+        self.flow_scale = c * R**2
+        self.step = 0.0
         self.set_viscosity_ratio(1.0)
         self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
         self.serial = 0
@@ -184,11 +197,13 @@ class BearingModel:
 
     def initial_history(self, motion: np.ndarray) -> History | None:
         """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
+        thermal = self.effects.thermal
+        temperature = None if thermal is None else thermal.initial_temperature(self)
         if not self.remembers:
-            return None
+            return None if thermal is None else History(temperature=temperature)
         self._set_motion(motion)
         self._set_gap(None)
-        return History(mass=self.solver.H.copy())
+        return History(mass=self.solver.H.copy(), temperature=temperature)
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -202,9 +217,11 @@ class BearingModel:
             raise RuntimeError(
                 f"BearingModel.history: the last evaluation ended with {self.status.name}; there is no history to keep."
             )
+        thermal = self.effects.thermal
+        temperature = None if thermal is None else thermal.advance(self)
         if not self.remembers:
-            return None
-        return History(mass=self.solver.fill * self.solver.H)
+            return None if thermal is None else History(temperature=temperature)
+        return History(mass=self.solver.fill * self.solver.H, temperature=temperature)
 
     def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
         """Evaluate the film.
@@ -224,7 +241,10 @@ class BearingModel:
             With ``status`` other than CONVERGED the wrench is nan.
         """
         self.serial += 1
+        self.step = step
         self._set_motion(motion)
+        if self.effects.thermal is not None:
+            self.effects.thermal.begin(self, history)
         self.wrench = np.full(6, np.nan)
         self.iterations = 0
         self.status = self._solve(history, step)
@@ -428,9 +448,9 @@ class BearingModel:
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about O).
+            by contact), ``contact_torque`` (Nm, its friction on the journal about O), and with a thermal effect
+            ``film_temperature`` and ``peak_temperature`` (K).
         """
-        c = self.bearing.radial_clearance
         out = {
             "minimum_gap": self.minimum_gap,
             "eccentricity_ratio": math.hypot(self.pose[0], self.pose[1]),
@@ -441,7 +461,6 @@ class BearingModel:
         R = self.grid.reference_length
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
-        flow_scale = c * R**2
         poiseuille = 6.0 * self.s_theta
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
@@ -453,12 +472,14 @@ class BearingModel:
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
             "power_loss": -power,
-            "leakage": flow_scale * (lower + upper),
-            "leakage_lower": flow_scale * lower,
-            "leakage_upper": flow_scale * upper,
+            "leakage": self.flow_scale * (lower + upper),
+            "leakage_lower": self.flow_scale * lower,
+            "leakage_upper": self.flow_scale * upper,
             "contact_load": math.hypot(load[0], load[1]),
             "contact_torque": float(self.contact_wrench[5]),
         }
+        if self.effects.thermal is not None:
+            out |= self.effects.thermal.quantities()
         return out
 
     def _contact_torque(self) -> float:

@@ -14,6 +14,8 @@ from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.joint.build import build_model, build_study_model
 from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.joint.rheology import known_pressures, true_pressure
+from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
@@ -69,6 +71,7 @@ def solve_film(
     gap : (n, m) array
         Film thickness at the vertices, m, > 0. On links between columns the mean of both neighbours is used.
     lubricant : Lubricant
+        Its pressure law takes part; a shear law needs a bearing.
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
     gap_rate : (n, m) array, optional
@@ -99,19 +102,23 @@ def solve_film(
     solver.HF[:] = 0.5 * (solver.H + np.roll(solver.H, -1, axis=0))
     if gap_rate is not None:
         solver.H_t[:] = np.asarray(gap_rate) / c
+    boundary, cavity = known_pressures(lubricant, boundary, closure.cavity_pressure)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
-    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale)
-    if status is not Status.CONVERGED:
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), cavity / scale)
+    pressure = true_pressure(lubricant, solver.pressure, scale) if status is Status.CONVERGED else None
+    if pressure is None and status is Status.CONVERGED:
+        status = Status.NO_PRESSURE
+    if status is not Status.CONVERGED or pressure is None:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
     return FilmResult(
         status=status,
         iterations=iterations,
-        pressure=solver.pressure * scale,
+        pressure=pressure * scale,
         gap=gap,
         unbroken=solver.work.active.copy(),
         inflow=solver.inflow() * c * R**2,
-        load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
+        load=float(np.sum(pressure * grid.weight)) * scale * R**2,
     )
 
 
@@ -139,6 +146,8 @@ class SteadyResult:
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    temperature : (n, m) array, float or None
+        Of the film, K; None for an isothermal bearing.
     """
 
     theta: np.ndarray
@@ -161,6 +170,7 @@ class SteadyResult:
     attitude_angle: float
     status: Status
     iterations: int
+    temperature: float | np.ndarray | None = None
 
 
 def steady(
@@ -211,7 +221,7 @@ def steady(
 
 
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    evaluation = model.evaluate(motion)
+    evaluation = model.evaluate(motion, settle(model, motion))
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -254,6 +264,7 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
+        temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
     )
 
 

@@ -1,0 +1,126 @@
+"""Viscosity that depends on the shear rate: Carreau's law, on the rate ``G = |U| / h`` of the Couette flow.
+
+``mu / mu_0 = r(G) = r_inf + (1 - r_inf) (1 + (lambda G)^2)^((n - 1) / 2)``   (P. J. Carreau, Trans. Soc. Rheology 16 (1972) 99).
+
+The pressure flow disturbs the Couette flow only slightly in a bearing. Linearised about it, ``tau = mu(|G|) G`` gives a disturbance
+along the sliding direction the tangent viscosity ``mu + G dmu/dG`` and one across it ``mu`` itself (F. K. Dien and H. G. Elrod,
+J. Lubrication Technology 105 (1983) 385). Hence, with s = (lambda U / h)^2 and b = 1 + s:
+
+    r   = r_inf + (1 - r_inf) b^e,   e = (n - 1) / 2,           conductance across the sliding H^3 / r,
+    r_t = r_inf + (1 - r_inf) b^(e-1) (1 + n s),                conductance along the sliding  H^3 / r_t,
+
+Couette flux H unchanged, wall shear r U / h. Only the circumferential sliding speed enters; axial sliding is slow beside it.
+
+Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to the gap, _v to vx = U / (2 R).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.status import InputError, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class CarreauShear:
+    """Shear thinning after Carreau, for multigrade and polymer-thickened oils.
+
+    Parameters
+    ----------
+    relaxation_time : float
+        lambda, s: thinning sets in at a shear rate of 1 / lambda.
+    exponent : float
+        n, above 0 and up to 1 (Newtonian): at high rates the viscosity falls with the power n - 1 of the rate.
+    residual : float
+        r_inf = mu at infinite rate / mu_0, 0 to 1.
+    """
+
+    relaxation_time: float
+    exponent: float
+    residual: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_number("CarreauShear.relaxation_time", self.relaxation_time, "s", above=0.0)
+        n = require_number("CarreauShear.exponent", self.exponent, above=0.0)
+        r = require_number("CarreauShear.residual", self.residual, at_least=0.0)
+        if n > 1.0 or r > 1.0:
+            raise InputError(
+                f"CarreauShear.exponent and residual must not exceed 1 (an oil that thins), got {n:g} and {r:g}."
+            )
+
+    def ratio(self, rate: np.ndarray) -> np.ndarray:
+        """mu / mu_0 at shear rates in 1/s."""
+        b = 1.0 + (self.relaxation_time * np.asarray(rate)) ** 2
+        return self.residual + (1.0 - self.residual) * b ** (0.5 * (self.exponent - 1.0))
+
+
+class ShearThinning:
+    """A `CarreauShear` in scaled form: flux effect and shear factor of one bearing model.
+
+    Parameters
+    ----------
+    law : CarreauShear
+    radius, clearance : float
+        m.
+    """
+
+    def __init__(self, law: CarreauShear, radius: float, clearance: float) -> None:
+        self.law = law
+        self.per_speed = 2.0 * radius * law.relaxation_time / clearance
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Divide the conductances of the links by the tangent (theta) and the plain (z) viscosity ratio."""
+        law, k = self.law, self.per_speed
+        thin_conductance(gap_x, vx, k, law.exponent, law.residual, True, flux.gx, flux.gx_h, flux.gx_v)
+        thin_conductance(gap_z, vx, k, law.exponent, law.residual, False, flux.gz, flux.gz_h, flux.gz_v)
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """mu/mu_0 of the Couette shear at the vertices, with its derivatives to H and vx."""
+        thin_viscosity(H, vx, self.per_speed, self.law.exponent, self.law.residual, ratio_out, ratio_h_out, ratio_v_out)
+
+
+@njit(cache=True)
+def thin_viscosity(H, vx, per_speed, n, r_inf, ratio_out, ratio_h_out, ratio_v_out):
+    """Carreau's ratio at gaps H with its derivatives to H and vx."""
+    rows, cols = H.shape
+    e = 0.5 * (n - 1.0)
+    for i in range(rows):
+        for j in range(cols):
+            g = per_speed * vx / H[i, j]
+            b = 1.0 + g * g
+            power = (1.0 - r_inf) * b**e
+            slope = power / b * (n - 1.0) * g
+            ratio_out[i, j] = r_inf + power
+            ratio_h_out[i, j] = -slope * g / H[i, j]
+            ratio_v_out[i, j] = slope * per_speed / H[i, j]
+
+
+@njit(cache=True)
+def thin_conductance(gap, vx, per_speed, n, r_inf, tangent, g_io, g_h_io, g_v_io):
+    """Divide conductances by the (tangent) viscosity ratio at the links' gaps, derivatives to the gap and vx included."""
+    rows, cols = gap.shape
+    e = 0.5 * (n - 1.0)
+    for i in range(rows):
+        for j in range(cols):
+            h = gap[i, j]
+            g = per_speed * vx / h
+            s = g * g
+            b = 1.0 + s
+            power = (1.0 - r_inf) * b**e
+            if tangent:
+                r = r_inf + power * (1.0 + n * s) / b
+                slope = 2.0 * g * power / b * (n + (e - 1.0) * (1.0 + n * s) / b)
+            else:
+                r = r_inf + power
+                slope = 2.0 * g * power / b * e
+            inverse = 1.0 / r
+            c = g_io[i, j] * inverse
+            g_io[i, j] = c
+            g_h_io[i, j] = g_h_io[i, j] * inverse + c * inverse * slope * g / h
+            g_v_io[i, j] = g_v_io[i, j] * inverse - c * inverse * slope * per_speed / h

@@ -1,0 +1,222 @@
+"""Viscosity that depends on pressure, through the Kirchhoff transform ``q = integral of dp / r(p)``, ``r = mu(p) / mu(0)``.
+
+``r(p)^-1 grad p = grad q``: in q the pressure flow is that of a film of constant viscosity. Pressures are gauge, in Pa.
+
+Barus (C. Barus 1893): ``r = exp(alpha p)``, ``q = (1 - exp(-alpha p)) / alpha``, ``p = -ln(1 - alpha q) / alpha``; no pressure
+carries a film with ``q >= 1 / alpha``.
+
+Roelands (C. J. A. Roelands, Correlational aspects of the viscosity-temperature-pressure relationship of lubricating oils, 1966):
+``ln r = a ((1 + p / p_0)^Z - 1)``, ``a = ln(mu_0) + 9.67``, ``Z = alpha p_0 / a``, for p >= 0; below, where oil cavitates,
+it is continued by Barus' law with the same slope.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.status import InputError, require_number
+
+ROELANDS_SHIFT = 9.67
+TABLE_INTERVALS = 4096
+# The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
+LARGEST_RATIO = 1e7
+LARGEST_PRESSURE = 5e9
+_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
+
+
+class BoundPressureLaw(Protocol):
+    """A pressure law for one reference viscosity."""
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarusPressure:
+    """Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
+
+    Parameters
+    ----------
+    coefficient : float
+        alpha, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
+    """
+
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        require_number(
+            "BarusPressure.coefficient",
+            self.coefficient,
+            "1/Pa",
+            above=0.0,
+            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
+        )
+
+    def check(self, viscosity: float) -> None:
+        """Any reference viscosity will do."""
+
+    def bound(self, viscosity: float) -> BoundPressureLaw:
+        """The law for a reference viscosity in Pa s (which does not matter here)."""
+        return self
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+        return -np.expm1(-self.coefficient * p) / self.coefficient
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p."""
+        return bool(barus_inverse(q, self.coefficient, p_out, ratio_out, ratio_q_out))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoelandsPressure:
+    """Roelands' law: like Barus' at low pressure, less steep at high pressure.
+
+    Parameters
+    ----------
+    coefficient : float
+        alpha, the slope of ln(mu) at ambient pressure, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
+    reference_pressure : float
+        p_0, Pa.
+    """
+
+    coefficient: float
+    reference_pressure: float = 1.96e8
+
+    def __post_init__(self) -> None:
+        require_number(
+            "RoelandsPressure.coefficient", self.coefficient, "1/Pa", above=0.0,
+            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
+        )  # fmt: skip
+        require_number("RoelandsPressure.reference_pressure", self.reference_pressure, "Pa", above=0.0)
+
+    def check(self, viscosity: float) -> None:
+        """Raise `InputError` for a reference viscosity below exp(-9.67) Pa s, where the law has no meaning."""
+        if math.log(viscosity) + ROELANDS_SHIFT <= 0.0:
+            raise InputError(
+                f"RoelandsPressure needs a lubricant with a viscosity > {math.exp(-ROELANDS_SHIFT):.3g} Pa s, got "
+                f"{viscosity:g} Pa s; use BarusPressure for thinner liquids."
+            )
+
+    def bound(self, viscosity: float) -> BoundPressureLaw:
+        """The law for a reference viscosity in Pa s, tabulated."""
+        return RoelandsTable(math.log(viscosity) + ROELANDS_SHIFT, self.coefficient, self.reference_pressure)
+
+
+class RoelandsTable:
+    """Roelands' law for one reference viscosity, with the inverse transform p(q) as a quintic Hermite spline.
+
+    q comes from Gauss quadrature over each of 4096 intervals of p; p, dp/dq = r and d2p/dq2 = r dr/dp are exact at the nodes. The
+    spline's error in p is about (alpha dp)^6 / (400 alpha), below 1e-13 of p, and its derivatives are those of the pressures that it gives,
+    so that a tangent built with them is exact.
+
+    Parameters
+    ----------
+    a : float
+        ln(mu_0) + 9.67.
+    coefficient, reference_pressure : float
+        alpha, 1/Pa, and p_0, Pa.
+    """
+
+    def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
+        self.a, self.alpha, self.p0 = a, coefficient, reference_pressure
+        self.Z = coefficient * reference_pressure / a
+        top = reference_pressure * ((math.log(LARGEST_RATIO) / a + 1.0) ** (1.0 / self.Z) - 1.0)
+        self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
+        self.q = np.concatenate(([0.0], np.cumsum(self._quadrature(self.p[:-1], self.p[1:]))))
+        self.r = self.ratio(self.p)
+        self.r_q = self.r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p) for p >= 0."""
+        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+
+    def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+        half = 0.5 * (upper - lower)
+        points = lower[:, None] + half[:, None] * (1.0 + _GAUSS_X)
+        return half * np.sum(_GAUSS_W / self.ratio(points), axis=1)
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+        p = np.asarray(p, dtype=float)
+        negative = -np.expm1(-self.alpha * np.minimum(p, 0.0)) / self.alpha
+        at = np.clip(np.searchsorted(self.p, p, side="right") - 1, 0, TABLE_INTERVALS - 1)
+        positive = self.q[at] + self._quadrature(self.p[at], np.maximum(p, 0.0))
+        return np.where(p > 0.0, positive, negative)
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
+        return bool(
+            hermite_inverse(q, self.alpha, self.q, self.p, self.r, self.r_q, p_out, ratio_out, ratio_q_out)
+        )  # fmt: skip
+
+
+@njit(cache=True)
+def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
+    """p, r and dr/dq of Barus' law; False if q >= 1 / alpha anywhere."""
+    n, m = q.shape
+    for i in range(n):
+        for j in range(m):
+            s = 1.0 - alpha * q[i, j]
+            if not s > 0.0:
+                return False
+            r = 1.0 / s
+            p_out[i, j] = -np.log1p(-alpha * q[i, j]) / alpha
+            ratio_out[i, j] = r
+            ratio_q_out[i, j] = alpha * r * r
+    return True
+
+
+@njit(cache=True)
+def hermite_inverse(q, alpha, q_table, p_table, r_table, r_q_table, p_out, ratio_out, ratio_q_out):
+    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table."""
+    n, m = q.shape
+    last = q_table.size - 1
+    k = 0
+    for i in range(n):
+        for j in range(m):
+            x = q[i, j]
+            if x <= 0.0:
+                r = 1.0 / (1.0 - alpha * x)
+                p_out[i, j] = -np.log1p(-alpha * x) / alpha
+                ratio_out[i, j] = r
+                ratio_q_out[i, j] = alpha * r * r
+                continue
+            if not x <= q_table[last]:
+                return False
+            if not (q_table[k] <= x <= q_table[k + 1]):
+                low = 0
+                high = last
+                while high - low > 1:
+                    middle = (low + high) // 2
+                    if q_table[middle] <= x:
+                        low = middle
+                    else:
+                        high = middle
+                k = low
+            h = q_table[k + 1] - q_table[k]
+            t = (x - q_table[k]) / h
+            # Newton form on the double nodes 0, 0, 0, 1, 1, 1 of t.
+            d0 = r_table[k] * h
+            e0 = 0.5 * r_q_table[k] * h * h
+            d1 = r_table[k + 1] * h
+            e1 = 0.5 * r_q_table[k + 1] * h * h
+            # p - p_k is summed from small terms, so that it stays exact near q = 0.
+            f = p_table[k + 1] - p_table[k] - d0 - e0
+            g = d1 - d0 - 2.0 * e0
+            w = e1 - e0
+            c3 = 10.0 * f - 4.0 * g + w
+            c4 = -15.0 * f + 7.0 * g - 2.0 * w
+            c5 = 6.0 * f - 3.0 * g + w
+            p_out[i, j] = p_table[k] + t * (d0 + t * (e0 + t * (c3 + t * (c4 + t * c5))))
+            ratio_out[i, j] = (d0 + t * (2.0 * e0 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5)))) / h
+            ratio_q_out[i, j] = (2.0 * e0 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5))) / (h * h)
+    return True
