@@ -94,7 +94,7 @@ def thin_viscosity(H, vx, per_speed, n, r_inf, ratio_out, ratio_h_out, ratio_v_o
         for j in range(cols):
             g = per_speed * vx / H[i, j]
             b = 1.0 + g * g
-            power = (1.0 - r_inf) * b**e
+            power = (1.0 - r_inf) * np.exp(e * np.log(b))
             slope = power / b * (n - 1.0) * g
             ratio_out[i, j] = r_inf + power
             ratio_h_out[i, j] = -slope * g / H[i, j]
@@ -112,7 +112,7 @@ def thin_conductance(gap, vx, per_speed, n, r_inf, tangent, g_io, g_h_io, g_v_io
             g = per_speed * vx / h
             s = g * g
             b = 1.0 + s
-            power = (1.0 - r_inf) * b**e
+            power = (1.0 - r_inf) * np.exp(e * np.log(b))
             if tangent:
                 r = r_inf + power * (1.0 + n * s) / b
                 slope = 2.0 * g * power / b * (n + (e - 1.0) * (1.0 + n * s) / b)

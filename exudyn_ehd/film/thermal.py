@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import require_number
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,8 +59,6 @@ class FilmEnergy:
         U_b, U_j, heat transfer from the film's mean temperature to the surfaces, W/(m2 K).
     bush_temperature, journal_temperature : float or None
         T_b, T_j, K; None: the supply temperature.
-    storage : bool
-        False drops the storage term: every step takes the steady field of its motion.
     initial_temperature : float or None
         Of the film at the start of a motion, K; None: the supply temperature.
     """
@@ -70,7 +68,6 @@ class FilmEnergy:
     bush_temperature: float | None = None
     journal_coefficient: float = 0.0
     journal_temperature: float | None = None
-    storage: bool = True
     initial_temperature: float | None = None
 
     def __post_init__(self) -> None:
@@ -79,8 +76,6 @@ class FilmEnergy:
         )
         require_number("FilmEnergy.bush_coefficient", self.bush_coefficient, "W/(m2 K)", at_least=0.0)
         require_number("FilmEnergy.journal_coefficient", self.journal_coefficient, "W/(m2 K)", at_least=0.0)
-        if not isinstance(self.storage, bool):
-            raise InputError(f"FilmEnergy.storage must be True or False, got {self.storage!r}.")
 
 
 def _check_temperatures(spec: LumpedThermal | FilmEnergy, *names: str) -> None:

@@ -132,12 +132,23 @@ class RoelandsTable:
         top = reference_pressure * ((math.log(LARGEST_RATIO) / a + 1.0) ** (1.0 / self.Z) - 1.0)
         self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
         self.q = np.concatenate(([0.0], np.cumsum(self._quadrature(self.p[:-1], self.p[1:]))))
-        self.r = self.ratio(self.p)
-        self.r_q = self.r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
+        self.table = self._coefficients()
+        edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
+        self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
+        self.bucket_scale = TABLE_INTERVALS / self.q[-1]
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """r(p) for p >= 0."""
         return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+
+    def _coefficients(self) -> np.ndarray:
+        """1 / width and the coefficients of p in t = (q - q_k) / width, (intervals, 7)."""
+        h, r = np.diff(self.q), self.ratio(self.p)
+        r_q = r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
+        d0, d1, e0, e1 = r[:-1] * h, r[1:] * h, 0.5 * r_q[:-1] * h**2, 0.5 * r_q[1:] * h**2
+        f, g, w = np.diff(self.p) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
+        c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
+        return np.ascontiguousarray(np.array([1.0 / h, self.p[:-1], d0, e0, c3, c4, c5]).T)
 
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         half = 0.5 * (upper - lower)
@@ -155,8 +166,10 @@ class RoelandsTable:
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
         """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
         return bool(
-            hermite_inverse(q, self.alpha, self.q, self.p, self.r, self.r_q, p_out, ratio_out, ratio_q_out)
-        )  # fmt: skip
+            hermite_inverse(
+                q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
+            )
+        )
 
 
 @njit(cache=True)
@@ -165,6 +178,11 @@ def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
     n, m = q.shape
     for i in range(n):
         for j in range(m):
+            if q[i, j] == 0.0:
+                p_out[i, j] = 0.0
+                ratio_out[i, j] = 1.0
+                ratio_q_out[i, j] = alpha
+                continue
             s = 1.0 - alpha * q[i, j]
             if not s > 0.0:
                 return False
@@ -176,47 +194,43 @@ def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
 
 
 @njit(cache=True)
-def hermite_inverse(q, alpha, q_table, p_table, r_table, r_q_table, p_out, ratio_out, ratio_q_out):
-    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table."""
+def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
+    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table.
+
+    ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval at the
+    start of each of b equal parts of q.
+    """
     n, m = q.shape
-    last = q_table.size - 1
-    k = 0
+    top = q_table[-1]
     for i in range(n):
         for j in range(m):
             x = q[i, j]
-            if x <= 0.0:
+            if x == 0.0:
+                p_out[i, j] = 0.0
+                ratio_out[i, j] = 1.0
+                ratio_q_out[i, j] = alpha
+                continue
+            if x < 0.0:
                 r = 1.0 / (1.0 - alpha * x)
                 p_out[i, j] = -np.log1p(-alpha * x) / alpha
                 ratio_out[i, j] = r
                 ratio_q_out[i, j] = alpha * r * r
                 continue
-            if not x <= q_table[last]:
+            if not x < top:
                 return False
-            if not (q_table[k] <= x <= q_table[k + 1]):
-                low = 0
-                high = last
-                while high - low > 1:
-                    middle = (low + high) // 2
-                    if q_table[middle] <= x:
-                        low = middle
-                    else:
-                        high = middle
-                k = low
-            h = q_table[k + 1] - q_table[k]
-            t = (x - q_table[k]) / h
-            # Newton form on the double nodes 0, 0, 0, 1, 1, 1 of t.
-            d0 = r_table[k] * h
-            e0 = 0.5 * r_q_table[k] * h * h
-            d1 = r_table[k + 1] * h
-            e1 = 0.5 * r_q_table[k + 1] * h * h
-            # p - p_k is summed from small terms, so that it stays exact near q = 0.
-            f = p_table[k + 1] - p_table[k] - d0 - e0
-            g = d1 - d0 - 2.0 * e0
-            w = e1 - e0
-            c3 = 10.0 * f - 4.0 * g + w
-            c4 = -15.0 * f + 7.0 * g - 2.0 * w
-            c5 = 6.0 * f - 3.0 * g + w
-            p_out[i, j] = p_table[k] + t * (d0 + t * (e0 + t * (c3 + t * (c4 + t * c5))))
-            ratio_out[i, j] = (d0 + t * (2.0 * e0 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5)))) / h
-            ratio_q_out[i, j] = (2.0 * e0 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5))) / (h * h)
+            at = min(int(x * bucket_scale), bucket.size - 2)
+            low = bucket[at]
+            high = bucket[at + 1] + 1
+            while high - low > 1:
+                middle = (low + high) // 2
+                if q_table[middle] <= x:
+                    low = middle
+                else:
+                    high = middle
+            c = table[low]
+            w = c[0]
+            t = (x - q_table[low]) * w
+            p_out[i, j] = c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6]))))
+            ratio_out[i, j] = w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6]))))
+            ratio_q_out[i, j] = w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6])))
     return True

@@ -24,6 +24,7 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
+    couette_integral_ratio,
     end_flows,
     peak_of,
     pressure_integrals,
@@ -352,9 +353,8 @@ class BearingModel:
     def _couette(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
         if self.ratio is not None:
-            density = g.weight * self.ratio / s.H
             unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-            return float(np.sum(density * self.share())), float(np.sum(density[unbroken]))
+            return couette_integral_ratio(s.H, g.weight, self.ratio, self.share(), unbroken)
         if s.closure.conserves_mass:
             return couette_integral_fill(s.H, g.weight, s.fill)
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)

@@ -12,19 +12,23 @@ from exudyn_ehd.status import FilmError, Status
 
 # Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
 SETTLED = 1e-11
-MAX_ROUNDS = 100
+MAX_ROUNDS = 200
 # Differences of past rounds that the acceleration combines.
 DEPTH = 6
-HOTTEST = 5000.0
+HOTTEST = 2000.0
+LARGEST_CHANGE = 50.0
+# Largest change of a round, K, that the acceleration starts from, and rounds without progress before the damping grows.
+ACCELERATED = 5.0
+PATIENCE = 8
 
 
 def settle(model: BearingModel, motion: np.ndarray) -> History | None:
     """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
     One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant method inside a
-    bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started anew with plain damped rounds whenever
-    the change grows. Both end when the temperature changes by less than 1e-11 of its rise, or at a film that has no solution,
-    which the caller then finds.
+    bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain rounds, damped
+    as needed, have brought the change below 5 K, and anew from the best field when it makes no progress. Both end when the
+    temperature changes by less than 1e-11 of its rise, or at a film that has no solution, which the caller then finds.
 
     Parameters
     ----------
@@ -52,13 +56,15 @@ def _target(
     """Temperature in balance with the heat of the film at T; None without a film."""
     if model.evaluate(motion, History(temperature=T)).status is not Status.CONVERGED:
         return None
-    out = np.asarray(thermal.steady_temperature(model))
-    if not np.all(np.isfinite(out)) or out.max() > HOTTEST:
+    return np.asarray(thermal.steady_temperature(model))
+
+
+def _require_way_out(T: float) -> None:
+    if not T < HOTTEST:
         raise FilmError(
-            "steady temperature: the heat of the film has no way out; let oil flow through (end pressures, eccentricity, supply) or "
-            "give the thermal effect heat transfer to the surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
+            "steady temperature: the heat of the film has no way out; let oil flow through (end pressures, eccentricity, supply) "
+            "or give the thermal effect heat transfer to the surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
         )
-    return out
 
 
 def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float) -> History:
@@ -68,6 +74,7 @@ def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarr
         target = _target(model, thermal, motion, T)
         if target is None:
             return History(temperature=T)
+        _require_way_out(T if math.isfinite(float(target)) else math.inf)
         f = float(target) - T
         if abs(f) <= SETTLED * max(abs(T - start), abs(f), 1e-3):
             return History(temperature=T)
@@ -80,37 +87,40 @@ def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarr
         guess = T - f / slope if slope < 0.0 else T + f
         if not lower < guess < upper:
             guess = 0.5 * (lower + upper) if math.isfinite(lower + upper) else T + f
-        previous, f_previous, T = T, f, guess
+        previous, f_previous, T = T, f, min(guess, 1.5 * T)
     raise _unsettled(abs(f))
 
 
 def _settle_field(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: np.ndarray) -> History:
-    T = start
-    steps: list[np.ndarray] = []
-    changes: list[np.ndarray] = []
-    last_T = last_change = None
-    smallest, damping = math.inf, 1.0
+    T = best = start
+    past: list[tuple[np.ndarray, np.ndarray]] = []
+    smallest, damping, patience = math.inf, 1.0, 0
     for _ in range(MAX_ROUNDS):
         target = _target(model, thermal, motion, T)
         if target is None:
             return History(temperature=T)
         change = target - T
         size = float(np.abs(change).max())
+        _require_way_out(float(T.max()) if math.isfinite(size) else math.inf)
         if size <= SETTLED * max(float(np.ptp(target)), float(np.abs(T - start).max()), 1e-3):
             return History(temperature=T)
-        if size > 2.0 * smallest:
-            steps, changes = [], []
-            damping = max(0.5 * damping, 0.05)
-        elif last_T is not None and last_change is not None:
-            steps = [*steps, (T - last_T).ravel()][-DEPTH:]
-            changes = [*changes, (change - last_change).ravel()][-DEPTH:]
-        smallest = min(smallest, size)
-        last_T, last_change = T, change
-        T = T + damping * change
-        if changes:
-            dF, dX = np.array(changes).T, np.array(steps).T
+        near = size < ACCELERATED
+        patience = 0 if size < 0.9 * smallest else patience + 1
+        if size < smallest:
+            smallest, best = size, T
+        if patience > PATIENCE:
+            patience, damping = 0, max(0.6 * damping, 0.1)
+            if near and past:
+                T, past = best, []
+                continue
+        past = [*past, (T.ravel(), change.ravel())][-DEPTH - 1 :] if near else []
+        step = damping * min(1.0, LARGEST_CHANGE / size) * change
+        if len(past) > 1:
+            dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
             share = np.linalg.lstsq(dF, change.ravel(), rcond=1e-12)[0]
-            T = T - ((dX + damping * dF) @ share).reshape(T.shape)
+            step = step - ((dX + damping * dF) @ share).reshape(T.shape)
+            step = step * min(1.0, 4.0 * size / float(np.abs(step).max()))
+        T = T + step
     raise _unsettled(size)
 
 

@@ -31,15 +31,45 @@ def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float) -> np
     return law.viscosity(T, lubricant.density) / law.viscosity(np.asarray(lubricant.temperature), lubricant.density)
 
 
-def heat_power(model: BearingModel, quantities: dict[str, float]) -> float:
+class OilFlows:
+    """Flows of the film that was evaluated last, scaled by c R^2, all (n, m).
+
+    Attributes
+    ----------
+    x, z : over the links i -> i+1 and j -> j+1
+    outside : entering from outside, at the ends and at supplies
+    found : entering in addition, where a cavitation model does not conserve mass; negative where it loses oil
+    content, rate : content of the storage term (scaled gap) and rate of the present content
+    """
+
+    def __init__(self, model: BearingModel) -> None:
+        s, y, shape = model.solver, model.solver.system, model.grid.shape
+        conserves, fixed = s.closure.conserves_mass, model.grid.fixed
+        fill = s.fill if conserves else s.ones
+        self.content = fill * s.H
+        if conserves and y.inverse_step > 0.0 and not s.instant:
+            self.rate = (self.content - y.mass_old) * y.inverse_step
+            self.content = y.mass_old
+        else:
+            self.rate = fill * s.H_t if s.squeeze else np.zeros(shape)
+        self.x, self.z, source = np.empty(shape), np.empty(shape), np.empty(shape)
+        film_flows(s.pressure, fill, y.kx, y.kz, y.fx, y.fz, s.area * self.rate, self.x, self.z, source)
+        self.outside = np.where(fixed, source, 0.0)
+        if conserves:
+            self.found = np.zeros(shape)
+            return
+        # Through an end where the film is ruptured passes only what flows over the link next to it.
+        unbroken = s.work.active | fixed
+        lower, upper = ~unbroken[:, 1], ~unbroken[:, -2]
+        self.outside[lower, 0] = self.z[lower, 0]
+        self.outside[upper, -1] = -self.z[upper, -2]
+        self.found = source - self.outside
+
+
+def heat_power(model: BearingModel, flows: OilFlows) -> float:
     """Power that the film and its contacts turn into heat, W: the mechanical power and the work of the oil pressed through."""
-    p = model.end_pressures * model.pressure_scale
-    work = -p[0] * quantities["leakage_lower"] - p[1] * quantities["leakage_upper"]
-    inner = model.grid.fixed[:, 1:-1]
-    if inner.any():
-        flow = model.solver.inflow()[:, 1:-1] * model.flow_scale
-        work += model.pressure_scale * float(np.sum(model.P[:, 1:-1] * flow))
-    return quantities["power_loss"] + work
+    work = model.pressure_scale * model.flow_scale * float(np.sum(model.P * flows.outside))
+    return model.quantities()["power_loss"] + work
 
 
 class LumpedTemperature:
@@ -75,9 +105,9 @@ class LumpedTemperature:
 
     def _rates(self, model: BearingModel) -> tuple[float, float]:
         """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
-        q = model.quantities()
-        out = max(q["leakage_lower"], 0.0) + max(q["leakage_upper"], 0.0)
-        return heat_power(model, q), self.flow_capacity * out
+        flows = OilFlows(model)
+        out = -model.flow_scale * float(np.sum(np.minimum(flows.outside, 0.0)))
+        return heat_power(model, flows), self.flow_capacity * out
 
     def advance(self, model: BearingModel) -> float:
         """Temperature at the end of the step that was evaluated last."""
@@ -187,15 +217,19 @@ class FilmTemperature:
         """Temperatures at the end of the step that was evaluated last (n, m)."""
         if model.step <= 0.0:
             return self.temperature
-        return self._solve(model, model.step if self.spec.storage else 0.0)[0]
+        return self._solve(model, model.step)[0]
 
     def steady_temperature(self, model: BearingModel) -> np.ndarray:
-        """Temperatures in balance with the heat of the last evaluation (n, m); not finite without a way out for the heat."""
+        """Temperatures in balance with the heat of the last evaluation (n, m); not finite without a way out for the heat.
+
+        The heat is taken to follow the viscosity, linearised at the temperatures of that evaluation, so that repeated use
+        converges where the heating is strong; the fixed point is that of the heat itself.
+        """
         return self._solve(model, 0.0)[0]
 
     def balance(self, model: BearingModel, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
-        return self._solve(model, model.step if self.spec.storage else 0.0, temperature)[1]
+        return self._solve(model, model.step, temperature)[1]
 
     def _heat(self, model: BearingModel) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
@@ -223,43 +257,30 @@ class FilmTemperature:
         film_heat(model.P, s.pressure, s.system.kx, s.system.kz, couette / flow_power, heat)
         return heat * flow_power
 
-    def _content(self, model: BearingModel, step: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Fill, content m* of the storage term, and rate of the content (n, m), scaled."""
-        s = model.solver
-        fill = s.fill if s.closure.conserves_mass else s.ones
-        y = s.system
-        if s.closure.conserves_mass and y.inverse_step > 0.0 and not s.instant:
-            return fill, y.mass_old, (fill * s.H - y.mass_old) * y.inverse_step
-        return fill, fill * s.H, fill * s.H_t if s.squeeze else np.zeros(s.H.shape)
-
     def _solve(
         self, model: BearingModel, step: float, known: np.ndarray | None = None
     ) -> tuple[np.ndarray, dict[str, float]]:
         """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
-        s, y, area = model.solver, model.solver.system, model.solver.area
-        shape, supply, old = model.grid.shape, self.spec.supply_temperature, self.temperature
+        area, shape = model.solver.area, model.grid.shape
+        supply, old = self.spec.supply_temperature, self.temperature
         scale = self.flow_capacity * model.flow_scale
-        heat = self._heat(model)
-        fill, content, rate = self._content(model, step)
-        qx, qz, source = np.empty(shape), np.empty(shape), np.empty(shape)
-        film_flows(s.pressure, fill, y.kx, y.kz, y.fx, y.fz, area * rate, qx, qz, source)
-        fixed = model.grid.fixed
-        if s.closure.conserves_mass:
-            source[~fixed] = 0.0
-        entering, leaving = np.maximum(source, 0.0), np.maximum(-source, 0.0)
-        found, lost = np.where(fixed, 0.0, entering), np.where(fixed, 0.0, leaving)
+        heat, flows = self._heat(model), OilFlows(model)
+        leaving = np.maximum(-flows.outside, 0.0)
+        found, lost = np.maximum(flows.found, 0.0), np.maximum(-flows.found, 0.0)
         total_found, total_lost = float(found.sum()), float(lost.sum())
         back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
         weight = lost / total_lost if total_lost > 0.0 else lost
-        store = area * content / step if step > 0.0 else np.zeros(shape)
+        store = area * flows.content / step if step > 0.0 else np.zeros(shape)
         walls = self.transfer * area * model.grid.reference_length**2 / scale
         if known is None:
-            rigid = STAGNANT * float(max(np.abs(qx).max(), np.abs(qz).max(), store.max()))
-            diagonal = store + entering + walls + rigid
+            rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
+            # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
+            thinning = self._thinning() * heat / scale if step == 0.0 else 0.0
+            diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
             rhs = np.empty((2, *shape))
-            rhs[0] = heat / scale + (store + rigid) * (old - supply) + walls * (self.wall - supply)
+            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (self.wall - supply)
             rhs[1] = back * found
-            T0, T1 = self._solve_band(qx, qz, diagonal, rhs)
+            T0, T1 = self._solve_band(flows.x, flows.z, diagonal, rhs)
             mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
             T = supply + T0 + mixed * T1
         else:
@@ -267,13 +288,18 @@ class FilmTemperature:
         rise = T - supply
         mixed = float(np.sum(weight * rise))
         stored = float(np.sum(store * (T - old))) if step > 0.0 else 0.0
-        carried = float(np.sum(leaving * rise)) - back * mixed * total_found
+        carried = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
         return T, {
             "heat_in": float(heat.sum()),
             "carried_out": scale * carried,
             "conducted": scale * float(np.sum(walls * (T - self.wall))),
-            "stored": scale * (stored + float(np.sum(area * rate * rise))),
+            "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
+
+    def _thinning(self) -> np.ndarray:
+        """-d ln(mu) / dT at the film's temperatures, 1/K (n, m)."""
+        thicker, thinner = (viscosity_ratio(self.lubricant, self.temperature + d) for d in (-0.05, 0.05))
+        return np.log(thicker / thinner) / 0.1
 
     def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:
         """Solve the upwind system for the fields rhs (k, n, m)."""
