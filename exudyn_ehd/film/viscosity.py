@@ -131,8 +131,9 @@ class RoelandsTable:
         self.Z = coefficient * reference_pressure / a
         top = reference_pressure * ((math.log(LARGEST_RATIO) / a + 1.0) ** (1.0 / self.Z) - 1.0)
         self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
-        self.q = np.concatenate(([0.0], np.cumsum(self._quadrature(self.p[:-1], self.p[1:]))))
-        self.table = self._coefficients()
+        widths = self._quadrature(self.p[:-1], self.p[1:])
+        self.q = np.concatenate(([0.0], np.cumsum(widths)))
+        self.table = self._coefficients(widths)
         edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
         self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
         self.bucket_scale = TABLE_INTERVALS / self.q[-1]
@@ -141,9 +142,9 @@ class RoelandsTable:
         """r(p) for p >= 0."""
         return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
 
-    def _coefficients(self) -> np.ndarray:
+    def _coefficients(self, h: np.ndarray) -> np.ndarray:
         """1 / width and the coefficients of p in t = (q - q_k) / width, (intervals, 7)."""
-        h, r = np.diff(self.q), self.ratio(self.p)
+        r = self.ratio(self.p)
         r_q = r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
         d0, d1, e0, e1 = r[:-1] * h, r[1:] * h, 0.5 * r_q[:-1] * h**2, 0.5 * r_q[1:] * h**2
         f, g, w = np.diff(self.p) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
@@ -151,9 +152,9 @@ class RoelandsTable:
         return np.ascontiguousarray(np.array([1.0 / h, self.p[:-1], d0, e0, c3, c4, c5]).T)
 
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
-        half = 0.5 * (upper - lower)
-        points = lower[:, None] + half[:, None] * (1.0 + _GAUSS_X)
-        return half * np.sum(_GAUSS_W / self.ratio(points), axis=1)
+        lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
+        points = lower[..., None] + half[..., None] * (1.0 + _GAUSS_X)
+        return half * np.sum(_GAUSS_W / self.ratio(points), axis=-1)
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
