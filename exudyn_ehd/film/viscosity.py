@@ -129,7 +129,8 @@ class RoelandsTable:
     def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
         self.a, self.alpha, self.p0 = a, coefficient, reference_pressure
         self.Z = coefficient * reference_pressure / a
-        top = reference_pressure * ((math.log(LARGEST_RATIO) / a + 1.0) ** (1.0 / self.Z) - 1.0)
+        # ln(1 + p / p_0) where the ratio is reached; bounded, because nearly constant viscosities reach it nowhere.
+        top = reference_pressure * math.expm1(min(math.log1p(math.log(LARGEST_RATIO) / a) / self.Z, 100.0))
         self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))

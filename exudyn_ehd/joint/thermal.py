@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
 STAGNANT = 1e-14
+# Rounding of the flow through the ends, as a share of the largest flow over a link.
+NO_FLOW = 1e-11
 
 
 def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float) -> np.ndarray:
@@ -225,6 +227,10 @@ class FilmTemperature:
         The heat is taken to follow the viscosity, linearised at the temperatures of that evaluation, so that repeated use
         converges where the heating is strong; the fixed point is that of the heat itself.
         """
+        flows = OilFlows(model)
+        leaving = float(np.sum(np.maximum(-flows.outside, 0.0)))
+        if self.transfer == 0.0 and leaving <= NO_FLOW * float(np.abs(flows.x).max()) and self._heat(model).max() > 0.0:
+            return np.full(model.grid.shape, np.inf)
         return self._solve(model, 0.0)[0]
 
     def balance(self, model: BearingModel, temperature: np.ndarray) -> dict[str, float]:

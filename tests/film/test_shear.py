@@ -30,7 +30,9 @@ def test_viscosity_kernel(vx):
     thin_viscosity(H, vx, k, 0.6, 0.2, r, r_h, r_v)
     d = 1e-5
     np.testing.assert_allclose(r, ratio(H, vx), rtol=1e-14)
-    np.testing.assert_allclose(r_h, (ratio(H + d, vx) - ratio(H - d, vx)) / (2 * d), atol=1e-8)  # step^2 and rounding / step
+    np.testing.assert_allclose(
+        r_h, (ratio(H + d, vx) - ratio(H - d, vx)) / (2 * d), atol=1e-8
+    )  # step^2 and rounding / step
     np.testing.assert_allclose(r_v, (ratio(H, vx + d) - ratio(H, vx - d)) / (2 * d), atol=1e-10)
 
 
@@ -51,8 +53,12 @@ def test_conductance_kernel(tangent):
     met = (stress[1] - stress[0]) / (2.0 * d) if tangent else LAW.ratio(rate)
     np.testing.assert_allclose(g, H**3 / met, rtol=1e-9)  # rounding of stresses of size 1e5
     s = 1e-5
-    np.testing.assert_allclose(g_h, (conductance(H + s, vx)[0] - conductance(H - s, vx)[0]) / (2 * s), rtol=1e-7, atol=1e-8)
-    np.testing.assert_allclose(g_v, (conductance(H, vx + s)[0] - conductance(H, vx - s)[0]) / (2 * s), rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(
+        g_h, (conductance(H + s, vx)[0] - conductance(H - s, vx)[0]) / (2 * s), rtol=1e-7, atol=1e-8
+    )
+    np.testing.assert_allclose(
+        g_v, (conductance(H, vx + s)[0] - conductance(H, vx - s)[0]) / (2 * s), rtol=1e-6, atol=1e-9
+    )
 
 
 def test_couette_shear_of_a_bearing_is_the_law():

@@ -49,7 +49,13 @@ def test_iso_grades_meet_their_mid_point(name):
 
 
 # SAE J300: kinematic viscosity at 100 degrees Celsius in mm2/s.
-J300 = {"SAE 20": (5.6, 9.3), "SAE 30": (9.3, 12.5), "SAE 40": (12.5, 16.3), "SAE 50": (16.3, 21.9), "SAE 60": (21.9, 26.1)}
+J300 = {
+    "SAE 20": (5.6, 9.3),
+    "SAE 30": (9.3, 12.5),
+    "SAE 40": (12.5, 16.3),
+    "SAE 50": (16.3, 21.9),
+    "SAE 60": (21.9, 26.1),
+}
 
 
 @pytest.mark.parametrize("name", list(J300))

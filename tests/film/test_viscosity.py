@@ -36,7 +36,9 @@ def test_barus_transform_is_its_integral():
 @pytest.mark.parametrize("mu", [0.005, 0.04, 0.3])
 def test_roelands_transform_is_its_integral(mu):
     law = RoelandsPressure(coefficient=ALPHA).bound(mu)
-    exact = [quad(lambda s: 1.0 / roelands_ratio(s, mu), 0.0, p, epsabs=0.0, epsrel=1e-12, limit=200)[0] for p in PRESSURES]
+    exact = [
+        quad(lambda s: 1.0 / roelands_ratio(s, mu), 0.0, p, epsabs=0.0, epsrel=1e-12, limit=200)[0] for p in PRESSURES
+    ]
     np.testing.assert_allclose(law.transform(PRESSURES), exact, rtol=2e-12)  # the reference quadrature's tolerance
 
 
@@ -56,7 +58,9 @@ def test_roelands_round_trip(mu, alpha):
     expected = np.linspace(1e4, 3e8, 20001)
     p, r, r_q = inverse(law, law.transform(expected))
     np.testing.assert_allclose(p, expected, rtol=1e-12)  # spline 1e-13, rounding times the viscosity ratio
-    np.testing.assert_allclose(r, roelands_ratio(expected, mu, alpha), rtol=1e-10)  # derivative of the spline: one order less
+    np.testing.assert_allclose(
+        r, roelands_ratio(expected, mu, alpha), rtol=1e-10
+    )  # derivative of the spline: one order less
     slope = r**2 * alpha * (1.0 + expected / 1.96e8) ** (law.Z - 1.0)
     np.testing.assert_allclose(r_q, slope, rtol=1e-5)  # second derivative: two orders and digits less
 
