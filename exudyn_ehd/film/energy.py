@@ -39,12 +39,12 @@ def film_heat(P, q, kx, kz, couette, heat_out):
 
 
 @njit(cache=True)
-def film_flows(q, fill, kx, kz, fx, fz, storage, qx_out, qz_out, source_out):
-    """Flows over the links i -> i+1 and j -> j+1, and the source S of every vertex; ``storage`` = A dm/dt (n, m)."""
+def film_flows(q, fill, kx, kz, fx, fz, area, rate, qx_out, qz_out, source_out):
+    """Flows over the links i -> i+1 and j -> j+1, and the source S of every vertex; ``rate`` = dm/dt (n, m)."""
     n, m = q.shape
     for i in range(n):
         for j in range(m):
-            source_out[i, j] = storage[i, j]
+            source_out[i, j] = area[i, j] * rate[i, j]
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
@@ -60,6 +60,52 @@ def film_flows(q, fill, kx, kz, fx, fz, storage, qx_out, qz_out, source_out):
                 qz_out[i, j] = f
                 source_out[i, j] += f
                 source_out[i, j + 1] -= f
+
+
+@njit(cache=True)
+def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
+    """Rate of the content fill H: from the old content if ``inverse_step`` > 0, else from the gap's rate if ``squeeze``."""
+    n, m = H.shape
+    for i in range(n):
+        for j in range(m):
+            if inverse_step > 0.0:
+                rate_out[i, j] = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
+            elif squeeze:
+                rate_out[i, j] = fill[i, j] * H_t[i, j]
+            else:
+                rate_out[i, j] = 0.0
+
+
+@njit(cache=True)
+def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_out):
+    """What enters at fixed vertices: their balance; next to a ruptured film only the flow over the end's link.
+
+    ``unbroken`` (n, m) is all True for cavitation models that conserve mass.
+    """
+    n, m = q.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            outside_out[i, j] = 0.0
+            if not fixed[i, j]:
+                continue
+            up = 0.0
+            down = 0.0
+            if j + 1 < m:
+                f = fz[i, j]
+                up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
+            if j > 0:
+                f = fz[i, j - 1]
+                down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
+            outside_out[i, j] = up - down
+            if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
+                continue
+            f = fx[i, j]
+            out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
+            f = fx[prv, j]
+            into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
+            outside_out[i, j] += out - into + area[i, j] * rate[i, j]
 
 
 @njit(cache=True)

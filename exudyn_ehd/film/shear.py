@@ -90,11 +90,15 @@ def thin_viscosity(H, vx, per_speed, n, r_inf, ratio_out, ratio_h_out, ratio_v_o
     """Carreau's ratio at gaps H with its derivatives to H and vx."""
     rows, cols = H.shape
     e = 0.5 * (n - 1.0)
+    last = 0.0
+    g = b = power = 0.0
     for i in range(rows):
         for j in range(cols):
-            g = per_speed * vx / H[i, j]
-            b = 1.0 + g * g
-            power = (1.0 - r_inf) * np.exp(e * np.log(b))
+            if H[i, j] != last:  # an aligned journal has one gap per column
+                last = H[i, j]
+                g = per_speed * vx / last
+                b = 1.0 + g * g
+                power = (1.0 - r_inf) * np.exp(e * np.log(b))
             slope = power / b * (n - 1.0) * g
             ratio_out[i, j] = r_inf + power
             ratio_h_out[i, j] = -slope * g / H[i, j]
@@ -106,13 +110,17 @@ def thin_conductance(gap, vx, per_speed, n, r_inf, tangent, g_io, g_h_io, g_v_io
     """Divide conductances by the (tangent) viscosity ratio at the links' gaps, derivatives to the gap and vx included."""
     rows, cols = gap.shape
     e = 0.5 * (n - 1.0)
+    last = 0.0
+    g = s = b = power = 0.0
     for i in range(rows):
         for j in range(cols):
             h = gap[i, j]
-            g = per_speed * vx / h
-            s = g * g
-            b = 1.0 + s
-            power = (1.0 - r_inf) * np.exp(e * np.log(b))
+            if h != last:  # an aligned journal has one gap per column
+                last = h
+                g = per_speed * vx / h
+                s = g * g
+                b = 1.0 + s
+                power = (1.0 - r_inf) * np.exp(e * np.log(b))
             if tangent:
                 r = r_inf + power * (1.0 + n * s) / b
                 slope = 2.0 * g * power / b * (n + (e - 1.0) * (1.0 + n * s) / b)

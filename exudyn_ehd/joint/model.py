@@ -175,6 +175,10 @@ class BearingModel:
         self.ratio_v: np.ndarray | None = None
         self.P_q: np.ndarray | None = None
         self.flow_scale = c * R**2
+        if self.effects.pressure_law is not None:
+            self.known = self.effects.pressure_law.transform(
+                np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
+            )
         self.step = 0.0
         self.set_viscosity_ratio(1.0)
         self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
@@ -305,7 +309,7 @@ class BearingModel:
         ends, cavity = self.end_pressures, self.cavity_pressure
         law = self.effects.pressure_law
         if law is not None:
-            known = law.transform(np.array([*ends, cavity]) * self.pressure_scale) / self.pressure_scale
+            known = self.known / self.pressure_scale
             ends, cavity = known[:2], float(known[2])
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends

@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.band_lu import PAD, factor_lu, solve_lu
 from exudyn_ehd.film.direct import number_cells
-from exudyn_ehd.film.energy import assemble_energy, film_flows, film_heat
+from exudyn_ehd.film.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
 from exudyn_ehd.film.flux import LinkFlux
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
@@ -33,44 +33,61 @@ def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float) -> np
     return law.viscosity(T, lubricant.density) / law.viscosity(np.asarray(lubricant.temperature), lubricant.density)
 
 
-class OilFlows:
-    """Flows of the film that was evaluated last, scaled by c R^2, all (n, m).
+class Exchange:
+    """Oil that enters the film evaluated last from outside, and the rate of its content.
 
     Attributes
     ----------
-    x, z : over the links i -> i+1 and j -> j+1
-    outside : entering from outside, at the ends and at supplies
-    found : entering in addition, where a cavitation model does not conserve mass; negative where it loses oil
-    content, rate : content of the storage term (scaled gap) and rate of the present content
+    fill, rate, outside : (n, m) arrays
+        Film fraction; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in units of c R^2.
     """
 
     def __init__(self, model: BearingModel) -> None:
         s, y, shape = model.solver, model.solver.system, model.grid.shape
         conserves, fixed = s.closure.conserves_mass, model.grid.fixed
-        fill = s.fill if conserves else s.ones
-        self.content = fill * s.H
-        if conserves and y.inverse_step > 0.0 and not s.instant:
-            self.rate = (self.content - y.mass_old) * y.inverse_step
-            self.content = y.mass_old
-        else:
-            self.rate = fill * s.H_t if s.squeeze else np.zeros(shape)
-        self.x, self.z, source = np.empty(shape), np.empty(shape), np.empty(shape)
-        film_flows(s.pressure, fill, y.kx, y.kz, y.fx, y.fz, s.area * self.rate, self.x, self.z, source)
-        self.outside = np.where(fixed, source, 0.0)
-        if conserves:
-            self.found = np.zeros(shape)
-            return
-        # Through an end where the film is ruptured passes only what flows over the link next to it.
-        unbroken = s.work.active | fixed
-        lower, upper = ~unbroken[:, 1], ~unbroken[:, -2]
-        self.outside[lower, 0] = self.z[lower, 0]
-        self.outside[upper, -1] = -self.z[upper, -2]
-        self.found = source - self.outside
+        self.fill = s.fill if conserves else s.ones
+        self.rate, self.outside = np.empty(shape), np.empty(shape)
+        self.stepped = conserves and y.inverse_step > 0.0 and not s.instant
+        old = y.mass_old if self.stepped else s.H
+        content_rate(s.H, s.H_t, self.fill, old, y.inverse_step if self.stepped else 0.0, s.squeeze, self.rate)
+        unbroken = np.ones(shape, dtype=np.bool_) if conserves else s.work.active | fixed
+        outside_flows(
+            s.pressure, self.fill, y.kx, y.kz, y.fx, y.fz, s.area, self.rate, fixed, unbroken, self.outside
+        )  # fmt: skip
+
+    @property
+    def leaving(self) -> float:
+        """Sum of what leaves."""
+        return -float(np.minimum(self.outside, 0.0).sum())
 
 
-def heat_power(model: BearingModel, flows: OilFlows) -> float:
+class OilFlows(Exchange):
+    """All flows of the film evaluated last, in units of c R^2.
+
+    Attributes
+    ----------
+    x, z : (n, m) arrays
+        Over the links i -> i+1 and j -> j+1.
+    found : (n, m) array
+        Entering in addition, where a cavitation model does not conserve mass; negative where it loses oil.
+    content : (n, m) array
+        Content of the storage term (scaled gap).
+    """
+
+    def __init__(self, model: BearingModel) -> None:
+        super().__init__(model)
+        s, y, shape = model.solver, model.solver.system, model.grid.shape
+        self.content = y.mass_old if self.stepped else self.fill * s.H
+        self.x, self.z, self.found = np.empty(shape), np.empty(shape), np.empty(shape)
+        film_flows(s.pressure, self.fill, y.kx, y.kz, y.fx, y.fz, s.area, self.rate, self.x, self.z, self.found)
+        self.found -= self.outside
+        if s.closure.conserves_mass:
+            self.found[:] = 0.0
+
+
+def heat_power(model: BearingModel, flows: Exchange) -> float:
     """Power that the film and its contacts turn into heat, W: the mechanical power and the work of the oil pressed through."""
-    work = model.pressure_scale * model.flow_scale * float(np.sum(model.P * flows.outside))
+    work = model.pressure_scale * model.flow_scale * float(np.vdot(model.P, flows.outside))
     return model.quantities()["power_loss"] + work
 
 
@@ -107,9 +124,8 @@ class LumpedTemperature:
 
     def _rates(self, model: BearingModel) -> tuple[float, float]:
         """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
-        flows = OilFlows(model)
-        out = -model.flow_scale * float(np.sum(np.minimum(flows.outside, 0.0)))
-        return heat_power(model, flows), self.flow_capacity * out
+        flows = Exchange(model)
+        return heat_power(model, flows), self.flow_capacity * model.flow_scale * flows.leaving
 
     def advance(self, model: BearingModel) -> float:
         """Temperature at the end of the step that was evaluated last."""
@@ -228,8 +244,11 @@ class FilmTemperature:
         converges where the heating is strong; the fixed point is that of the heat itself.
         """
         flows = OilFlows(model)
-        leaving = float(np.sum(np.maximum(-flows.outside, 0.0)))
-        if self.transfer == 0.0 and leaving <= NO_FLOW * float(np.abs(flows.x).max()) and self._heat(model).max() > 0.0:
+        if (
+            self.transfer == 0.0
+            and flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
+            and self._heat(model).max() > 0.0
+        ):
             return np.full(model.grid.shape, np.inf)
         return self._solve(model, 0.0)[0]
 
