@@ -19,6 +19,9 @@ SHEAR_LAWS = (CarreauShear,)
 class Lubricant:
     """Lubricant: Newtonian and of constant viscosity unless laws are named.
 
+    When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear law for
+    multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a half to the time of a film evaluation.
+
     Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at ``temperature``, at
     rest.
 
@@ -29,7 +32,8 @@ class Lubricant:
     density : float
         kg/m3; used where a mass, a Reynolds number, a heat capacity or a kinematic viscosity enters.
     temperature : float
-        K; a thermal effect departs from it, without one it is the temperature of the whole film.
+        K, at which ``viscosity`` holds; without a thermal effect the whole film has it. To change it, use `at`, which changes
+        the viscosity along.
     specific_heat : float
         J/(kg K); only used by thermal effects.
     pressure_law : BarusPressure, RoelandsPressure or None
