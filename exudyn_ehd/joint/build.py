@@ -6,6 +6,7 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.joint.model import BearingModel, Effects
 from exudyn_ehd.joint.rheology import collect_rheology
+from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
 
 
@@ -25,7 +26,9 @@ def collect_effects(bearing: JournalBearing) -> Effects:
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
-    return BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    model = BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model
 
 
 def build_model(bearing: JournalBearing) -> BearingModel:
@@ -43,4 +46,6 @@ def build_model(bearing: JournalBearing) -> BearingModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
             "concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
-    return BearingModel(bearing, effects=collect_effects(bearing))
+    model = BearingModel(bearing, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model

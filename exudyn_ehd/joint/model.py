@@ -26,7 +26,6 @@ from exudyn_ehd.film.loads import (
     couette_integral_fill,
     couette_integral_ratio,
     end_flows,
-    peak_of,
     pressure_integrals,
     refined_peak,
 )
@@ -179,9 +178,10 @@ class BearingModel:
             self.known = self.effects.pressure_law.transform(
                 np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
             )
-        self.step = 0.0
         self.set_viscosity_ratio(1.0)
-        self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers = self.remembers_mass or self.effects.thermal is not None
+        self.start: tuple[History | None, float] = (None, 0.0)
         self.serial = 0
         self.status = Status.NOT_FINITE
         self.integrals = np.zeros(4)
@@ -202,13 +202,13 @@ class BearingModel:
 
     def initial_history(self, motion: np.ndarray) -> History | None:
         """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
+        if not self.remembers:
+            return None
         thermal = self.effects.thermal
         temperature = None if thermal is None else thermal.initial_temperature(self)
-        if not self.remembers:
-            return None if thermal is None else History(temperature=temperature)
         self._set_motion(motion)
         self._set_gap(None)
-        return History(mass=self.solver.H.copy(), temperature=temperature)
+        return History(mass=self.solver.H.copy() if self.remembers_mass else None, temperature=temperature)
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -222,11 +222,11 @@ class BearingModel:
             raise RuntimeError(
                 f"BearingModel.history: the last evaluation ended with {self.status.name}; there is no history to keep."
             )
+        if not self.remembers:
+            return None
         thermal = self.effects.thermal
         temperature = None if thermal is None else thermal.advance(self)
-        if not self.remembers:
-            return None if thermal is None else History(temperature=temperature)
-        return History(mass=self.solver.fill * self.solver.H, temperature=temperature)
+        return History(mass=self.solver.fill * self.solver.H if self.remembers_mass else None, temperature=temperature)
 
     def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
         """Evaluate the film.
@@ -246,7 +246,7 @@ class BearingModel:
             With ``status`` other than CONVERGED the wrench is nan.
         """
         self.serial += 1
-        self.step = step
+        self.start = (history, step)
         self._set_motion(motion)
         if self.effects.thermal is not None:
             self.effects.thermal.begin(self, history)
@@ -313,7 +313,7 @@ class BearingModel:
             ends, cavity = known[:2], float(known[2])
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends
-        mass = history.mass if history is not None and self.remembers else None
+        mass = history.mass if history is not None and self.remembers_mass else None
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )
@@ -447,7 +447,7 @@ class BearingModel:
         -------
         dict
             ``minimum_gap`` (m, over the whole bearing with its edges), ``eccentricity_ratio`` (at the mid-plane),
-            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, the film's largest vertex),
+            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from parabolas through the largest vertex),
             ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
@@ -468,10 +468,11 @@ class BearingModel:
         poiseuille = 6.0 * self.s_theta
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
+        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
         out |= {
-            "peak_pressure": peak_of(self.P)[0] * self.pressure_scale,
+            "peak_pressure": self.refined_peak()[0],
             "friction_torque": friction,
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
@@ -507,4 +508,4 @@ class BearingModel:
 
 def _ring_integral(row: np.ndarray) -> float:
     """Integral over the circumference of a row of vertex values."""
-    return float(row.mean() * 2.0 * math.pi)
+    return float(row.sum() * (2.0 * math.pi / row.size))

@@ -129,10 +129,10 @@ class LumpedTemperature:
 
     def advance(self, model: BearingModel) -> float:
         """Temperature at the end of the step that was evaluated last."""
-        if model.step <= 0.0:
+        if model.start[1] <= 0.0:
             return self.temperature
         heat, flow = self._rates(model)
-        store, G = self.capacity / model.step, self.spec.housing_conductance
+        store, G = self.capacity / model.start[1], self.spec.housing_conductance
         rise = heat + flow * self.spec.supply_temperature + G * self.housing + store * self.temperature
         return rise / (store + flow + G)
 
@@ -147,7 +147,7 @@ class LumpedTemperature:
     def balance(self, model: BearingModel, temperature: float) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
         heat, flow = self._rates(model)
-        stored = self.capacity * (temperature - self.temperature) / model.step if model.step > 0.0 else 0.0
+        stored = self.capacity * (temperature - self.temperature) / model.start[1] if model.start[1] > 0.0 else 0.0
         return {
             "heat_in": heat,
             "carried_out": flow * (temperature - self.spec.supply_temperature),
@@ -233,9 +233,9 @@ class FilmTemperature:
 
     def advance(self, model: BearingModel) -> np.ndarray:
         """Temperatures at the end of the step that was evaluated last (n, m)."""
-        if model.step <= 0.0:
+        if model.start[1] <= 0.0:
             return self.temperature
-        return self._solve(model, model.step)[0]
+        return self._solve(model, model.start[1])[0]
 
     def steady_temperature(self, model: BearingModel) -> np.ndarray:
         """Temperatures in balance with the heat of the last evaluation (n, m); not finite without a way out for the heat.
@@ -254,7 +254,7 @@ class FilmTemperature:
 
     def balance(self, model: BearingModel, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
-        return self._solve(model, model.step, temperature)[1]
+        return self._solve(model, model.start[1], temperature)[1]
 
     def _heat(self, model: BearingModel) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""

@@ -1,0 +1,68 @@
+"""Fixtures for all tests: examples as modules, no screen, a bearing, and measured errors."""
+
+import importlib.util
+import os
+import pathlib
+import sys
+from collections.abc import Callable
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import pytest
+
+import exudyn_ehd as ehd
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RADIUS = 0.025
+CLEARANCE = 25e-6
+VISCOSITY = 0.02
+
+
+def load_module(path):
+    """Import a file by its path, once."""
+    name = f"loaded_{path.stem}"
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, path)
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        spec.loader.exec_module(module)
+    return sys.modules[name]
+
+
+@pytest.fixture(scope="session")
+def example():
+    """Function that imports an example by its name."""
+    return lambda name: load_module(ROOT / "examples" / f"{name}.py")
+
+
+@pytest.fixture(scope="session")
+def planar_rotor():
+    """The scene `PlanarRotor` of mechanisms/planar.py."""
+    return load_module(ROOT / "tests" / "mechanisms" / "planar.py").PlanarRotor
+
+
+@pytest.fixture(scope="session")
+def make_bearing() -> Callable[..., ehd.JournalBearing]:
+    """A bearing of R = 25 mm, psi = 0.001, mu = 0.02 Pa s; everything can be replaced."""
+
+    def make(length_to_diameter: float = 1.0, **options: object) -> ehd.JournalBearing:
+        values = {
+            "journal_radius": RADIUS,
+            "radial_clearance": CLEARANCE,
+            "lubricant": ehd.Lubricant(viscosity=VISCOSITY),
+        } | options
+        values.setdefault("length", 2.0 * length_to_diameter * values["journal_radius"])
+        return ehd.JournalBearing(**values)
+
+    return make
+
+
+@pytest.fixture
+def measured() -> Callable[[str, float, float], None]:
+    """Assert that a measured error is below its limit, and print both (shown by ``pytest -rP``)."""
+
+    def check(what: str, value: float, limit: float) -> None:
+        print(f"{what}: {value:.3g} (limit {limit:g})")
+        assert value <= limit, f"{what}: {value:.4g} exceeds {limit:g}"
+
+    return check
