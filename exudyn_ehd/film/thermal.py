@@ -13,7 +13,8 @@ class LumpedThermal:
 
     ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film dissipates,
     Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing, ``C = rho c_p 2 pi R L c + capacity``.
-    Backward Euler at every accepted step, first order; the force of a step sees the temperature at its start.
+    Backward Euler at every accepted step, first order; the force of a step sees the temperature at its start. `steady` and
+    `equilibrium` take the settled temperature; a static solution of a multibody model takes the initial one.
 
     Parameters
     ----------
@@ -51,7 +52,8 @@ class FilmEnergy:
     Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, fully upwind (first order), backward Euler.
     Oil enters through the ends and supplies with the supply temperature. Cavitation models that do not conserve mass lose oil
     at the end of the film and find it again at its beginning: it returns fully mixed, the leakage replaced by supply oil.
-    The viscosity of a step follows from the temperatures at its start: the coupling is explicit, of first order.
+    The viscosity of a step follows from the temperatures at its start: the coupling is explicit, of first order. `steady` and
+    `equilibrium` take the settled field; a static solution of a multibody model takes the initial temperature.
 
     Parameters
     ----------
