@@ -26,6 +26,7 @@ from exudyn_ehd.status import InputError, require_number
 
 TABLE_INTERVALS = 2048
 TABLE_RATE = 50.0
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +110,7 @@ def power_table(exponent: float) -> np.ndarray:
     return np.ascontiguousarray(np.array([f[:-1], d[:-1], e[:-1], c3, c4, c5]).T)
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=_FAST)
 def power_from(table, e, g, b):
     """``b^e`` with b = 1 + g^2 from the table of `power_table`; written out beyond its end."""
     a = abs(g)
@@ -122,50 +123,56 @@ def power_from(table, e, g, b):
     return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))))
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=_FAST)
 def thin_viscosity(H, vx, per_speed, n, r_inf, table, ratio_out, ratio_h_out, ratio_v_out):
     """Carreau's ratio at gaps H with its derivatives to H and vx."""
     rows, cols = H.shape
     e = 0.5 * (n - 1.0)
+    speed = per_speed * vx
     last = 0.0
-    g = b = power = 0.0
+    per_gap = g = power = slope = 0.0
     for i in range(rows):
         for j in range(cols):
             if H[i, j] != last:  # an aligned journal has one gap per column
                 last = H[i, j]
-                g = per_speed * vx / last
+                per_gap = 1.0 / last
+                g = speed * per_gap
                 b = 1.0 + g * g
                 power = (1.0 - r_inf) * power_from(table, e, g, b)
-            slope = power / b * (n - 1.0) * g
+                slope = power / b * (n - 1.0) * g * per_gap
             ratio_out[i, j] = r_inf + power
-            ratio_h_out[i, j] = -slope * g / H[i, j]
-            ratio_v_out[i, j] = slope * per_speed / H[i, j]
+            ratio_h_out[i, j] = -slope * g
+            ratio_v_out[i, j] = slope * per_speed
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=_FAST)
 def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io, g_v_io):
     """Divide conductances by the (tangent) viscosity ratio at the links' gaps, derivatives to the gap and vx included."""
     rows, cols = gap.shape
     e = 0.5 * (n - 1.0)
+    speed = per_speed * vx
     last = 0.0
-    g = s = b = power = 0.0
+    g = inverse = slope = 0.0
     for i in range(rows):
         for j in range(cols):
-            h = gap[i, j]
-            if h != last:  # an aligned journal has one gap per column
-                last = h
-                g = per_speed * vx / h
+            if gap[i, j] != last:  # an aligned journal has one gap per column
+                last = gap[i, j]
+                per_gap = 1.0 / last
+                g = speed * per_gap
                 s = g * g
                 b = 1.0 + s
-                power = (1.0 - r_inf) * power_from(table, e, g, b)
-            if tangent:
-                r = r_inf + power * (1.0 + n * s) / b
-                slope = 2.0 * g * power / b * (n + (e - 1.0) * (1.0 + n * s) / b)
-            else:
-                r = r_inf + power
-                slope = 2.0 * g * power / b * e
-            inverse = 1.0 / r
+                r = (1.0 - r_inf) * power_from(table, e, g, b)
+                per_b = 1.0 / b
+                slope = 2.0 * g * r * per_b
+                if tangent:
+                    bend = (1.0 + n * s) * per_b
+                    slope *= n + (e - 1.0) * bend
+                    r *= bend
+                else:
+                    slope *= e
+                inverse = 1.0 / (r_inf + r)
+                slope *= inverse * per_gap
             c = g_io[i, j] * inverse
             g_io[i, j] = c
-            g_h_io[i, j] = g_h_io[i, j] * inverse + c * inverse * slope * g / h
-            g_v_io[i, j] = g_v_io[i, j] * inverse - c * inverse * slope * per_speed / h
+            g_h_io[i, j] = g_h_io[i, j] * inverse + c * slope * g
+            g_v_io[i, j] = g_v_io[i, j] * inverse - c * slope * per_speed

@@ -338,12 +338,14 @@ class BearingModel:
             ratio_q *= self.pressure_scale
             self.P_q = ratio.copy()
         if self.effects.shear_factor is not None:
-            factor, factor_h, factor_v = np.empty(shape), np.empty(shape), np.empty(shape)
-            self.effects.shear_factor.factor(s.H, s.vx, factor, factor_h, factor_v)
-            ratio_h = ratio * factor_h
-            ratio_v = ratio * factor_v
-            ratio_q *= factor
-            ratio *= factor
+            factor = np.empty(shape)
+            self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+            if self.P_q is not None:
+                ratio_h *= ratio
+                ratio_v *= ratio
+                ratio_q *= factor
+                factor *= ratio
+            ratio = factor
         self.ratio, self.ratio_q, self.ratio_h, self.ratio_v = ratio, ratio_q, ratio_h, ratio_v
         return Status.CONVERGED
 
