@@ -29,7 +29,12 @@ from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slide
 from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.oils import oil
+from exudyn_ehd.film.shear import CarreauShear
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
+from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
@@ -75,7 +80,9 @@ def __getattr__(name: str) -> Any:
 __all__ = [
     "ANCFBush",
     "AxialGroove",
+    "BarusPressure",
     "BushMesh",
+    "CarreauShear",
     "CarriedOuter",
     "CircumferentialGroove",
     "ClassicSOR",
@@ -87,6 +94,7 @@ __all__ = [
     "ElrodAdams",
     "EquilibriumResult",
     "FactorReuse",
+    "FilmEnergy",
     "FilmError",
     "FilmResult",
     "FiniteLength",
@@ -108,12 +116,15 @@ __all__ = [
     "LongBearing",
     "Lubricant",
     "LubricatedJoint",
+    "LumpedThermal",
     "MaximumGap",
     "Periodic",
     "Pocket",
     "Quantity",
     "Rayleigh",
     "RegularisedWall",
+    "ReynoldsTemperature",
+    "RoelandsPressure",
     "SaintVenantKirchhoff",
     "ShortBearing",
     "SolveDynamicSparse",
@@ -122,10 +133,13 @@ __all__ = [
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
+    "VogelTemperature",
+    "WaltherTemperature",
     "bearing_grid",
     "equilibrium",
     "mesh_from_arrays",
     "mesh_from_fem",
+    "oil",
     "slider_grid",
     "solve_film",
     "steady",

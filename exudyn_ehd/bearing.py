@@ -16,6 +16,7 @@ from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.supply import SupplyArea, check_supply
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -67,6 +68,8 @@ class JournalBearing:
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
     supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket
         Areas with a prescribed supply pressure; empty: none.
+    thermal : LumpedThermal, FilmEnergy or None
+        Temperature of the film; None: isothermal.
 
     Raises
     ------
@@ -85,6 +88,7 @@ class JournalBearing:
     squeeze: bool = True
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
+    thermal: LumpedThermal | FilmEnergy | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -100,6 +104,7 @@ class JournalBearing:
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")

@@ -7,6 +7,7 @@ from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.joint.impedance import ImpedanceModel
 from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.rheology import collect_rheology
 from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
 
@@ -14,7 +15,15 @@ from exudyn_ehd.status import InputError
 def collect_effects(bearing: JournalBearing) -> Effects:
     """The effects that a bearing names, in scaled form."""
     wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
-    return Effects(limiter=wall, contacts=() if wall is None else (wall,))
+    rheology = collect_rheology(bearing)
+    return Effects(
+        limiter=wall,
+        contacts=() if wall is None else (wall,),
+        flux=rheology.flux,
+        pressure_law=rheology.pressure_law,
+        shear_factor=rheology.shear_factor,
+        thermal=rheology.thermal,
+    )
 
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -14,7 +14,10 @@ from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.steps import SteppedGap
 from exudyn_ehd.joint.build import build_study_model
+from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.joint.rheology import known_pressures, true_pressure
+from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
@@ -81,6 +84,7 @@ def solve_film(
     gap : (n, m) array
         Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
+        Its pressure law takes part; a shear law needs a bearing.
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
     gap_rate : (n, m) array, optional
@@ -121,22 +125,24 @@ def solve_film(
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
         solver.H_t[:] = rate
+    boundary, cavity = known_pressures(lubricant, boundary, closure.cavity_pressure)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
-    status, iterations = solver.solve(
-        speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale, mass, step
-    )
-    if status is not Status.CONVERGED:
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), cavity / scale, mass, step)
+    pressure = true_pressure(lubricant, solver.pressure, scale) if status is Status.CONVERGED else None
+    if pressure is None and status is Status.CONVERGED:
+        status = Status.NO_PRESSURE
+    if status is not Status.CONVERGED or pressure is None:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
     fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
     return FilmResult(
         status=status,
         iterations=iterations,
-        pressure=solver.pressure * scale,
+        pressure=pressure * scale,
         gap=gap,
         unbroken=solver.work.active.copy(),
         inflow=solver.inflow() * c * R**2,
-        load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
+        load=float(np.sum(pressure * grid.weight)) * scale * R**2,
         fill=fill,
         content=fill * gap,
     )
@@ -195,6 +201,8 @@ class SteadyResult:
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    temperature : (n, m) array, float or None
+        Of the film, K; None for an isothermal bearing.
     """
 
     theta: np.ndarray
@@ -218,6 +226,7 @@ class SteadyResult:
     attitude_angle: float
     status: Status
     iterations: int
+    temperature: float | np.ndarray | None = None
 
 
 def steady(
@@ -283,14 +292,21 @@ def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -
         )
 
 
+def _history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
+    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there; None if nothing remembers."""
+    history = settle(model, motion)
+    if not model.remembers_mass or not np.any(motion[4:8]):
+        return history
+    at_rest = motion.copy()
+    at_rest[4:8] = 0.0
+    _evaluate(model, at_rest, where)
+    content = model.history()
+    assert content is not None
+    return replace(content, temperature=None if history is None else history.temperature)
+
+
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    history = None
-    if model.remembers and np.any(motion[4:8]):
-        at_rest = motion.copy()
-        at_rest[4:8] = 0.0
-        _evaluate(model, at_rest, where)
-        history = model.history()
-    evaluation = model.evaluate(motion, history)
+    evaluation = model.evaluate(motion, _history_at(model, motion, where))
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -334,6 +350,7 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
+        temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
     )
 
 
