@@ -67,7 +67,7 @@ class ImpedanceMap:
         Nodes in eccentricity and in direction.
     """
 
-    n_theta: int = 256
+    n_theta: int = 320
     n_z: int = 10
     stretch: float = 0.75
     largest_eccentricity_ratio: float = 0.99
@@ -77,7 +77,7 @@ class ImpedanceMap:
     circumferential_pressure_flow = True
 
     def __post_init__(self) -> None:
-        require_integer("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="256 is a good start.")
+        require_integer("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
         require_integer("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
         require_integer("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
         require_integer("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
@@ -290,15 +290,16 @@ def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out,
 
 
 @njit(cache=True)
-def impedance_wrench(nodes, p, motion, force_tangent_out, wrench_out):
-    """Wrench (6,) on the journal and the force's derivatives (2, 5) to (x, y, dx/dt, dy/dt, omega), SI units.
+def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
+    """Wrench (6,) on the journal and its derivatives (6, 10) to the motion, SI units; tilts have none.
 
     p = (step_s, step_alpha, largest eps, clearance, radius, half length, force scale, Couette scale, tilt share); returns 0, or
     1 not finite, 2 outside the map, 3 no film, 4 tilted.
     """
     c, R = p[3], p[4]
-    x, y, omega = motion[0], motion[1], motion[8]
+    x, y, omega, w = motion[0], motion[1], motion[8], motion[9]
     wrench_out[:] = np.nan
+    tangent_out[:] = np.nan
     if not np.isfinite(np.sum(motion)):
         return 1
     eps = np.sqrt(x * x + y * y) / c
@@ -306,20 +307,26 @@ def impedance_wrench(nodes, p, motion, force_tangent_out, wrench_out):
         return 2 if eps < 1.0 else 3
     if p[5] * np.sqrt(motion[2] ** 2 + motion[3] ** 2) > p[8] * (1.0 - eps) * c:
         return 4
-    force = np.empty(2)
-    impedance_force(
-        nodes, p[0], p[1], x / c, y / c, motion[4] / c, motion[5] / c, omega, force, force_tangent_out
-    )  # fmt: skip
-    for i in range(2):
-        for k in range(5):
-            force_tangent_out[i, k] *= p[6] / c if k < 4 else p[6]
-    couette = p[7] / np.sqrt(1.0 - eps * eps)
-    wrench_out[0] = p[6] * force[0]
-    wrench_out[1] = p[6] * force[1]
-    wrench_out[2] = -couette * motion[9]
-    wrench_out[3] = wrench_out[4] = 0.0
+    f, f_d = np.empty(2), np.empty((2, 5))
+    impedance_force(nodes, p[0], p[1], x / c, y / c, motion[4] / c, motion[5] / c, omega, f, f_d)
+    fx, fy = p[6] * f[0], p[6] * f[1]
+    rest = 1.0 - eps * eps
+    couette = p[7] / np.sqrt(rest)
     # Pressure on the gap's slope: half of e x F, the sum of (h / 2) dp / dtheta by parts.
-    wrench_out[5] = -couette * R * R * omega + 0.5 * (x * wrench_out[1] - y * wrench_out[0])
+    wrench_out[0], wrench_out[1], wrench_out[2] = fx, fy, -couette * w
+    wrench_out[3] = wrench_out[4] = 0.0
+    wrench_out[5] = -couette * R * R * omega + 0.5 * (x * fy - y * fx)
+    tangent_out[:] = 0.0
+    for k, column in enumerate((0, 1, 4, 5, 8)):
+        scale = p[6] / c if k < 4 else p[6]
+        dx, dy = scale * f_d[0, k], scale * f_d[1, k]
+        tangent_out[0, column], tangent_out[1, column] = dx, dy
+        tangent_out[5, column] = 0.5 * (x * dy - y * dx)
+    slope = couette / (rest * c * c)
+    tangent_out[5, 0] += 0.5 * fy - R * R * omega * slope * x
+    tangent_out[5, 1] -= 0.5 * fx + R * R * omega * slope * y
+    tangent_out[5, 8] -= couette * R * R
+    tangent_out[2, 0], tangent_out[2, 1], tangent_out[2, 9] = -slope * w * x, -slope * w * y, -couette
     return 0
 
 

@@ -32,12 +32,7 @@ class ImpedanceEvaluation:
         self.iterations = 0
 
     def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10), exact; columns and rows of the tilt are zero."""
-        return self._model.full_tangent(self)
-
-    @property
-    def force_tangent(self) -> np.ndarray:
-        """(2, 5) to (x, y, dx/dt, dy/dt, omega), SI units."""
+        """d wrench / d motion (6, 10), exact; columns and rows of the tilt are zero; nan without a film."""
         return self._tangent
 
     def quantities(self) -> dict[str, float]:
@@ -107,8 +102,8 @@ class ImpedanceModel:
             If the journal is tilted by more than is negligible.
         """
         motion = np.array(motion, dtype=float)
-        wrench, tangent = np.empty(6), np.empty((2, 5))
-        code = impedance_wrench(self.table.nodes, self.parameters, motion, tangent, wrench)
+        wrench, tangent = np.empty(6), np.empty((6, 10))
+        code = impedance_wrench(self.table.nodes, self.parameters, motion, wrench, tangent)
         if code == _TILTED:
             self._refuse_tilt(motion)
         return ImpedanceEvaluation(self, _OUTCOMES[code], motion, wrench, tangent)
@@ -122,28 +117,6 @@ class ImpedanceModel:
             f"gap at the ends; the map is for aligned journals (up to {NEGLIGIBLE_TILT:.0%} of the gap): guide the journal's axis, or "
             "use film=FiniteLength(...)."
         )
-
-    def full_tangent(self, evaluation: ImpedanceEvaluation) -> np.ndarray:
-        """d wrench / d motion (6, 10) of an evaluation; nan without a film."""
-        if evaluation.status is not Status.CONVERGED:
-            return np.full((6, 10), np.nan)
-        x, y, *_, omega, w = evaluation.motion.tolist()
-        fx, fy = evaluation.wrench[0], evaluation.wrench[1]
-        b = self.bearing
-        R, c = b.journal_radius, b.radial_clearance
-        f = evaluation.force_tangent
-        out = np.zeros((6, 10))
-        columns = [0, 1, 4, 5, 8]
-        out[:2, columns] = f
-        rest = 1.0 - (x * x + y * y) / c**2
-        couette = self.shear_scale * 2.0 * math.pi * b.length / R / math.sqrt(rest)
-        slope = couette / (rest * c**2)
-        out[5, columns] = 0.5 * (x * f[1] - y * f[0])
-        out[5, 0] += 0.5 * fy - R**2 * omega * slope * x
-        out[5, 1] += -0.5 * fx - R**2 * omega * slope * y
-        out[5, 8] -= couette * R**2
-        out[2, 0], out[2, 1], out[2, 9] = -slope * w * x, -slope * w * y, -couette
-        return out
 
     def quantities(self, evaluation: ImpedanceEvaluation) -> dict[str, float]:
         """Scalars of an evaluation; see `ImpedanceEvaluation.quantities`."""

@@ -8,6 +8,14 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
 
+
+@pytest.fixture(scope="module", autouse=True)
+def cache(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EXUDYN_EHD_CACHE", str(tmp_path_factory.mktemp("maps")))
+        yield
+
+
 pytestmark = pytest.mark.benchmark
 GUMBEL = ehd.Gumbel()
 FILMS = {

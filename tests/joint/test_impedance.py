@@ -41,7 +41,7 @@ def test_default_map_within_one_percent_of_the_film(make_bearing, measured, clos
     assert model.table.samples >= 1000
     measured("reported worst error", model.table.worst_error, 0.01)
     measured("reported median error", model.table.median_error, 1e-4)
-    film = build_model(make_bearing(film=ehd.FiniteLength(n_theta=256, n_z=10), cavitation=closure))
+    film = build_model(make_bearing(film=ehd.FiniteLength(n_theta=320, n_z=10), cavitation=closure))
     rng = np.random.default_rng(8)
     errors = []
     for _ in range(150):
