@@ -5,7 +5,8 @@ Module map
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`
-coupling  Exudyn: `CreateLubricatedJoint`, film element, kinematics, histories, sensors
+solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
+coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -15,6 +16,9 @@ SI units, radians, gauge pressures. Joint frame: origin on the bearing's mid-pla
 housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to L/2. Forces act on the journal, moments are
 taken about the joint's origin.
 """
+
+import importlib
+from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
@@ -31,34 +35,97 @@ from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
 
+# Imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid.
+_LAZY = {
+    "ConfigureSolver": "coupling.settings",
+    "CreateLubricatedJoint": "coupling.api",
+    "Free": "coupling.api",
+    "Held": "coupling.api",
+    "JointHistory": "coupling.history",
+    "LubricatedJoint": "coupling.api",
+    "Quantity": "coupling.history",
+    "CarriedOuter": "coupling.bush_object",
+    "CreateFlexibleBush": "coupling.bush_object",
+    "FixedOuter": "coupling.bush_object",
+    "FlexibleBush": "coupling.bush_object",
+    "FreeOuter": "coupling.bush_object",
+    "Support": "coupling.bush_object",
+    "FactorReuse": "coupling.sparse_newton",
+    "SolveDynamicSparse": "coupling.sparse_newton",
+    "ANCFBush": "solid.bush",
+    "BushMesh": "solid.mesh",
+    "DeadPressure": "solid.loads",
+    "FollowerPressure": "solid.loads",
+    "HollowCylinder": "solid.mesh",
+    "LineLoad": "solid.loads",
+    "Rayleigh": "solid.bush",
+    "SaintVenantKirchhoff": "solid.total_lagrange",
+    "SurfaceLoad": "solid.loads",
+    "mesh_from_arrays": "solid.mesh",
+    "mesh_from_fem": "solid.mesh",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LAZY:
+        return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
+    raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}")
+
+
 __all__ = [
+    "ANCFBush",
     "AxialGroove",
+    "BushMesh",
+    "CarriedOuter",
     "CircumferentialGroove",
     "ClassicSOR",
+    "ConfigureSolver",
+    "CreateFlexibleBush",
+    "CreateLubricatedJoint",
+    "DeadPressure",
     "EHDError",
     "ElrodAdams",
     "EquilibriumResult",
+    "FactorReuse",
     "FilmError",
     "FilmResult",
     "FiniteLength",
+    "FixedOuter",
+    "FlexibleBush",
+    "FollowerPressure",
+    "Free",
+    "FreeOuter",
     "FullSommerfeld",
     "Gumbel",
+    "Held",
     "Hole",
+    "HollowCylinder",
     "ImpedanceMap",
     "InputError",
+    "JointHistory",
     "JournalBearing",
+    "LineLoad",
     "LongBearing",
     "Lubricant",
+    "LubricatedJoint",
     "MaximumGap",
     "Periodic",
     "Pocket",
+    "Quantity",
+    "Rayleigh",
     "RegularisedWall",
+    "SaintVenantKirchhoff",
     "ShortBearing",
+    "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "Support",
+    "SurfaceLoad",
     "SwiftStieber",
     "bearing_grid",
     "equilibrium",
+    "mesh_from_arrays",
+    "mesh_from_fem",
     "slider_grid",
     "solve_film",
     "steady",

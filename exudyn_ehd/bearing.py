@@ -32,7 +32,7 @@ class MaximumGap:
     """The film starts with ambient pressure on the line of maximum gap, as in the classical tables.
 
     Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving one, so
-    that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it raises the load by 2 % against `Periodic`.
+    that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
     """
 
 

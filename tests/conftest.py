@@ -1,16 +1,44 @@
-"""Fixtures that all tests share."""
+"""Fixtures for all tests: examples as modules, no screen, a bearing, and measured errors."""
 
-from __future__ import annotations
-
+import importlib.util
+import os
+import pathlib
+import sys
 from collections.abc import Callable
+
+os.environ.setdefault("MPLBACKEND", "Agg")
 
 import pytest
 
 import exudyn_ehd as ehd
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent
 RADIUS = 0.025
 CLEARANCE = 25e-6
 VISCOSITY = 0.02
+
+
+def load_module(path):
+    """Import a file by its path, once."""
+    name = f"loaded_{path.stem}"
+    if name not in sys.modules:
+        spec = importlib.util.spec_from_file_location(name, path)
+        module = importlib.util.module_from_spec(spec)
+        sys.modules[name] = module
+        spec.loader.exec_module(module)
+    return sys.modules[name]
+
+
+@pytest.fixture(scope="session")
+def example():
+    """Function that imports an example by its name."""
+    return lambda name: load_module(ROOT / "examples" / f"{name}.py")
+
+
+@pytest.fixture(scope="session")
+def planar_rotor():
+    """The scene `PlanarRotor` of mechanisms/planar.py."""
+    return load_module(ROOT / "tests" / "mechanisms" / "planar.py").PlanarRotor
 
 
 @pytest.fixture(scope="session")

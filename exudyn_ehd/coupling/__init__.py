@@ -1,1 +1,28 @@
-"""Everything that touches Exudyn: the film element, kinematics of markers, histories, sensors."""
+"""Everything that touches Exudyn.
+
+Module map
+----------
+api           `CreateLubricatedJoint`, the handle `LubricatedJoint`, axial options `Free` and `Held`
+items         item numbers of a scene to carriers of a joint frame, input checks
+sides         who carries a marker frame: nodes of rigid bodies, ground, any other rigid marker
+kinematics    poses, rates and exact variations of the two frames, as kernels
+film_element  force and Jacobian user functions, failures, accepted steps
+solvers       which Exudyn solver is at work
+history       record of accepted steps; sensors: the same quantities as Exudyn sensors
+settings      `ConfigureSolver`
+contract      what a film model offers
+"""
+
+from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held, LubricatedJoint
+from exudyn_ehd.coupling.history import JointHistory, Quantity
+from exudyn_ehd.coupling.settings import ConfigureSolver
+
+__all__ = [
+    "ConfigureSolver",
+    "CreateLubricatedJoint",
+    "Free",
+    "Held",
+    "JointHistory",
+    "LubricatedJoint",
+    "Quantity",
+]

@@ -8,8 +8,8 @@ Each closure is a small frozen object, which a scene names, with one method, ``s
 * `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``, solved by
   the primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after finitely many
   steps (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47
-  (2009) 3001). Vertices with neither pressure nor source (a film at rest) count as active, so that a film at rest still
-  has the tangent of its closing side.
+  (2009) 3001). Vertices with neither pressure nor source (a film at rest) count as active, so that a film at rest has
+  the tangent of the whole film: the sum of what a motion and its opposite meet (a concentric journal meets half of it).
 """
 
 from __future__ import annotations
@@ -19,7 +19,15 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.direct import Workspace, assemble_band, factor_band, number_cells, solve_many, solve_one
+from exudyn_ehd.film.direct import (
+    Workspace,
+    assemble_band,
+    factor_band,
+    first_changed_row,
+    number_cells,
+    solve_many,
+    solve_one,
+)
 from exudyn_ehd.status import InputError, Status, require_number
 
 MAX_ACTIVE_SET_STEPS = 200
@@ -112,7 +120,7 @@ class SwiftStieber:
             np.logical_not(system.fixed, out=work.active)
         ok, steps, count, width = solve_active_set(
             system.kx, system.kz, system.b, system.fixed, system.cavity_pressure, work.active, work.order,
-            work.number, work.band, work.inv_diag, work.unknowns, system.pressure,
+            work.old_order, work.number, work.band, work.inv_diag, work.unknowns, system.pressure,
         )  # fmt: skip
         work.count, work.width, work.warm = count, width, ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
@@ -176,8 +184,8 @@ class FilmSystem:
 def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve on ``work.active`` into ``system.linear_pressure``."""
     ok, count, width = solve_on_active(
-        system.kx, system.kz, system.b, work.active, work.order, work.number, work.band, work.inv_diag,
-        work.unknowns, system.linear_pressure,
+        system.kx, system.kz, system.b, work.active, work.order, work.old_order, 0, 0, work.number, work.band,
+        work.inv_diag, work.unknowns, system.linear_pressure,
     )  # fmt: skip
     work.count, work.width = count, width
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
@@ -205,11 +213,17 @@ def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
 
 
 @njit(cache=True)
-def solve_on_active(kx, kz, b, active, order, number, band, inv_diag, unknowns, P):
-    """Factor and solve on the active vertices; P holds the known pressures elsewhere. Returns (ok, count, width)."""
+def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P):
+    """Factor and solve on the active vertices; P holds the known pressures elsewhere. Returns (ok, count, width).
+
+    ``old_order``, ``old_count`` and ``old_width`` describe the factor in ``band`` if it belongs to the same coefficients; only the
+    rows behind the first change are then factored again. ``old_count`` = 0: there is none.
+    """
     count, width = number_cells(active, kx, order, number)
-    assemble_band(kx, kz, number, order, count, width, band)
-    if not factor_band(band, count, width, inv_diag):
+    # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
+    first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else 0
+    assemble_band(kx, kz, number, order, count, width, first, band)
+    if not factor_band(band, count, width, first, inv_diag):
         return False, count, width
     gather_rhs(kx, kz, b, active, order, count, P, unknowns)
     solve_one(band, inv_diag, count, width, unknowns)
@@ -258,7 +272,7 @@ def update_active_set(kx, kz, b, fixed, pc, active, P):
 
 
 @njit(cache=True)
-def solve_active_set(kx, kz, b, fixed, pc, active, order, number, band, inv_diag, unknowns, P):
+def solve_active_set(kx, kz, b, fixed, pc, active, order, old_order, number, band, inv_diag, unknowns, P):
     """Swift-Stieber film; returns (ok, steps, count, width). ``active`` is the start and, on return, the result."""
     n, m = b.shape
     for i in range(n):
@@ -270,7 +284,12 @@ def solve_active_set(kx, kz, b, fixed, pc, active, order, number, band, inv_diag
     count = 0
     width = 1
     for step in range(MAX_ACTIVE_SET_STEPS):
-        ok, count, width = solve_on_active(kx, kz, b, active, order, number, band, inv_diag, unknowns, P)
+        old_count, old_width = count, width
+        for r in range(old_count):
+            old_order[r] = order[r]
+        ok, count, width = solve_on_active(
+            kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P
+        )
         if not ok:
             return False, step + 1, count, width
         if update_active_set(kx, kz, b, fixed, pc, active, P) == 0:

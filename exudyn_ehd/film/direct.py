@@ -89,13 +89,14 @@ def number_cells(active, kx, order_out, number_out):
 
 
 @njit(cache=True)
-def assemble_band(kx, kz, number, order, count, width, band_out):
-    """Fill the upper band of the active cells' matrix."""
+def assemble_band(kx, kz, number, order, count, width, first, band_out):
+    """Fill the upper band of the active cells' matrix, rows from ``first`` on."""
     n, m = number.shape
-    for r in range(count):
-        for d in range(width + 1 + PAD):
+    reach = max(width, m) + 1 + PAD
+    for r in range(first, count):
+        for d in range(reach):
             band_out[r, d] = 0.0
-    for r in range(count):
+    for r in range(first, count):
         i = order[r] // m
         j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
@@ -113,17 +114,34 @@ def assemble_band(kx, kz, number, order, count, width, band_out):
         if b >= 0 and kx[i, j] != 0.0:
             if b > r:
                 band_out[r, b - r] -= kx[i, j]
-            else:
+            elif b >= first:
                 band_out[b, r - b] -= kx[i, j]
 
 
+@njit(cache=True)
+def first_changed_row(order, old_order, old_count, count, width):
+    """Row up to which a matrix with this numbering equals the one with the old numbering; a multiple of 4."""
+    same = 0
+    while same < count and same < old_count and order[same] == old_order[same]:
+        same += 1
+    if same == count and same == old_count:
+        return count
+    row = max(0, same - width)
+    return row - row % 4
+
+
 @njit(cache=True, fastmath=_FAST)
-def factor_band(band, count, width, inv_diag_out):
-    """Factor in place, four pivots at a time; returns False if a pivot is not positive."""
-    k = 0
+def factor_band(band, count, width, first, inv_diag_out):
+    """Factor in place, four pivots at a time; returns False if a pivot is not positive.
+
+    Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The operations on
+    every row, and so its bits, are the same as for ``first = 0``.
+    """
+    k = max(0, first - width - 4)
+    k -= k % 4
     while k < count:
         block = min(4, count - k)
-        for q in range(block):
+        for q in range(block if k >= first else 0):
             row = band[k + q]
             if not row[0] > 0.0:
                 return False
@@ -146,7 +164,7 @@ def factor_band(band, count, width, inv_diag_out):
             i1 = inv_diag_out[k + 1]
             i2 = inv_diag_out[k + 2]
             i3 = inv_diag_out[k + 3]
-            for i in range(k + 4, last + 1):
+            for i in range(max(k + 4, first), last + 1):
                 d3 = i - k - 3
                 f3 = u3[d3] * i3
                 f2 = u2[d3 + 1] * i2
@@ -176,20 +194,56 @@ def factor_band(band, count, width, inv_diag_out):
 
 @njit(cache=True, fastmath=_FAST)
 def solve_one(band, inv_diag, count, width, x):
-    """Solve for one right-hand side (count,) in place."""
-    for k in range(count):
-        row = band[k]
+    """Solve for one right-hand side (count,) in place, four pivots at a time."""
+    whole = count - count % 4
+    for k in range(0, whole, 4):
+        u0, u1, u2, u3 = band[k], band[k + 1], band[k + 2], band[k + 3]
+        c0 = x[k] * inv_diag[k]
+        x1 = x[k + 1] - c0 * u0[1]
+        c1 = x1 * inv_diag[k + 1]
+        x2 = x[k + 2] - c0 * u0[2] - c1 * u1[1]
+        c2 = x2 * inv_diag[k + 2]
+        x3 = x[k + 3] - c0 * u0[3] - c1 * u1[2] - c2 * u2[1]
+        c3 = x3 * inv_diag[k + 3]
+        x[k + 1] = x1
+        x[k + 2] = x2
+        x[k + 3] = x3
+        reach = min(width, count - 4 - k)
+        target = x[k + 4 : k + 4 + reach]
+        v0, v1, v2, v3 = u0[4 : 4 + reach], u1[3 : 3 + reach], u2[2 : 2 + reach], u3[1 : 1 + reach]
+        for t in range(reach):
+            target[t] -= c0 * v0[t] + c1 * v1[t] + c2 * v2[t] + c3 * v3[t]
+    for k in range(whole, count):
         c = x[k] * inv_diag[k]
-        reach = min(width, count - 1 - k)
-        for d in range(1, reach + 1):
-            x[k + d] -= c * row[d]
-    for k in range(count - 1, -1, -1):
-        row = band[k]
-        reach = min(width, count - 1 - k)
+        for d in range(1, min(width, count - 1 - k) + 1):
+            x[k + d] -= c * band[k, d]
+    for k in range(count - 1, whole - 1, -1):
         s = 0.0
-        for d in range(1, reach + 1):
-            s += row[d] * x[k + d]
+        for d in range(1, min(width, count - 1 - k) + 1):
+            s += band[k, d] * x[k + d]
         x[k] = (x[k] - s) * inv_diag[k]
+    for k in range(whole - 4, -1, -4):
+        u0, u1, u2, u3 = band[k], band[k + 1], band[k + 2], band[k + 3]
+        reach = min(width, count - 4 - k)
+        known = x[k + 4 : k + 4 + reach]
+        v0, v1, v2, v3 = u0[4 : 4 + reach], u1[3 : 3 + reach], u2[2 : 2 + reach], u3[1 : 1 + reach]
+        s0 = 0.0
+        s1 = 0.0
+        s2 = 0.0
+        s3 = 0.0
+        for t in range(reach):
+            a = known[t]
+            s0 += v0[t] * a
+            s1 += v1[t] * a
+            s2 += v2[t] * a
+            s3 += v3[t] * a
+        x3 = (x[k + 3] - s3) * inv_diag[k + 3]
+        x2 = (x[k + 2] - s2 - u2[1] * x3) * inv_diag[k + 2]
+        x1 = (x[k + 1] - s1 - u1[1] * x2 - u1[2] * x3) * inv_diag[k + 1]
+        x[k] = (x[k] - s0 - u0[1] * x1 - u0[2] * x2 - u0[3] * x3) * inv_diag[k]
+        x[k + 1] = x1
+        x[k + 2] = x2
+        x[k + 3] = x3
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -256,6 +310,7 @@ class Workspace:
         size = n * m
         self.shape = (n, m)
         self.order = np.zeros(size, dtype=np.int64)
+        self.old_order = np.zeros(size, dtype=np.int64)
         self.number = np.full((n, m), -1, dtype=np.int64)
         self.band = np.zeros((size, 2 * m + 2 + PAD))
         self.inv_diag = np.zeros(size)

@@ -7,6 +7,7 @@ from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.joint.impedance import ImpedanceModel
 from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
 
 
@@ -18,7 +19,9 @@ def collect_effects(bearing: JournalBearing) -> Effects:
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
-    return BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    model = BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model
 
 
 def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
@@ -38,4 +41,6 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
         )
     if isinstance(bearing.film, ImpedanceMap):
         return ImpedanceModel(bearing)
-    return BearingModel(bearing, effects=collect_effects(bearing))
+    model = BearingModel(bearing, effects=collect_effects(bearing))
+    compile_kernels(model)
+    return model

@@ -13,6 +13,7 @@ import numpy as np
 
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
+from exudyn_ehd.film.pose_gradient import plain_pose_gradient
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.solver import Sensitivities
@@ -54,16 +55,15 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
     s, g = model.solver, model.grid
     rows = _adjoint_rows(model)
     k = rows.shape[0]
-    sens = s.sensitivities(s.adjoint(rows))
-    if model.limiter_fields is not None:
-        _chain_limiter(model, sens)
+    lam = s.adjoint(rows)
     gradient = np.zeros((k, SIZE))
-    pose, rates = np.zeros((k, 4)), np.zeros((k, 4))
-    contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
-    contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
-    if sens.rate is not None:
-        contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
-    gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
+    if is_plain(model):
+        plain_pose_gradient(
+            lam, s.system.linear_pressure, s.H, s.HF, model.cos_x, model.sin_x, model.cos_f, model.sin_f, g.z, s.vx, s.vz,
+            s.flow_x, float(s.squeeze), g.width_x, g.width_z, g.link_x, g.link_z, gradient,
+        )  # fmt: skip
+    else:
+        field_gradient(model, lam, gradient)
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
     at = 4
     if _shear_needs_adjoint(model):
@@ -76,6 +76,26 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
     if model.contact_fields is not None:
         _contact_gradients(model, model.contact_fields, contact, extra)
     return gradient[:4], contact, dc, extra
+
+
+def is_plain(model: BearingModel) -> bool:
+    """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
+    s = model.solver
+    return s.plain_links and model.limiter_fields is None and s.flux is None and not s.closure.conserves_mass
+
+
+def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, for any film."""
+    s, g = model.solver, model.grid
+    sens = s.sensitivities(lam)
+    if model.limiter_fields is not None:
+        _chain_limiter(model, sens)
+    pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
+    contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
+    contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
+    if sens.rate is not None:
+        contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
+    gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
 
 
 def _shear_needs_adjoint(model: BearingModel) -> bool:

@@ -25,7 +25,6 @@ from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
     end_flows,
-    peak_of,
     pressure_integrals,
     refined_peak,
 )
@@ -433,7 +432,7 @@ class BearingModel:
         -------
         dict
             ``minimum_gap`` (m, over the whole bearing with its edges), ``eccentricity_ratio`` (at the mid-plane),
-            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, the film's largest vertex),
+            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from parabolas through the largest vertex),
             ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
@@ -456,10 +455,11 @@ class BearingModel:
         poiseuille = 6.0 * self.s_theta
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
+        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
+        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
         out |= {
-            "peak_pressure": peak_of(self.P)[0] * self.pressure_scale,
+            "peak_pressure": self.refined_peak()[0],
             "friction_torque": friction,
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
@@ -503,4 +503,4 @@ class BearingModel:
 
 def _ring_integral(row: np.ndarray) -> float:
     """Integral over the circumference of a row of vertex values."""
-    return float(row.mean() * 2.0 * math.pi)
+    return float(row.sum() * (2.0 * math.pi / row.size))

@@ -19,6 +19,8 @@ from exudyn_ehd.status import FilmError, InputError, Status, require_number, req
 
 LARGEST_LOAD_STEPS = 100
 LOAD_TOLERANCE = 1e-10
+# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
+FORCE_ROUNDING = 1e-16
 
 
 @dataclass(frozen=True, eq=False)
@@ -412,13 +414,13 @@ def equilibrium(
     model = build_study_model(bearing, 0.0)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
-    residual = math.inf
+    residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
     for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
         wrench = _evaluate(model, motion, "equilibrium")
         unbalance = wrench[:2] + force
         tangent = model.tangent()
         residual = float(np.max(np.abs(unbalance))) / size
-        if residual < LOAD_TOLERANCE:
+        if residual < max(LOAD_TOLERANCE, rounding):
             break
         motion[:2] += _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
     else:

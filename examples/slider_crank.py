@@ -1,0 +1,337 @@
+"""A slider-crank mechanism whose gudgeon-pin bearing is filled with oil.
+
+The crank turns at 5000 rpm. The bearing between connecting rod (housing) and the slider's pin (journal) is modelled three times:
+
+* ideal: Exudyn's revolute joint,
+* literature: clearance 0.5 mm and 0.4 Pa s, as in the studies of clearance joints that use this mechanism
+  (P. Flores, J. Ambrosio, Computers & Structures 82 (2004) 1359: crank 0.05 m, 0.30 kg, 1e-4 kg m2; rod 0.12 m, 0.21 kg,
+  2.5e-4 kg m2; slider 0.14 kg). A clearance of 5 % of the radius is no bearing that one would build, and the package warns; it shows
+  what play does,
+* realistic: clearance 20 um and 0.02 Pa s.
+
+The pin swings by +-24.6 degrees only: there are two instants per turn without any entrainment, in which the squeeze of the
+film alone carries the load.
+
+Run ``python examples/slider_crank.py``; pictures are written to ``results/slider_crank``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import pathlib
+import time
+import warnings
+from dataclasses import dataclass
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import matplotlib.pyplot as plt
+import numpy as np
+
+import exudyn_ehd as ehd
+
+CRANK, ROD = 0.05, 0.12
+CRANK_MASS, CRANK_INERTIA = 0.30, 1e-4
+ROD_MASS, ROD_INERTIA = 0.21, 2.5e-4
+SLIDER_MASS = 0.14
+SPEED = 5000.0 * 2.0 * math.pi / 60.0
+PIN_RADIUS, PIN_LENGTH = 0.010, 0.020
+
+
+@dataclass(frozen=True, kw_only=True)
+class Run:
+    """One simulated mechanism; arrays over the recorded instants.
+
+    ``angle`` crank angle (rad), ``slider`` position and ``acceleration`` (m, m/s2), ``force`` of the joint on the pin in global
+    x, y (N), ``moment`` that drives the crank (Nm), ``history`` of the joint or None.
+    """
+
+    angle: np.ndarray
+    slider: np.ndarray
+    acceleration: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    history: ehd.JointHistory | None
+    bearing: ehd.JournalBearing | None
+    steps: int
+    seconds: float
+
+
+def pin_bearing(radial_clearance: float, viscosity: float, **options) -> ehd.JournalBearing:
+    """The gudgeon-pin bearing; the literature's clearance lies outside the usual range on purpose."""
+    with warnings.catch_warnings():
+        if radial_clearance > 1e-2 * PIN_RADIUS:
+            warnings.simplefilter("ignore", UserWarning)
+        return ehd.JournalBearing(
+            journal_radius=PIN_RADIUS,
+            length=PIN_LENGTH,
+            radial_clearance=radial_clearance,
+            lubricant=ehd.Lubricant(viscosity=viscosity),
+            **options,
+        )
+
+
+def _planar_body(mbs, name: str, mass: float, inertia: float, position, velocity, spin: float = 0.0):
+    node = mbs.AddNode(
+        eii.NodeRigidBody2D(name=name, referenceCoordinates=[*position, 0.0], initialVelocities=[*velocity, spin])
+    )
+    return node, mbs.AddObject(eii.ObjectRigidBody2D(name=name, nodeNumber=node, mass=mass, inertia=inertia))
+
+
+def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn: int) -> Run:
+    """Run the mechanism from the outer dead centre at full speed; ``bearing=None`` is the ideal joint."""
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    rod_spin = -SPEED * CRANK / ROD
+    crank_node, crank = _planar_body(
+        mbs, "crank", CRANK_MASS, CRANK_INERTIA, (CRANK / 2, 0), (0, SPEED * CRANK / 2), SPEED
+    )
+    _, rod = _planar_body(mbs, "rod", ROD_MASS, ROD_INERTIA, (CRANK + ROD / 2, 0), (0, SPEED * CRANK / 2), rod_spin)
+    slider_node, slider = _planar_body(mbs, "slider", SLIDER_MASS, 1e-4, (CRANK + ROD, 0), (0, 0))
+    ground = mbs.AddObject(eii.ObjectGround())
+
+    def marker(body, x: float):
+        return mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=[x, 0, 0]))
+
+    mbs.AddObject(eii.ObjectJointRevolute2D(markerNumbers=[marker(ground, 0), marker(crank, -CRANK / 2)]))
+    mbs.AddObject(eii.ObjectJointRevolute2D(markerNumbers=[marker(crank, CRANK / 2), marker(rod, -ROD / 2)]))
+    origin = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
+    for coordinate in (1, 2):  # the slider's guide
+        guided = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=slider_node, coordinate=coordinate))
+        mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=[origin, guided]))
+    crank_angle = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=crank_node, coordinate=2))
+    drive = mbs.AddObject(
+        eii.ObjectConnectorCoordinate(
+            markerNumbers=[origin, crank_angle],
+            offsetUserFunction=lambda mbs, t, item, offset: SPEED * t,
+            offsetUserFunction_t=lambda mbs, t, item, offset: SPEED,
+        )
+    )
+    joint = None
+    if bearing is None:
+        pin = mbs.AddObject(eii.ObjectJointRevolute2D(markerNumbers=[marker(rod, ROD / 2), marker(slider, 0)]))
+        force_sensor = mbs.AddSensor(
+            eii.SensorObject(objectNumber=pin, storeInternal=True, outputVariableType=exu.OutputVariableType.Force)
+        )
+    else:
+        joint = ehd.CreateLubricatedJoint(
+            mbs,
+            name="gudgeon pin",
+            itemNumbers=[rod, slider],
+            position=[CRANK + ROD, 0, 0],
+            axis=[0, 0, 1],
+            bearing=bearing,
+        )
+    sensors = {
+        name: mbs.AddSensor(
+            eii.SensorNode(
+                nodeNumber=slider_node, storeInternal=True, outputVariableType=getattr(exu.OutputVariableType, name)
+            )
+        )
+        for name in ("Displacement", "Acceleration")
+    }
+    moment_sensor = mbs.AddSensor(
+        eii.SensorObject(objectNumber=drive, storeInternal=True, outputVariableType=exu.OutputVariableType.Force)
+    )
+    mbs.Assemble()
+
+    settings = exu.SimulationSettings()
+    period = 2.0 * math.pi / SPEED
+    settings.timeIntegration.endTime = turns * period
+    settings.timeIntegration.numberOfSteps = round(turns * steps_per_turn)
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.8
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.sensors.writePeriod = period / steps_per_turn
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    start = time.perf_counter()
+    mbs.SolveDynamic(settings)
+    seconds = time.perf_counter() - start
+
+    def stored(sensor):
+        return mbs.GetSensorStoredData(sensor)
+
+    position = stored(sensors["Displacement"])
+    angle = SPEED * position[:, 0]
+    if joint is None:
+        force = -stored(force_sensor)[:, 1:3]  # Exudyn reports the force on the other side
+    else:
+        h = joint.history
+        turn = np.interp(position[:, 0], h.time, np.unwrap(_rod_angle(h.time)))
+        local = np.column_stack([np.interp(position[:, 0], h.time, h.force[:, k]) for k in (0, 1)])
+        c, s = np.cos(turn), np.sin(turn)
+        force = np.column_stack([c * local[:, 0] - s * local[:, 1], s * local[:, 0] + c * local[:, 1]])
+    return Run(
+        angle=angle,
+        slider=CRANK + ROD + position[:, 1],
+        acceleration=stored(sensors["Acceleration"])[:, 1],
+        force=force,
+        moment=stored(moment_sensor)[:, 1],
+        history=None if joint is None else joint.history,
+        bearing=bearing,
+        steps=settings.timeIntegration.numberOfSteps,
+        seconds=seconds,
+    )
+
+
+def _rod_angle(t: np.ndarray) -> np.ndarray:
+    """Angle of the rod of the ideal mechanism, rad; the clearance changes it by less than c / ROD."""
+    return -np.arcsin(CRANK / ROD * np.sin(SPEED * t))
+
+
+def _after(run: Run, turns: float) -> np.ndarray:
+    """Recorded instants after the start-up, with a rounding's tolerance on the angle."""
+    return run.angle >= 2.0 * math.pi * turns - 1e-6
+
+
+def figures(ideal: Run, run: Run, start_up: float) -> dict[str, float]:
+    """Numbers of the table, over the turns after the start-up."""
+    assert run.history is not None and run.bearing is not None
+    late = _after(run, start_up)
+    h = run.history
+    kept = h.time >= start_up * 2.0 * math.pi / SPEED
+    c = run.bearing.radial_clearance
+    reference = np.interp(run.angle, ideal.angle, ideal.slider)
+    force = np.hypot(*run.force.T)
+    return {
+        "clearance_um": 1e6 * c,
+        "largest_eccentricity_ratio": float(h.eccentricity_ratio[kept].max()),
+        "minimum_gap_um": 1e6 * float(h.minimum_gap[kept].min()),
+        "peak_pressure_MPa": 1e-6 * float(h.peak_pressure[kept].max()),
+        "largest_pin_force_N": float(force[late].max()),
+        "largest_crank_moment_Nm": float(np.abs(run.moment[late]).max()),
+        "mean_power_loss_W": float(np.mean(h.power_loss[kept])),
+        "largest_slider_deviation_um": 1e6 * float(np.abs(run.slider - reference)[late].max()),
+        "ms_per_step": 1e3 * run.seconds / run.steps,
+        "time_factor": (run.seconds / run.steps) / (ideal.seconds / ideal.steps),
+    }
+
+
+def print_table(rows: dict[str, dict[str, float]], ideal: Run, start_up: float) -> None:
+    """Results side by side."""
+    late = _after(ideal, start_up)
+    force = float(np.hypot(*ideal.force.T)[late].max())
+    print(f"\n{'after start-up':32s}{'ideal':>12s}" + "".join(f"{name:>14s}" for name in rows))
+    known = {"largest_pin_force_N": force, "largest_crank_moment_Nm": float(np.abs(ideal.moment[late]).max())}
+    known["ms_per_step"] = 1e3 * ideal.seconds / ideal.steps
+    for key in next(iter(rows.values())):
+        first = f"{known[key]:12.4g}" if key in known else f"{'-':>12s}"
+        print(f"{key:32s}{first}" + "".join(f"{row[key]:14.4g}" for row in rows.values()))
+
+
+def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path) -> None:
+    """Mechanism figures over the crank angle, and the bearing's orbit, film and pressure."""
+    end = round(math.degrees(ideal.angle[-1]) - 360.0 * start_up)
+    colours = dict(zip(runs, ("tab:orange", "tab:blue"), strict=True))
+    fig, axes = plt.subplots(2, 2, figsize=(11, 7.5), layout="constrained")
+    everyone = {"ideal joint": (ideal, "black")} | {name: (run, colours[name]) for name, run in runs.items()}
+    for name, (run, colour) in everyone.items():
+        late = _after(run, start_up)
+        degrees = np.degrees(run.angle[late]) - 360.0 * start_up
+        style = {
+            "color": colour,
+            "label": name,
+            "lw": 1.4,
+            "ls": "--" if run is ideal else "-",
+            "zorder": 3 if run is ideal else 2,
+        }
+        axes[0, 1].plot(degrees, 1e-3 * run.acceleration[late], **style)
+        axes[1, 0].plot(degrees, 1e-3 * np.hypot(*run.force[late].T), **style)
+        axes[1, 1].plot(degrees, run.moment[late], **style)
+        if run is not ideal:
+            deviation = run.slider - np.interp(run.angle, ideal.angle, ideal.slider)
+            axes[0, 0].plot(degrees, 1e6 * deviation[late], **style)
+    labels = (
+        "slider position - ideal [um]",
+        "slider acceleration [km/s$^2$]",
+        "joint force on the pin [kN]",
+        "crank moment [Nm]",
+    )
+    for ax, label in zip(axes.flat, labels, strict=True):
+        ax.set(
+            xlabel="crank angle after start-up [deg]",
+            ylabel=label,
+            xlim=(0, end),
+            xticks=range(0, end + 1, 90 if end == 360 else 180),
+        )
+        ax.grid(alpha=0.3)
+    axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=3, frameon=False)
+    fig.suptitle("Slider-crank at 5000 rpm: ideal and lubricated gudgeon-pin bearing", x=0.27)
+    fig.savefig(folder / "mechanism.png", dpi=120)
+    plt.close(fig)
+
+    fig, axes = plt.subplots(1, 3, figsize=(13, 4.4), layout="constrained")
+    around = np.linspace(0, 2 * np.pi, 200)
+    axes[0].plot(np.cos(around), np.sin(around), color="grey", lw=1)
+    for name, run in runs.items():
+        h, bearing = run.history, run.bearing
+        assert h is not None and bearing is not None
+        kept = h.time >= start_up * 2.0 * math.pi / SPEED
+        degrees = np.degrees(SPEED * h.time[kept]) - 360.0 * start_up
+        c = bearing.radial_clearance
+        label = f"{name}: c = {1e6 * c:g} um, {bearing.lubricant.viscosity:g} Pa s"
+        axes[0].plot(*(h.eccentricity[kept].T / c), color=colours[name], label=label)
+        axes[1].semilogy(degrees, h.minimum_gap[kept] / c, color=colours[name])
+        axes[2].plot(degrees, 1e-6 * h.peak_pressure[kept], color=colours[name])
+    axes[0].set(
+        xlabel="x / c (along the rod) [-]",
+        ylabel="y / c [-]",
+        aspect="equal",
+        title="orbit of the pin in the rod's eye",
+    )
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=9, frameon=False)
+    axes[1].set(ylabel="minimum gap / clearance [-]", title="minimum film")
+    axes[2].set(ylabel="peak pressure [MPa]", title="peak pressure")
+    for ax in axes[1:]:
+        ax.set(
+            xlabel="crank angle after start-up [deg]",
+            xlim=(0, end),
+            xticks=range(0, end + 1, 90 if end == 360 else 180),
+        )
+        ax.grid(alpha=0.3, which="both")
+    fig.savefig(folder / "bearing.png", dpi=120)
+    plt.close(fig)
+
+
+def main(
+    *, quick: bool = False, output: str | pathlib.Path | None = "results/slider_crank"
+) -> dict[str, dict[str, float]]:
+    """Compare ideal and lubricated pin; returns the table's numbers by case.
+
+    Parameters
+    ----------
+    quick : bool
+        One turn after the start-up instead of two, and coarser steps.
+    output : path or None
+        Folder for the pictures; None writes none.
+    """
+    start_up, turns = (1.0, 2.0) if quick else (1.0, 3.0)
+    steps_per_turn = 360 if quick else 720
+    cases = {
+        "literature": pin_bearing(0.5e-3, 0.4, film=ehd.FiniteLength(n_theta=192)),
+        "realistic": pin_bearing(20e-6, 0.02),
+    }
+    print(f"slider-crank, {turns:g} turns at 5000 rpm, {steps_per_turn} steps per turn")
+    print("  compiling the film's kernels (some seconds the first time, then read from the cache) ...", flush=True)
+    simulate(cases["realistic"], turns=0.01, steps_per_turn=steps_per_turn)
+    print("  ideal joint ...", flush=True)
+    ideal = simulate(None, turns=turns, steps_per_turn=steps_per_turn)
+    runs = {}
+    for name, bearing in cases.items():
+        print(f"  lubricated joint, {name} clearance ...", flush=True)
+        runs[name] = simulate(bearing, turns=turns, steps_per_turn=steps_per_turn)
+    rows = {name: figures(ideal, run, start_up) for name, run in runs.items()}
+    print_table(rows, ideal, start_up)
+    if output is not None:
+        folder = pathlib.Path(output)
+        folder.mkdir(parents=True, exist_ok=True)
+        draw(ideal, runs, start_up, folder)
+        print(f"\npictures: {folder / 'mechanism.png'}, {folder / 'bearing.png'}")
+    return rows
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="fewer turns and steps")
+    main(quick=parser.parse_args().quick)

@@ -1,0 +1,381 @@
+"""`CreateLubricatedJoint`: the one call that puts an oil-filled joint between two bodies of an Exudyn system."""
+
+from __future__ import annotations
+
+import dataclasses
+import importlib
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.contract import JointModel
+from exudyn_ehd.coupling.film_element import FilmElement
+from exudyn_ehd.coupling.history import JointHistory, Quantity
+from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.sensors import add_sensor
+from exudyn_ehd.coupling.sides import NodeSide
+from exudyn_ehd.status import InputError, require_vector
+
+_WHERE = "CreateLubricatedJoint"
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Free:
+    """The journal slides freely along the axis."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Held:
+    """The relative axial displacement keeps its reference value, by an algebraic constraint.
+
+    For implicit and static solvers; Exudyn's explicit ones stop at once and name the constraint object
+    (``constraintNumber`` of the joint).
+    """
+
+
+class LubricatedJoint:
+    """Handle of one lubricated joint.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    mbs : exudyn.MainSystem
+        The system it belongs to.
+    bearing : object
+        What was given as bearing.
+    objectNumber : exudyn.ObjectIndex
+        The film element.
+    constraintNumber : exudyn.ObjectIndex or None
+        The axial constraint, if `Held`.
+    element : FilmElement
+        The film between the two frames.
+    """
+
+    def __init__(self, mbs: Any, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
+        self.mbs = mbs
+        self.name = name
+        self.element = element
+        self.bearing = element.model.bearing
+        self.objectNumber, self.constraintNumber = numbers
+
+    @property
+    def history(self) -> JointHistory:
+        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
+
+        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record goes on with it, any other
+        starts a new one.
+        """
+        return self.element.snapshot(self.mbs)
+
+    def AddSensor(
+        self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
+    ) -> Any:
+        """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
+
+        Parameters
+        ----------
+        quantity : Quantity
+            What to record; vectors are in the joint frame, loads act on the journal.
+        fileName : str
+            File to write to, as in Exudyn's sensors.
+        name : str
+            Name of the sensor; by default joint and quantity.
+        writeToFile : bool, optional
+            By default whether a file name is given; the values are stored in the sensor in any case.
+
+        Returns
+        -------
+        exudyn.SensorIndex
+        """
+        if not isinstance(quantity, Quantity):
+            raise InputError(f"LubricatedJoint.AddSensor: quantity must be a member of Quantity, got {quantity!r}.")
+        write = bool(fileName) if writeToFile is None else writeToFile
+        label = name or f"{self.name} {quantity.value}"
+        return add_sensor(self.mbs, self.element, quantity, label, fileName, write)
+
+
+def CreateLubricatedJoint(
+    mbs: Any,
+    name: str = "",
+    itemNumbers: Sequence[Any] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    axis: Sequence[float] | np.ndarray = (),
+    bearing: Any = None,
+    rotationMatrixAxes: Any = None,
+    axial: Free | Held = Free(),
+    useGlobalFrame: bool = True,
+    show: bool = True,
+    color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    returnDict: bool = False,
+) -> Any:
+    """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
+
+    Arguments that ``mbs.CreateRevoluteJoint`` also has mean the same, so that one call replaces the other; joint frame
+    and both bodies' joint points are taken from the reference configuration. The film is an ObjectGenericODE2 without
+    mass on the nodes of the two bodies, with its exact Jacobian.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system, before Assemble.
+    name : str
+        Name of the joint, used in messages too.
+    itemNumbers : sequence of two
+        Housing, journal: each a rigid body or ground (ObjectIndex), a rigid-body node (NodeIndex) or a rigid marker
+        (MarkerIndex).
+    position : (3,) [m]
+        Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
+        ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
+    axis : (3,)
+        Joint axis z, global or in the frame of the housing item; may be [] if ``rotationMatrixAxes`` is given.
+    bearing : JournalBearing
+        Geometry, lubricant, film and effects.
+    rotationMatrixAxes : (3, 3), optional
+        Joint frame as in ``mbs.CreateGenericJoint``: columns x, y, z = axis, global or in the housing's frame. By
+        default x is the local x of the housing item, projected normal to the axis (its local y, if x is parallel to
+        the axis). Every angle of the film counts from x about z.
+    axial : Free or Held
+        Whether the journal may slide along the axis.
+    useGlobalFrame : bool
+        See position, axis, rotationMatrixAxes.
+    show : bool
+        Draw the film element.
+    color : (4,)
+        Its colour, RGBA; Exudyn's default for -1.
+    returnDict : bool
+        Return a dictionary of numbers in place of the handle.
+
+    Returns
+    -------
+    LubricatedJoint or dict
+        The handle, or {'joint': the handle, 'objectNumber', 'constraintNumber'}.
+
+    Raises
+    ------
+    InputError
+        Before anything runs: wrong or identical items, position or axis that can't be meant, a planar body with an
+        axis other than z, the two axes not parallel within the clearance or the journal outside the bore in the initial
+        configuration, an assembled system.
+    """
+    if not isinstance(axial, (Free, Held)):
+        raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
+    if not isinstance(name, str):
+        raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
+    if bearing is None:
+        raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
+    if mbs.systemIsConsistent:
+        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
+    housing, journal = _resolve_pair(mbs, itemNumbers)
+    rotation = _joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
+    points = _joint_points(housing, journal, position, useGlobalFrame)
+    # imported late: the builder compiles kernels, which input errors need not wait for
+    model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
+    joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
+    if returnDict:
+        return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
+    return joint
+
+
+def attach(
+    mbs: Any,
+    model: JointModel,
+    housing: Item,
+    journal: Item,
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+    *,
+    name: str = "",
+    axial: Free | Held = Free(),
+    show: bool = True,
+    color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+) -> LubricatedJoint:
+    """Put a film model between two resolved items; what `CreateLubricatedJoint` does after its checks of arguments.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system.
+    model : JointModel
+        The film.
+    housing, journal : Item
+        The two sides.
+    points : pair of ndarray (3,)
+        Joint point of either side in the reference configuration, global [m].
+    rotation : ndarray (3, 3)
+        Joint frame in the reference configuration.
+    name, axial, show, color
+        As in `CreateLubricatedJoint`.
+    """
+    for item in (housing, journal):
+        if item.kind == kinematics.PLANAR and abs(rotation[2, 2]) < 1.0 - 1e-12:
+            raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
+    sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
+    if isinstance(sides[0], NodeSide) and isinstance(sides[1], NodeSide):
+        _check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
+    flat = (kinematics.GROUND, kinematics.PLANAR)
+    # planar bodies can't move axially: the constraint would be empty, and singular
+    held = isinstance(axial, Held) and not (housing.kind in flat and journal.kind in flat)
+    element = FilmElement(model, *sides, name)
+    number = mbs.AddObject(
+        eii.ObjectGenericODE2(
+            name=name,
+            nodeNumbers=[node for side in sides for node in side.nodes],
+            forceUserFunction=element.force,
+            jacobianUserFunction=element.jacobian,
+            visualization=eii.VObjectGenericODE2(show=show, color=list(color)),
+        )
+    )
+    constraint = _hold_axially(mbs, name, housing, journal, points, rotation) if held else None
+    return LubricatedJoint(mbs, name, element, (number, constraint))
+
+
+def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
+    where = f"{_WHERE}.itemNumbers"
+    if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
+        raise InputError(f"{where} must be [housing, journal], got {itemNumbers!r}.")
+    housing = resolve(mbs, f"{where}[0]", itemNumbers[0])
+    journal = resolve(mbs, f"{where}[1]", itemNumbers[1])
+    if not housing.nodes and not journal.nodes:
+        raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
+    shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
+    if shared:
+        raise InputError(
+            f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
+        )
+    return housing, journal
+
+
+def _joint_rotation(housing: Item, axis: Any, matrix: Any, use_global: bool) -> np.ndarray:
+    """Joint frame (3, 3) in the reference configuration, columns x, y, z global."""
+    to_global = np.eye(3) if use_global else housing.rotation
+    given = np.size(axis) > 0
+    z = np.zeros(3)
+    if given:
+        z = require_vector(f"{_WHERE}.axis", axis, 3)
+        if not np.linalg.norm(z) > 0.0:
+            raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
+        z = to_global @ (z / np.linalg.norm(z))
+    if matrix is not None:
+        rotation = _checked_rotation(matrix)
+        rotation = to_global @ rotation
+        # 1e-9: an axis and a matrix typed or computed in double precision agree far better
+        if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
+            raise InputError(
+                f"{_WHERE}.axis and the third column of rotationMatrixAxes must agree, got {axis!r} and "
+                f"{np.asarray(matrix)[:, 2]}; leave axis=[]."
+            )
+        return rotation
+    if not given:
+        raise InputError(f"{_WHERE}.axis is missing; give the direction of the joint axis, e.g. axis=[0, 0, 1].")
+    for k in (0, 1):
+        x = housing.rotation[:, k] - z * (z @ housing.rotation[:, k])
+        # parallel to rounding only: anything else has a defined projection
+        if np.linalg.norm(x) > 1e-6:
+            break
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _checked_rotation(matrix: Any) -> np.ndarray:
+    where = f"{_WHERE}.rotationMatrixAxes"
+    try:
+        rotation = np.array(matrix, dtype=float)
+    except (TypeError, ValueError):
+        rotation = np.zeros(0)
+    if rotation.shape != (3, 3) or not np.all(np.isfinite(rotation)):
+        raise InputError(f"{where} must be a rotation matrix (3, 3), got {matrix!r}.")
+    # 1e-8: a matrix computed in double precision is orthonormal to 1e-15, one typed with few digits is not meant
+    if np.abs(rotation.T @ rotation - np.eye(3)).max() > 1e-8 or np.linalg.det(rotation) < 0.0:
+        raise InputError(f"{where} must be orthonormal and right-handed, got {matrix!r}.")
+    return rotation
+
+
+def _joint_points(housing: Item, journal: Item, position: Any, use_global: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Joint point of either side in the reference configuration, global [m]."""
+    if housing.is_marker or journal.is_marker:
+        if np.size(position):
+            raise InputError(f"{_WHERE}.position must be [] if a marker is given, which sets it; got {position!r}.")
+        first = housing.position if housing.is_marker else journal.position
+        second = journal.position if journal.is_marker else housing.position
+        return first.copy(), second.copy()
+    point = require_vector(f"{_WHERE}.position", position, 3, "m")
+    if not use_global:
+        point = housing.position + housing.rotation @ point
+    return point, point.copy()
+
+
+def _check_start(bearing: Any, housing: tuple[Item, NodeSide], journal: tuple[Item, NodeSide]) -> None:
+    """Refuse an initial state in which the journal isn't inside the bore."""
+    for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
+        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
+            raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
+        side.update(None, item.initial_coordinates, item.initial_velocities, None)
+    motion = np.empty(10)
+    cosine = kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
+    clearance, length = bearing.radial_clearance, bearing.length
+    tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
+    if tilt * length >= 2.0 * clearance:
+        raise InputError(
+            f"{_WHERE}: the axes of the two bodies are not parallel within the clearance in the initial configuration: "
+            f"tilt {tilt:.6g} rad, at most {2.0 * clearance / length:.6g} rad fit (2 c / L); check "
+            "the initial rotations."
+        )
+    half = 0.5 * length
+    ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
+    if max(ends) >= clearance:
+        raise InputError(
+            f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
+            f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
+            f"{clearance:.6g} m; check the initial positions, and whether the clearance is radial."
+        )
+
+
+def _hold_axially(
+    mbs: Any, name: str, housing: Item, journal: Item, points: tuple[np.ndarray, np.ndarray], rotation: np.ndarray
+) -> Any:
+    """Constrain the relative displacement along the joint axis to its reference value."""
+    axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
+    markers = []
+    for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
+        if item.kind is None:
+            if abs(axial_offset) > 0.0:
+                raise InputError(
+                    f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "
+                    f"reference configuration, got an axial distance of {axial_offset:.6g} m."
+                )
+            markers.append(item.marker)
+            continue
+        if item is journal:
+            point = point - rotation[:, 2] * axial_offset
+        transform = np.eye(4)
+        transform[:3, :3] = item.node_rotation.T @ rotation
+        transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
+        markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform))
+    if housing.kind is None:
+        raise InputError(f"{_WHERE}: axial=Held() needs a rigid body, a rigid node or ground as housing.")
+    return mbs.AddObject(
+        eii.ObjectJointGeneric(
+            name=f"{name} axial",
+            markerNumbers=markers,
+            constrainedAxes=[0, 0, 1, 0, 0, 0],
+            visualization=eii.VObjectJointGeneric(show=False),
+        )
+    )
+
+
+def _rigid_marker(mbs: Any, name: str, item: Item, transform: np.ndarray) -> Any:
+    """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
+    if item.node is None:
+        # a ground object of our own at the origin holds the marker
+        body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
+    else:
+        body = body_of_node(mbs, item.node)
+        if body is None:
+            raise InputError(f"{_WHERE}: axial=Held() needs the rigid body of node {int(item.node)}, add it before.")
+    return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))

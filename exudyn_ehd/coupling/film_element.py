@@ -1,0 +1,266 @@
+"""The film element: force and exact Jacobian of a film between two marker frames, for an ObjectGenericODE2.
+
+The element has no mass and shares the nodes of the two bodies. Its user functions get the coordinates q (without
+reference values) and q_t of those nodes, housing's first, and return the generalized force Q on the right-hand side and
+the derivative of -Q. The film is evaluated once per state; the record of accepted steps is advanced from the force
+user function alone, when the start of the step has moved on, so that a rejected step leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling import kinematics, solvers
+from exudyn_ehd.coupling.contract import Evaluation, JointModel
+from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
+from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
+from exudyn_ehd.status import FilmError, Status
+
+_CURRENT = exu.ConfigurationType.Current
+_START_OF_STEP = exu.ConfigurationType.StartOfStep
+
+
+class Trial:
+    """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked."""
+
+    __slots__ = ("evaluation", "memory", "motion", "q", "q_t", "status", "step")
+
+    def __init__(
+        self,
+        q: list[float],
+        q_t: list[float],
+        memory: Any,
+        step: float,
+        motion: np.ndarray,
+        evaluation: Evaluation | None,
+    ) -> None:
+        self.q = q
+        self.q_t = q_t
+        self.memory = memory
+        self.step = step
+        self.motion = motion
+        self.evaluation = evaluation
+        if evaluation is not None:
+            self.status = evaluation.status
+        else:
+            self.status = Status.NO_FILM if np.all(np.isfinite(q)) else Status.NOT_FINITE
+
+
+class FilmElement:
+    """Film between two sides.
+
+    Parameters
+    ----------
+    model : JointModel
+        The film.
+    housing, journal : NodeSide or MarkerSide
+        Carriers of the joint frame and of the journal's frame (z = its axis).
+    name : str
+        For messages.
+    """
+
+    def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
+        self.model = model
+        self.sides = (housing, journal)
+        self.name = name
+        self.evaluations = 0
+        self._record = Record()
+        self._trial: Trial | None = None
+        self._start = np.nan
+        self._run: tuple[Any, Any] = (self, self)
+        self._solver: Any = None
+        self._uses_memory = False
+        self._memory: Any = None
+        self._bound = False
+        self._loads = np.zeros((4, 3))
+
+    # --- user functions -------------------------------------------------------------------------------------------
+
+    def force(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
+        start = mbs.systemData.GetTime(_START_OF_STEP)
+        run = solvers.stored_solvers(mbs)
+        if start != self._start or run[0] is not self._run[0] or run[1] is not self._run[1]:
+            self._accept(mbs, start, run)
+        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        if trial.status != Status.CONVERGED:
+            self._fail(t, trial)
+            return np.full(len(q), np.nan)
+        assert trial.evaluation is not None
+        housing, journal = self.sides
+        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        force = np.empty(len(q))
+        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
+        return force
+
+    def jacobian(
+        self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
+    ) -> np.ndarray:
+        """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
+        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        if trial.status != Status.CONVERGED:
+            self._fail(t, trial)
+            return np.full((len(q), len(q)), np.nan)
+        stiffness, damping = self._derivatives(mbs, trial)
+        return -(f_q * stiffness + f_qt * damping)
+
+    # --- evaluation -----------------------------------------------------------------------------------------------
+
+    def _try(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any, time: float) -> Trial:
+        """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there."""
+        # a list compares as a whole; other callers than Exudyn may hand over arrays
+        q, q_t = list(q), list(q_t)
+        # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
+        memory = self._memory if time >= self._start else None
+        step = 0.0 if memory is None else time - self._start
+        last = self._trial
+        if last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory:
+            return last
+        motion = self._move(mbs, q, q_t, configuration)
+        evaluation = None
+        # a sum is finite only if all its terms are
+        if np.isfinite(motion.sum()):
+            evaluation = self.model.evaluate(motion) if memory is None else self.model.evaluate(motion, memory, step)
+            self.evaluations += 1
+        self._trial = Trial(q, q_t, memory, step, motion, evaluation)
+        return self._trial
+
+    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+        """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
+        if not self._bound:
+            self._bind(mbs)
+        housing, journal = self.sides
+        qv, qv_t = np.array(q), np.array(q_t)
+        n = housing.size
+        housing.update(mbs, qv[:n], qv_t[:n], configuration)
+        journal.update(mbs, qv[n:], qv_t[n:], configuration)
+        motion = np.empty(10)
+        kinematics.relative_motion(housing.frame, journal.frame, motion)
+        return motion
+
+    def _bind(self, mbs: Any) -> None:
+        for side in self.sides:
+            if isinstance(side, MarkerSide):
+                side.bind(mbs)
+        self._bound = True
+
+    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+        """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
+        assert trial.evaluation is not None
+        housing, journal = self.sides
+        n_h, n = housing.size, housing.size + journal.size
+        q, q_t = np.array(trial.q), np.array(trial.q_t)
+        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        housing.vary(mbs, q[:n_h], q_t[:n_h])
+        journal.vary(mbs, q[n_h:], q_t[n_h:])
+        motion_q, motion_qt = np.empty((10, n)), np.empty((10, n))
+        kinematics.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
+        stiffness, damping = np.zeros((n, n)), np.empty((n, n))
+        housing.geometric(mbs, q[:n_h], self._loads[0], self._loads[1], stiffness[:n_h, :n_h])
+        journal.geometric(mbs, q[n_h:], self._loads[2], self._loads[3], stiffness[n_h:, n_h:])
+        kinematics.tangent_matrices(
+            housing.frame,
+            journal.frame,
+            housing.jac,
+            journal.jac,
+            self._loads,
+            np.ascontiguousarray(trial.evaluation.tangent()),
+            motion_q,
+            motion_qt,
+            stiffness,
+            damping,
+        )
+        return stiffness, damping
+
+    # --- failures -------------------------------------------------------------------------------------------------
+
+    def _fail(self, t: float, trial: Trial) -> None:
+        """Return if the solver can still reject the step, else raise."""
+        if not solvers.can_reject_step(self._solver):
+            raise FilmError(self._message(t, trial))
+
+    def _message(self, t: float, trial: Trial) -> str:
+        bearing = self.model.bearing
+        where = f"LubricatedJoint '{self.name}' can't be evaluated at t = {t:.9g} s: "
+        if not np.all(np.isfinite(trial.motion)):
+            state = (
+                "the state is not finite; "
+                if trial.status == Status.NOT_FINITE
+                else "the journal's axis has left the bearing's (tilt near 90 degrees); "
+            )
+        else:
+            mid, largest = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
+            gap = bearing.radial_clearance * (1.0 - largest)
+            state = (
+                f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid "
+                f"surfaces {gap:.6g} m; "
+            )
+        return where + state + trial.status.advice
+
+    # --- accepted steps -------------------------------------------------------------------------------------------
+
+    def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
+        """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
+        if run[0] is not self._run[0] or run[1] is not self._run[1]:
+            self._solver = solvers.running_solver(self._run, run)
+            self._run = run
+            # the time of a static solve is a load parameter: the film is the steady one
+            self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
+            # a run that starts behind the record goes on with it, any other begins anew
+            if not self._uses_memory or not start > self._record.last_time:
+                self._memory = None
+        elif start < self._start:
+            self._memory = None
+        if self._uses_memory and self._memory is None:
+            self._start = start
+            self._memory = self._first_memory(mbs)
+        trial = self._look(mbs, start, _START_OF_STEP)
+        row = self._row(start, trial)
+        if row is not None:
+            self._record.append(row)
+            if self._uses_memory and start > self._start:
+                assert trial.evaluation is not None
+                self._memory = trial.evaluation.history()
+                self._trial = None
+        self._start = start
+
+    def _first_memory(self, mbs: Any) -> Any:
+        q, q_t = read_state(mbs, self.sides, _START_OF_STEP)
+        motion = self._move(mbs, q, q_t, _START_OF_STEP)
+        self._trial = None
+        return self.model.initial_history(motion) if np.isfinite(motion.sum()) else None
+
+    def _look(self, mbs: Any, time: float, configuration: Any) -> Trial:
+        """Evaluate the film at the state that Exudyn holds in ``configuration``."""
+        q, q_t = read_state(mbs, self.sides, configuration)
+        trial = self._try(mbs, q, q_t, configuration, time)
+        if configuration != _CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
+            # the markers' Jacobians were not brought to this state: never reuse it
+            self._trial = None
+        return trial
+
+    def _row(self, time: float, trial: Trial) -> np.ndarray | None:
+        if trial.evaluation is None or trial.status != Status.CONVERGED:
+            return None
+        bearing = self.model.bearing
+        ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
+        return make_row(time, trial.motion, ratios, trial.evaluation.wrench, trial.evaluation.quantities())
+
+    def current_row(self, mbs: Any) -> np.ndarray | None:
+        """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
+        time = mbs.systemData.GetTime(_CURRENT)
+        return self._row(time, self._look(mbs, time, _CURRENT))
+
+    def snapshot(self, mbs: Any) -> Any:
+        """The record, completed by the current state if that is later than the last recorded step."""
+        final = None
+        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        configuration = _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        if mbs.systemIsConsistent:
+            time = mbs.systemData.GetTime(configuration)
+            if time > self._record.last_time:
+                final = self._row(time, self._look(mbs, time, configuration))
+        return self._record.snapshot(final)

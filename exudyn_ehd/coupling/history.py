@@ -1,0 +1,148 @@
+"""Record of the accepted steps of one joint."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+_SCALARS = ("minimum_gap", "peak_pressure", "friction_torque", "power_loss", "leakage", "contact_load")
+_TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
+_WIDTH = _FIRST_SCALAR + len(_SCALARS)
+
+
+class Quantity(enum.Enum):
+    """What a sensor can record; the value is the name in `JointHistory`."""
+
+    MOTION = "motion"
+    ECCENTRICITY = "eccentricity"
+    ECCENTRICITY_RATIO = "eccentricity_ratio"
+    LARGEST_ECCENTRICITY_RATIO = "largest_eccentricity_ratio"
+    FORCE = "force"
+    MOMENT = "moment"
+    MINIMUM_GAP = "minimum_gap"
+    PEAK_PRESSURE = "peak_pressure"
+    FRICTION_TORQUE = "friction_torque"
+    POWER_LOSS = "power_loss"
+    LEAKAGE = "leakage"
+    CONTACT_LOAD = "contact_load"
+
+
+_COLUMNS: dict[str, Any] = {
+    "time": _TIME,
+    "motion": slice(_MOTION, _MOTION + 10),
+    "eccentricity": slice(_ECCENTRICITY, _ECCENTRICITY + 2),
+    "eccentricity_ratio": _RATIO,
+    "largest_eccentricity_ratio": _RATIO_MAX,
+    "force": slice(_WRENCH, _WRENCH + 3),
+    "moment": slice(_WRENCH + 3, _WRENCH + 6),
+    **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class JointHistory:
+    """Accepted steps of one joint, first the initial state, last the state now.
+
+    All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
+    about the bearing's centre. A quantity that the film does not provide is nan.
+
+    Attributes
+    ----------
+    time : ndarray (n,)
+        [s]; in a static solve Exudyn's load parameter.
+    motion : ndarray (n, 10)
+        x, y [m], bx, by [rad], their rates, relative spin omega [rad/s], axial velocity w [m/s].
+    eccentricity : ndarray (n, 2)
+        Journal axis in the mid-plane [m].
+    eccentricity_ratio : ndarray (n,)
+        |eccentricity| / radial clearance in the mid-plane.
+    largest_eccentricity_ratio : ndarray (n,)
+        The largest along the length, at one of the ends.
+    force, moment : ndarray (n, 3)
+        [N], [N m].
+    minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
+        [m], [Pa], [N m], [W], [m3/s], [N].
+    """
+
+    time: np.ndarray
+    motion: np.ndarray
+    eccentricity: np.ndarray
+    eccentricity_ratio: np.ndarray
+    largest_eccentricity_ratio: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    minimum_gap: np.ndarray
+    peak_pressure: np.ndarray
+    friction_torque: np.ndarray
+    power_loss: np.ndarray
+    leakage: np.ndarray
+    contact_load: np.ndarray
+
+
+def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
+    """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
+    x, y, bx, by = motion[:4].tolist()
+    half = 0.5 * length
+    ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
+    return (x * x + y * y) ** 0.5 / radial_clearance, ends**0.5 / radial_clearance
+
+
+def make_row(
+    time: float,
+    motion: np.ndarray,
+    ratios: tuple[float, float],
+    wrench: np.ndarray,
+    quantities: Mapping[str, Any],
+) -> np.ndarray:
+    """One row of the record."""
+    row = np.empty(_WIDTH)
+    row[_TIME] = time
+    row[_MOTION : _MOTION + 10] = motion
+    row[_ECCENTRICITY : _ECCENTRICITY + 2] = motion[:2]
+    row[_RATIO], row[_RATIO_MAX] = ratios
+    row[_WRENCH : _WRENCH + 6] = wrench
+    for i, name in enumerate(_SCALARS):
+        row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
+    return row
+
+
+def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
+    """The part (k,) of a row that holds ``quantity``."""
+    return np.atleast_1d(row[_COLUMNS[quantity.value]])
+
+
+class Record:
+    """Rows of accepted steps in a growing array."""
+
+    def __init__(self) -> None:
+        self._rows = np.empty((64, _WIDTH))
+        self._count = 0
+
+    def append(self, row: np.ndarray) -> None:
+        """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
+        if self._count:
+            last = self._rows[self._count - 1, _TIME]
+            if row[_TIME] < last:
+                self._count = 0
+            elif row[_TIME] == last:
+                self._count -= 1
+        if self._count == self._rows.shape[0]:
+            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
+        self._rows[self._count] = row
+        self._count += 1
+
+    @property
+    def last_time(self) -> float:
+        """Time of the last row, minus infinity if there is none."""
+        return float(self._rows[self._count - 1, _TIME]) if self._count else -np.inf
+
+    def snapshot(self, final: np.ndarray | None) -> JointHistory:
+        """Copy of the record, with ``final`` as its last row if given."""
+        rows = self._rows[: self._count].copy()
+        if final is not None:
+            rows = np.concatenate([rows, final[None]])
+        return JointHistory(**{name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()})

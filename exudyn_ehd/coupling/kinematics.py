@@ -1,0 +1,444 @@
+"""Pose, rates and exact variations of the two marker frames of a joint, as array kernels.
+
+Every side (housing H, journal J) is described by two work arrays, whoever fills them (the kernels here for the nodes
+of rigid bodies, `film_element.MarkerSide` for any other marker):
+
+frame (3, 6)      columns 0-2: A, marker frame to global; 3: position p; 4: velocity v; 5: angular velocity omega;
+                  all global
+jac   (4, 3, n)   Jp, Jr, Vq, Wq with dp = Jp dq, dphi = Jr dq (global rotation), dv = Vq dq and domega = Wq dq at
+                  fixed q_t; with respect to q_t, dv = Jp dq_t and domega = Jr dq_t.
+
+Legend: q, q_t coordinates (without reference values) and their rates; n their number; rho joint point in the node's
+frame [m]; a_loc marker frame to node frame; s = A_node rho the global lever arm; T, F, M global torque, force, moment.
+
+Lie group nodes: q_t holds the local angular velocity, and dq the local incremental rotation, as in Exudyn's Newton.
+Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;
+on the sphere, where Exudyn's constraint holds it, all quantities equal Exudyn's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR = range(5)
+"""How a node turns; GROUND has no coordinates."""
+
+COORDINATES = {GROUND: 0, EULER_PARAMETERS: 7, TAIT_BRYAN: 6, ROTATION_VECTOR: 6, PLANAR: 3}
+"""Number of coordinates of each kind."""
+
+MOTION = ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w")
+"""Names of the ten motion components, joint frame."""
+
+
+@njit(cache=True)
+def cross(a, b):
+    """Vector product of two 3-vectors."""
+    c = np.empty(3)
+    c[0] = a[1] * b[2] - a[2] * b[1]
+    c[1] = a[2] * b[0] - a[0] * b[2]
+    c[2] = a[0] * b[1] - a[1] * b[0]
+    return c
+
+
+@njit(cache=True)
+def times(a, b):
+    """Matrix (3, 3) times vector (3,)."""
+    c = np.empty(3)
+    for i in range(3):
+        c[i] = a[i, 0] * b[0] + a[i, 1] * b[1] + a[i, 2] * b[2]
+    return c
+
+
+@njit(cache=True)
+def transposed_times(a, b):
+    """Transposed matrix (3, 3) times vector (3,)."""
+    c = np.empty(3)
+    for i in range(3):
+        c[i] = a[0, i] * b[0] + a[1, i] * b[1] + a[2, i] * b[2]
+    return c
+
+
+@njit(cache=True)
+def euler_g(e):
+    """Matrix G (3, 4), bilinear: omega = G(e) e_t for unit e, global components."""
+    g = np.empty((3, 4))
+    g[0, 0], g[0, 1], g[0, 2], g[0, 3] = -2.0 * e[1], 2.0 * e[0], -2.0 * e[3], 2.0 * e[2]
+    g[1, 0], g[1, 1], g[1, 2], g[1, 3] = -2.0 * e[2], 2.0 * e[3], 2.0 * e[0], -2.0 * e[1]
+    g[2, 0], g[2, 1], g[2, 2], g[2, 3] = -2.0 * e[3], -2.0 * e[2], 2.0 * e[1], 2.0 * e[0]
+    return g
+
+
+@njit(cache=True)
+def _rotation_euler(e):
+    norm2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]
+    f = 2.0 / norm2
+    a = np.empty((3, 3))
+    a[0, 0] = 1.0 - f * (e[2] * e[2] + e[3] * e[3])
+    a[1, 1] = 1.0 - f * (e[1] * e[1] + e[3] * e[3])
+    a[2, 2] = 1.0 - f * (e[1] * e[1] + e[2] * e[2])
+    a[0, 1], a[1, 0] = f * (e[1] * e[2] - e[0] * e[3]), f * (e[1] * e[2] + e[0] * e[3])
+    a[0, 2], a[2, 0] = f * (e[1] * e[3] + e[0] * e[2]), f * (e[1] * e[3] - e[0] * e[2])
+    a[1, 2], a[2, 1] = f * (e[2] * e[3] - e[0] * e[1]), f * (e[2] * e[3] + e[0] * e[1])
+    return a, norm2
+
+
+@njit(cache=True)
+def _rotation_vector(v):
+    """Exponential map of a rotation vector (3,)."""
+    angle = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+    half = 0.5 * angle
+    # sin(half) / angle stays accurate for small angles, 1 - cos(angle) would not
+    sinc = 0.5 if half < 1e-4 else np.sin(half) / angle
+    if half < 1e-4:
+        sinc = 0.5 * (1.0 - half * half / 6.0)
+    e = np.empty(4)
+    e[0] = np.cos(half)
+    for i in range(3):
+        e[i + 1] = sinc * v[i]
+    a, _ = _rotation_euler(e)
+    return a
+
+
+@njit(cache=True)
+def _rotation_tait_bryan(angles):
+    """A = Rx(a) Ry(b) Rz(c)."""
+    ca, sa = np.cos(angles[0]), np.sin(angles[0])
+    cb, sb = np.cos(angles[1]), np.sin(angles[1])
+    cc, sc = np.cos(angles[2]), np.sin(angles[2])
+    a = np.empty((3, 3))
+    a[0, 0], a[0, 1], a[0, 2] = cb * cc, -cb * sc, sb
+    a[1, 0], a[1, 1], a[1, 2] = ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb
+    a[2, 0], a[2, 1], a[2, 2] = sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb
+    return a
+
+
+@njit(cache=True)
+def _tait_bryan_axes(angles):
+    """Global axes (3, 3, columns) about which the three angles turn."""
+    ca, sa = np.cos(angles[0]), np.sin(angles[0])
+    cb, sb = np.cos(angles[1]), np.sin(angles[1])
+    g = np.zeros((3, 3))
+    g[0, 0] = 1.0
+    g[1, 1], g[2, 1] = ca, sa
+    g[0, 2], g[1, 2], g[2, 2] = sb, -sa * cb, ca * cb
+    return g
+
+
+@njit(cache=True)
+def node_rotation(kind, theta):
+    """Rotation matrix (3, 3), node to global, and Jr (3, m) of a node with rotation coordinates ``theta`` (m,)."""
+    if kind == EULER_PARAMETERS:
+        a, norm2 = _rotation_euler(theta)
+        return a, euler_g(theta) / norm2
+    if kind == TAIT_BRYAN:
+        return _rotation_tait_bryan(theta), _tait_bryan_axes(theta)
+    if kind == ROTATION_VECTOR:
+        a = _rotation_vector(theta)
+        return a, a.copy()
+    a = np.eye(3)
+    jr = np.zeros((3, 1))
+    jr[2, 0] = 1.0
+    a[0, 0], a[0, 1] = np.cos(theta[0]), -np.sin(theta[0])
+    a[1, 0], a[1, 1] = np.sin(theta[0]), np.cos(theta[0])
+    return a, jr
+
+
+@njit(cache=True)
+def _spin_variation(kind, theta, theta_t, a, jr):
+    """d(Jr theta_t) / d theta (3, m) at fixed theta_t."""
+    m = jr.shape[1]
+    w = np.zeros((3, m))
+    if kind == EULER_PARAMETERS:
+        norm2 = theta[0] ** 2 + theta[1] ** 2 + theta[2] ** 2 + theta[3] ** 2
+        g_t = euler_g(theta_t)
+        for i in range(3):
+            omega_i = 0.0
+            for k in range(4):
+                omega_i += jr[i, k] * theta_t[k]
+            for k in range(4):
+                # G(e) e_t = -G(e_t) e, and the normalisation 1 / |e|^2
+                w[i, k] = -g_t[i, k] / norm2 - 2.0 * omega_i * theta[k] / norm2
+    elif kind == TAIT_BRYAN:
+        first = cross(jr[:, 0], jr[:, 1] * theta_t[1] + jr[:, 2] * theta_t[2])
+        second = cross(jr[:, 1], jr[:, 2] * theta_t[2])
+        for i in range(3):
+            w[i, 0], w[i, 1] = first[i], second[i]
+    elif kind == ROTATION_VECTOR:
+        for k in range(3):
+            e = np.zeros(3)
+            e[k] = 1.0
+            w[:, k] = times(a, cross(e, theta_t))
+    return w
+
+
+@njit(cache=True)
+def _torque_variation(kind, theta, jr, torque):
+    """d(Jr^T T) / d theta (m, m) at a fixed global torque T."""
+    m = jr.shape[1]
+    h = np.zeros((m, m))
+    if kind == EULER_PARAMETERS:
+        norm2 = theta[0] ** 2 + theta[1] ** 2 + theta[2] ** 2 + theta[3] ** 2
+        for j in range(4):
+            e = np.zeros(4)
+            e[j] = 1.0
+            g_j = euler_g(e)
+            for i in range(4):
+                q_i, dq_i = 0.0, 0.0
+                for k in range(3):
+                    q_i += jr[k, i] * torque[k]
+                    dq_i += g_j[k, i] * torque[k]
+                h[i, j] = (dq_i - 2.0 * q_i * theta[j]) / norm2
+    elif kind == TAIT_BRYAN:
+        # axis i turns with every angle before it: dg_i / dtheta_j = g_j x g_i for j < i
+        for i in range(3):
+            for j in range(i):
+                d = cross(jr[:, j], jr[:, i])
+                h[i, j] = d[0] * torque[0] + d[1] * torque[1] + d[2] * torque[2]
+    elif kind == ROTATION_VECTOR:
+        local = np.empty(3)
+        for i in range(3):
+            local[i] = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
+        h[0, 1], h[0, 2] = -local[2], local[1]
+        h[1, 0], h[1, 2] = local[2], -local[0]
+        h[2, 0], h[2, 1] = -local[1], local[0]
+    return h
+
+
+@njit(cache=True)
+def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
+    """Fill ``frame_out`` and Jp, Jr of ``jac_out`` for the marker frame at ``rho`` of one rigid-body node.
+
+    Parameters
+    ----------
+    kind : int
+        One of the constants above, not GROUND.
+    q, q_t, reference : ndarray (n,)
+        Coordinates without reference values, rates, reference values.
+    rho : ndarray (3,)
+        Joint point in the node's frame [m].
+    a_loc : ndarray (3, 3)
+        Marker frame to node frame.
+    frame_out : ndarray (3, 6)
+        A, p, v, omega, global.
+    jac_out : ndarray (4, 3, n)
+        Entries 0 and 1 are written.
+    """
+    nt = 2 if kind == PLANAR else 3
+    a, jr = node_rotation(kind, q[nt:] + reference[nt:])
+    s = times(a, rho)
+    omega = np.zeros(3)
+    for i in range(3):
+        for k in range(jr.shape[1]):
+            omega[i] += jr[i, k] * q_t[nt + k]
+    v = cross(omega, s)
+    for i in range(3):
+        for j in range(3):
+            frame_out[i, j] = a[i, 0] * a_loc[0, j] + a[i, 1] * a_loc[1, j] + a[i, 2] * a_loc[2, j]
+        frame_out[i, 3] = s[i]
+        frame_out[i, 4] = v[i]
+        frame_out[i, 5] = omega[i]
+    for i in range(nt):
+        frame_out[i, 3] += q[i] + reference[i]
+        frame_out[i, 4] += q_t[i]
+    jac_out[:2] = 0.0
+    for i in range(nt):
+        jac_out[0, i, i] = 1.0
+    for k in range(jr.shape[1]):
+        jac_out[0, :, nt + k] = cross(jr[:, k], s)
+        jac_out[1, :, nt + k] = jr[:, k]
+
+
+@njit(cache=True)
+def node_variation(kind, q, q_t, reference, rho, jac_out):
+    """Fill Vq and Wq of ``jac_out`` (4, 3, n), whose Jr must be current: variation of v and omega at fixed rates."""
+    nt = 2 if kind == PLANAR else 3
+    theta = q[nt:] + reference[nt:]
+    a, jr = node_rotation(kind, theta)
+    s = times(a, rho)
+    w = _spin_variation(kind, theta, q_t[nt:], a, jr)
+    omega = np.zeros(3)
+    for k in range(jr.shape[1]):
+        omega += jr[:, k] * q_t[nt + k]
+    jac_out[2:] = 0.0
+    for k in range(jr.shape[1]):
+        # v = r_t + omega x s, ds = dphi x s
+        jac_out[2, :, nt + k] = cross(w[:, k], s) + cross(omega, cross(jr[:, k], s))
+        jac_out[3, :, nt + k] = w[:, k]
+
+
+@njit(cache=True)
+def node_geometric(kind, q, reference, rho, force, moment, geo_out):
+    """Geometric term d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment at the marker."""
+    nt = 2 if kind == PLANAR else 3
+    theta = q[nt:] + reference[nt:]
+    a, jr = node_rotation(kind, theta)
+    s = times(a, rho)
+    m = jr.shape[1]
+    h = _torque_variation(kind, theta, jr, moment + cross(s, force))
+    geo_out[:] = 0.0
+    for j in range(m):
+        # the torque s x F changes with the arm: dT = (dphi x s) x F
+        d_torque = cross(cross(jr[:, j], s), force)
+        for i in range(m):
+            geo_out[nt + i, nt + j] = h[i, j] + jr[0, i] * d_torque[0] + jr[1, i] * d_torque[1] + jr[2, i] * d_torque[2]
+
+
+@njit(cache=True)
+def relative_motion(frame_h, frame_j, motion_out):
+    """Motion (10,) of the journal axis in the joint frame of the housing; see `MOTION`.
+
+    The journal axis is the line (x + bx z, y + by z). All ten components are independent of where along the axis the
+    journal's marker sits; w is the velocity along z of the journal's axis point in the mid-plane.
+
+    Returns
+    -------
+    float
+        Cosine of the angle between the axes; the motion is nan if it is below 0.1 (no bearing any more).
+    """
+    a_h = frame_h[:, :3]
+    r = frame_j[:, 3] - frame_h[:, 3]
+    d = transposed_times(a_h, r)
+    d_t = transposed_times(a_h, frame_j[:, 4] - frame_h[:, 4] - cross(frame_h[:, 5], r))
+    spin = transposed_times(a_h, frame_j[:, 5] - frame_h[:, 5])
+    a = transposed_times(a_h, frame_j[:, 2])
+    if not a[2] > 0.1:
+        motion_out[:] = np.nan
+        return a[2]
+    a_t = cross(spin, a)
+    for i in range(2):
+        b = a[i] / a[2]
+        b_t = (a_t[i] - b * a_t[2]) / a[2]
+        motion_out[i] = d[i] - b * d[2]
+        motion_out[2 + i] = b
+        motion_out[4 + i] = d_t[i] - b_t * d[2] - b * d_t[2]
+        motion_out[6 + i] = b_t
+    motion_out[8] = spin[0] * a[0] + spin[1] * a[1] + spin[2] * a[2]
+    motion_out[9] = d_t[2] - a_t[2] * d[2] / a[2]
+    return a[2]
+
+
+@njit(cache=True)
+def _motion_variation(d, d_t, spin, a, a_t, dd, dd_t, dspin, da, out):
+    """Variation of the ten motion components from the variation of d, d_t, Omega and a, all in the joint frame."""
+    da_t = cross(dspin, a) + cross(spin, da)
+    for i in range(2):
+        b = a[i] / a[2]
+        b_t = (a_t[i] - b * a_t[2]) / a[2]
+        db = (da[i] - b * da[2]) / a[2]
+        db_t = (da_t[i] - db * a_t[2] - b * da_t[2] - b_t * da[2]) / a[2]
+        out[i] = dd[i] - db * d[2] - b * dd[2]
+        out[2 + i] = db
+        out[4 + i] = dd_t[i] - db_t * d[2] - b_t * dd[2] - db * d_t[2] - b * dd_t[2]
+        out[6 + i] = db_t
+    out[8] = dspin[0] * a[0] + dspin[1] * a[1] + dspin[2] * a[2] + spin[0] * da[0] + spin[1] * da[1] + spin[2] * da[2]
+    out[9] = dd_t[2] - (da_t[2] * d[2] + a_t[2] * dd[2]) / a[2] + a_t[2] * d[2] * da[2] / (a[2] * a[2])
+
+
+@njit(cache=True)
+def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out):
+    """Derivatives (10, n) of the motion with respect to q and q_t, columns in the order housing, journal."""
+    a_h = frame_h[:, :3]
+    axis = frame_j[:, 2].copy()
+    r = frame_j[:, 3] - frame_h[:, 3]
+    omega_h = frame_h[:, 5].copy()
+    u = frame_j[:, 4] - frame_h[:, 4] - cross(omega_h, r)
+    spin_g = frame_j[:, 5] - omega_h
+    d, d_t = transposed_times(a_h, r), transposed_times(a_h, u)
+    spin, a = transposed_times(a_h, spin_g), transposed_times(a_h, axis)
+    a_t = cross(spin, a)
+    zero = np.zeros(3)
+    n_h = jac_h.shape[2]
+    for side in range(2):
+        jac = jac_h if side == 0 else jac_j
+        start = 0 if side == 0 else n_h
+        for k in range(jac.shape[2]):
+            jp, jr, vq, wq = jac[0, :, k], jac[1, :, k], jac[2, :, k], jac[3, :, k]
+            if side == 0:
+                # the frame turns with the housing: a fixed global vector g changes by -A^T (dphi x g)
+                dd = transposed_times(a_h, -jp - cross(jr, r))
+                dd_t = transposed_times(a_h, -vq - cross(wq, r) + cross(omega_h, jp) - cross(jr, u))
+                dspin = transposed_times(a_h, -wq - cross(jr, spin_g))
+                da = transposed_times(a_h, -cross(jr, axis))
+                dd_t_rate = transposed_times(a_h, -jp - cross(jr, r))
+                dspin_rate = transposed_times(a_h, -jr)
+            else:
+                dd = transposed_times(a_h, jp)
+                dd_t = transposed_times(a_h, vq - cross(omega_h, jp))
+                dspin = transposed_times(a_h, wq)
+                da = transposed_times(a_h, cross(jr, axis))
+                dd_t_rate = transposed_times(a_h, jp)
+                dspin_rate = transposed_times(a_h, jr)
+            _motion_variation(d, d_t, spin, a, a_t, dd, dd_t, dspin, da, motion_q_out[:, start + k])
+            _motion_variation(d, d_t, spin, a, a_t, zero, dd_t_rate, dspin_rate, zero, motion_qt_out[:, start + k])
+
+
+@njit(cache=True)
+def global_loads(frame_h, frame_j, wrench, loads_out):
+    """Global force and moment at the two markers, rows F_H, M_H, F_J, M_J of ``loads_out`` (4, 3).
+
+    ``wrench`` (6,) acts on the journal, joint frame, moment about O = p_H; the housing gets exactly minus it about O.
+    """
+    force = times(frame_h[:, :3], wrench[:3])
+    moment = times(frame_h[:, :3], wrench[3:])
+    r = frame_j[:, 3] - frame_h[:, 3]
+    loads_out[0] = -force
+    loads_out[1] = -moment
+    loads_out[2] = force
+    loads_out[3] = moment - cross(r, force)
+
+
+@njit(cache=True)
+def generalized_force(jac_h, jac_j, loads, force_out):
+    """Generalized force Q = Jp^T F + Jr^T M (n,) of both sides, order housing, journal."""
+    n_h = jac_h.shape[2]
+    for side in range(2):
+        jac = jac_h if side == 0 else jac_j
+        start = 0 if side == 0 else n_h
+        for k in range(jac.shape[2]):
+            total = 0.0
+            for i in range(3):
+                total += jac[0, i, k] * loads[2 * side, i] + jac[1, i, k] * loads[2 * side + 1, i]
+            force_out[start + k] = total
+
+
+@njit(cache=True)
+def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
+    """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
+
+    ``tangent`` (6, 10) is d wrench / d motion in the joint frame.
+    """
+    a_h = frame_h[:, :3]
+    r = frame_j[:, 3] - frame_h[:, 3]
+    force, moment = loads[2], -loads[1]
+    n_h, n_j = jac_h.shape[2], jac_j.shape[2]
+    load = np.empty((4, 3))
+    for c in range(n_h + n_j):
+        jac = jac_h if c < n_h else jac_j
+        k = c if c < n_h else c - n_h
+        for kind in range(2):
+            motion = motion_q if kind == 0 else motion_qt
+            dw = np.zeros(6)
+            for i in range(6):
+                for m in range(10):
+                    dw[i] += tangent[i, m] * motion[m, c]
+            df = times(a_h, dw[:3])
+            dm = times(a_h, dw[3:])
+            dmj = dm - cross(r, df)
+            if kind == 0:
+                if c < n_h:
+                    # the joint frame turns, and with it the wrench
+                    turn_f = cross(jac[1, :, k], force)
+                    turn_m = cross(jac[1, :, k], moment)
+                    df += turn_f
+                    dm += turn_m
+                    dmj += turn_m - cross(r, turn_f) + cross(jac[0, :, k], force)
+                else:
+                    dmj -= cross(jac[0, :, k], force)
+            load[0], load[1], load[2], load[3] = -df, -dm, df, dmj
+            column = np.empty(n_h + n_j)
+            generalized_force(jac_h, jac_j, load, column)
+            if kind == 0:
+                k_out[:, c] += column
+            else:
+                d_out[:, c] = column

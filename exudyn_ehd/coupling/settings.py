@@ -1,0 +1,39 @@
+"""Simulation settings that a lubricated joint needs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from exudyn_ehd.status import require_number
+
+
+def ConfigureSolver(simulationSettings: Any, relativeTolerance: float = 1e-6, useModifiedNewton: bool = False) -> Any:
+    """Set what a model with lubricated joints needs in dynamic and static solves; everything else stays.
+
+    - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries
+      rounding noise of about 1e-10, so that residuals can't always fall by eight orders.
+    - Full Newton: the Jacobian of the film is exact and cheap (one tangent from the factor the force has left), and
+      saves film evaluations. Set ``useModifiedNewton=True`` for models with large flexible bodies, where a new
+      factorisation costs more than several film evaluations.
+    - The step size control stays on (Exudyn's default): a film that can't be evaluated asks for a smaller step.
+
+    Parameters
+    ----------
+    simulationSettings : exudyn.SimulationSettings
+        Changed in place.
+    relativeTolerance : float
+        Newton's relative tolerance.
+    useModifiedNewton : bool
+        Keep the Jacobian over several steps.
+
+    Returns
+    -------
+    exudyn.SimulationSettings
+        The same object.
+    """
+    tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
+    for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
+        solver.newton.relativeTolerance = tolerance
+        solver.newton.useModifiedNewton = useModifiedNewton
+        solver.adaptiveStep = True
+    return simulationSettings

@@ -1,0 +1,50 @@
+"""Which Exudyn solver is calling, and may it reject a step."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn as exu
+
+_REJECTING = (exu.MainSolverImplicitSecondOrder, exu.MainSolverStatic)
+
+
+def stored_solvers(mbs: Any) -> tuple[Any, Any]:
+    """The solver objects that Exudyn's SolveDynamic and SolveStatic left in ``mbs.sys``; new ones for every run."""
+    stored = mbs.sys
+    return stored.get("dynamicSolver"), stored.get("staticSolver")
+
+
+def running_solver(before: tuple[Any, Any], now: tuple[Any, Any]) -> Any:
+    """The solver at work, from the stored ones at the run before and now; None if it was not stored in ``mbs.sys``.
+
+    A stored solver outlives its run, and one that an exception has ended looks as if it were still at work: what tells
+    is that the object is a new one.
+    """
+    changed = [solver for old, solver in zip(before, now, strict=True) if solver is not None and solver is not old]
+    working = [solver for solver in changed if not solver.output.finishedSuccessfully]
+    # two new ones: the other was run without this joint being asked, and is not initialised or has stopped its timer
+    return min(working, key=lambda solver: solver.timer.total, default=None)
+
+
+def is_static(solver: Any) -> bool:
+    """Whether ``solver`` is a static one: its time is a load parameter."""
+    return isinstance(solver, exu.MainSolverStatic)
+
+
+def is_finished(solver: Any) -> bool:
+    """Whether the run of ``solver`` has come to its end; a failed one never does."""
+    return solver is None or bool(solver.output.finishedSuccessfully)
+
+
+def can_reject_step(solver: Any) -> bool:
+    """Whether ``solver`` is at work and answers a nan force by repeating the step with a smaller size, as it still can.
+
+    Implicit and static solvers do, down to their smallest step size; explicit ones would accept the nan, and initial
+    accelerations (step size zero) can't be repeated.
+    """
+    if not isinstance(solver, _REJECTING) or is_finished(solver) or solver.timer.total >= 0.0:
+        return False
+    # iteration data, not the settings: the solver's own copy is what decides
+    iteration = solver.it
+    return bool(iteration.adaptiveStep) and iteration.currentStepSize > iteration.minStepSize * (1.0 + 1e-6)

@@ -1,0 +1,401 @@
+"""Exudyn's implicit integrator with an own sparse factorisation: `SolveDynamicSparse`.
+
+Exudyn keeps the time stepping (generalized-alpha predictor, step control, output, sensors); its Newton loop is replaced
+through ``MainSolverImplicitSecondOrder.SetUserFunctionNewton``. The unknowns are increments d of displacements and
+Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
+
+    [M / f + beta h^2 K + gamma h D   C^T] [d_q               ]   [r]
+    [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
+
+after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own analytic Jacobians. The
+factor is kept over iterations and steps until convergence slows down (modified Newton).
+
+Additive coordinates only: Lie group nodes and first-order coordinates are refused.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from scipy.sparse import coo_matrix, csc_matrix, issparse
+from scipy.sparse.linalg import SuperLU, splu
+
+from exudyn_ehd.status import InputError, require_integer, require_number
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+
+
+@dataclass(frozen=True, kw_only=True)
+class FactorReuse:
+    """When the sparse factor is renewed.
+
+    Parameters
+    ----------
+    contractivity : float
+        Renew if an iteration reduces the residual by less than this factor.
+    maximum_iterations : int
+        Renew after so many iterations of one step.
+    worth : int
+        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent
+        beyond those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
+    """
+
+    contractivity: float = 0.5
+    maximum_iterations: int = 10
+    worth: int = 40
+
+    def __post_init__(self) -> None:
+        require_number("FactorReuse.contractivity", self.contractivity, above=0.0)
+        require_integer("FactorReuse.maximum_iterations", self.maximum_iterations, at_least=1)
+        require_integer("FactorReuse.worth", self.worth, at_least=1)
+
+
+@dataclass(kw_only=True)
+class SparseRun:
+    """What a run cost.
+
+    Attributes
+    ----------
+    success : bool
+    steps, rejected : int
+        Newton solutions that converged, and those that did not (Exudyn then halves the step).
+    iterations, jacobians : int
+    seconds, seconds_jacobian, seconds_solve : float
+        Wall clock of the run, of Jacobians with factorisations, of back substitutions.
+    factor_bytes : int
+        Memory of the last factor.
+    """
+
+    success: bool = False
+    steps: int = 0
+    rejected: int = 0
+    iterations: int = 0
+    jacobians: int = 0
+    seconds: float = 0.0
+    seconds_jacobian: float = 0.0
+    seconds_solve: float = 0.0
+    factor_bytes: int = 0
+
+    def report(self) -> str:
+        """Return one line for people."""
+        steps = max(self.steps, 1)
+        return (
+            f"{self.steps} steps in {self.seconds:.2f} s = {1e3 * self.seconds / steps:.1f} ms per step, "
+            f"{self.iterations / steps:.2f} iterations and {self.jacobians / steps:.3f} Jacobians per step, "
+            f"{self.rejected} rejected, factor {self.factor_bytes / 1e6:.0f} MB"
+        )
+
+
+def SolveDynamicSparse(
+    mbs: Any,
+    simulationSettings: Any | None = None,
+    *,
+    reuse: FactorReuse | None = None,
+) -> SparseRun:
+    """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        Assembled.
+    simulationSettings : exudyn.SimulationSettings, optional
+        Tolerances, steps and spectral radius are taken from ``timeIntegration``.
+    reuse : FactorReuse, optional
+
+    Returns
+    -------
+    SparseRun
+
+    Raises
+    ------
+    InputError
+        The model holds coordinates that this solver can't update.
+    exudyn.SolverError
+        The integration failed, as in ``mbs.SolveDynamic``.
+    """
+    settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
+    run = SparseRun()
+    loop = _Newton(matrix=SystemMatrix.of(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run)
+    solver = exu.MainSolverImplicitSecondOrder()
+    solver.SetUserFunctionNewton(mbs, loop)
+    # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
+    mbs.sys["dynamicSolver"] = solver
+    start = time.perf_counter()
+    chosen = settings.linearSolver.solverType
+    # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    try:
+        run.success = bool(solver.SolveSystem(mbs, settings))
+    finally:
+        settings.linearSolver.solverType = chosen
+    run.seconds = time.perf_counter() - start
+    if not run.success:
+        raise exu.SolverError(
+            f"SolveDynamicSparse: the integration stopped at t = {mbs.systemData.GetTime():g} s; reduce the step size "
+            "or look at the state there."
+        )
+    return run
+
+
+@dataclass(kw_only=True, eq=False)
+class _Newton:
+    """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
+
+    matrix: SystemMatrix
+    reuse: FactorReuse
+    run: SparseRun
+    factor: SuperLU | None = None
+    step_size: float = 0.0
+    baseline: int = 0
+    excess: int = 0
+
+    def __call__(self, solver: Any, mbs: Any, settings) -> bool:
+        newton = settings.timeIntegration.newton
+        solver.ComputeNewtonUpdate(mbs, settings, True)
+        error = first = solver.ComputeNewtonResidual(mbs, settings)
+        if solver.it.currentStepSize != self.step_size:
+            self.factor = None
+            self.step_size = solver.it.currentStepSize
+        if self.excess >= self.reuse.worth:
+            self.factor = None
+        age = 0
+        for iteration in range(1, newton.maxIterations + 1):
+            if not np.isfinite(error):
+                break
+            if self.factor is None or age >= self.reuse.maximum_iterations:
+                if not self._factorise(solver, mbs):
+                    break
+                age = 0
+            self._update(solver, mbs)
+            age += 1
+            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
+            if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
+                self.run.steps += 1
+                self.baseline = self.baseline or iteration
+                self.excess += iteration - self.baseline
+                return True
+            if iteration == 1 and newton.adaptInitialResidual:
+                first = max(first, error)
+            if error > self.reuse.contractivity * previous:
+                self.factor = None
+        self.factor = None
+        self.run.rejected += 1
+        return False
+
+    def _factorise(self, solver, mbs) -> bool:
+        """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
+        start = time.perf_counter()
+        self.factor = None
+        system = self.matrix.assemble(mbs, solver)
+        constraints = self.matrix.constraints
+        try:
+            self.factor = splu(
+                system,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.01 if constraints else 0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError:
+            return False
+        self.baseline = self.excess = 0
+        self.run.jacobians += 1
+        self.run.factor_bytes = 12 * (self.factor.nnz)
+        self.run.seconds_jacobian += time.perf_counter() - start
+        return True
+
+    def _update(self, solver, mbs) -> None:
+        start = time.perf_counter()
+        assert self.factor is not None
+        d = self.factor.solve(np.array(solver.GetSystemResidual()))
+        self.run.seconds_solve += time.perf_counter() - start
+        self.run.iterations += 1
+        data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
+        square = solver.newmarkBeta * h * h
+        dq = d[:n]
+        data.SetODE2Coordinates(data.GetODE2Coordinates() - dq)
+        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq)
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square))
+        if len(d) > n:
+            data.SetAECoordinates(data.GetAECoordinates() - d[n:] / square)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SystemMatrix:
+    """The system's iteration matrix, assembled object by object.
+
+    Parameters
+    ----------
+    coordinates, constraints : int
+        Second-order coordinates and algebraic equations.
+    parts : tuple
+        One function (mbs, M factor, K factor, D factor) -> (rows, columns, values) per object.
+    """
+
+    coordinates: int
+    constraints: int
+    parts: tuple[Callable, ...]
+
+    @classmethod
+    def of(cls, mbs: Any) -> SystemMatrix:
+        """Look up the objects of an assembled model."""
+        data = mbs.systemData
+        for number in range(data.NumberOfNodes()):
+            kind = mbs.GetNode(exu.NodeIndex(number))["nodeType"]
+            if "LG" in kind or "LieGroup" in kind:
+                raise InputError(
+                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
+                    "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
+                    "mbs.SolveDynamic."
+                )
+        n = len(data.GetODE2Coordinates())
+        parts: list[Callable] = [
+            _euler_parameters(mbs, exu.NodeIndex(number), n)
+            for number in range(data.NumberOfNodes())
+            if mbs.GetNode(exu.NodeIndex(number))["nodeType"] == "RigidBodyEP"
+        ]
+        if len(data.GetODE1Coordinates()):
+            raise InputError(
+                "SolveDynamicSparse mbs must have second-order coordinates only, got "
+                f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
+            )
+        for number in range(data.NumberOfObjects()):
+            item = exu.ObjectIndex(number)
+            places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
+            if len(places) == 0:
+                continue
+            if mbs.GetObject(item)["objectType"] == "GenericODE2":
+                parts.append(_generic(mbs, item, places))
+            else:
+                parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
+        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts))
+
+    def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
+        """Return the iteration matrix of the current state, scaled by beta h^2."""
+        h = solver.it.currentStepSize
+        factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
+        triplets = [part(mbs, *factors) for part in self.parts]
+        rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
+        size = self.coordinates + self.constraints
+        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        if self.constraints:
+            # rows of inactive constraints are lambda = 0
+            empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
+            system = (system + coo_matrix((np.ones(len(empty)), (empty, empty)), shape=(size, size))).tocsc()
+        return system
+
+
+def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
+    """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
+
+    def function(name: str) -> Callable | None:
+        value = mbs.GetObjectParameter(item, name)
+        return value["function"] if isinstance(value, dict) else None
+
+    def constant(name: str) -> coo_matrix | None:
+        matrix = _as_sparse(mbs.GetObjectParameter(item, name))
+        return None if matrix is None or matrix.nnz == 0 else matrix
+
+    jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
+    if jacobian is None and function("forceUserFunction") is not None:
+        raise InputError(
+            f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, "
+            "got none; add one, or use mbs.SolveDynamic, which differentiates numerically."
+        )
+    mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
+
+    def part(mbs, fM, fK, fD):
+        data = mbs.systemData
+        q = np.asarray(data.GetODE2Coordinates())[places]
+        q_t = np.asarray(data.GetODE2Coordinates_t())[places]
+        t = data.GetTime()
+        terms = [(f, m) for f, m in ((fM, mass), (fK, stiffness), (fD, damping)) if m is not None]
+        if jacobian is not None:
+            terms.append((1.0, _as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
+        if mass_function is not None:
+            terms.append((fM, _as_sparse(mass_function(mbs, t, int(item), q, q_t))))
+        return tuple(
+            np.concatenate(x)
+            for x in (
+                [places[m.row] for _, m in terms],
+                [places[m.col] for _, m in terms],
+                [f * m.data for f, m in terms],
+            )
+        )
+
+    return part
+
+
+def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) -> Callable:
+    """Triplets of a body, connector or constraint through Exudyn's own matrices."""
+    kind = exu.ComputeItemType
+    offered = mbs.ComputeItem(item)
+    terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
+    constrained = kind.ConstraintJacobian in offered and len(equations) > 0
+    object_type = mbs.GetObject(item)["objectType"]
+    point_mass = None
+    if object_type.startswith("MassPoint"):
+        # Exudyn keeps this mass matrix sparse and can't return it; density times position Jacobian is the same matrix
+        terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
+        point_mass = np.asarray(mbs.ComputeItem(item, kind.MassWeightedPositionJacobian))[: len(places)]
+    for what, _ in terms:
+        try:
+            mbs.ComputeItem(item, what)
+        except exu.ExudynError as error:
+            raise InputError(
+                f"SolveDynamicSparse mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
+                f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
+            ) from error
+    rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
+
+    def part(mbs, *factors):
+        values = np.zeros((len(places), len(places))) if point_mass is None else factors[0] * point_mass
+        for what, i in terms:
+            matrix = np.asarray(mbs.ComputeItem(item, what))
+            if matrix.size:
+                values += factors[i] * matrix
+        if not constrained:
+            return rows, columns, values.ravel()
+        C = coo_matrix(np.asarray(mbs.ComputeItem(item, kind.ConstraintJacobian)))
+        a, q = equations[C.row], places[C.col]
+        return (
+            np.concatenate([rows, a, q]),
+            np.concatenate([columns, q, a]),
+            np.concatenate([values.ravel(), C.data, C.data]),
+        )
+
+    return part
+
+
+def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
+    """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
+    data = mbs.systemData
+    columns = np.array(data.GetNodeLTGODE2(int(node)), dtype=np.int32)[3:]
+    rows = np.full(4, n + data.GetNodeLTGAE(int(node))[0], dtype=np.int32)
+    reference = np.array(mbs.GetNode(node)["referenceCoordinates"], dtype=float)[3:]
+
+    def part(mbs, *factors):
+        slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
+        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
+
+    return part
+
+
+def _as_sparse(value) -> coo_matrix | None:
+    """A matrix that a user function or an object holds, as triplets."""
+    if isinstance(value, exu.MatrixContainer):
+        value = value.GetPythonObject()
+    if isinstance(value, dict):
+        shape = (value["numberOfRows"], value["numberOfColumns"])
+        triplets = np.asarray(value["triplets"]).reshape(-1, 3)
+        return coo_matrix((triplets[:, 2], (triplets[:, 0].astype(int), triplets[:, 1].astype(int))), shape=shape)
+    if issparse(value):
+        return value.tocoo()
+    dense = np.atleast_2d(np.asarray(value, dtype=float))
+    return None if dense.size == 0 else coo_matrix(dense)

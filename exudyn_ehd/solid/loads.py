@@ -1,0 +1,228 @@
+"""Loads on a bush: on a line, on a surface, and pressure, as consistent nodal forces.
+
+Every load has a ``history``, a function of time [s] that multiplies its value; without one the value holds at all
+times.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.solid.hex20 import face_gauss, face_shapes
+from exudyn_ehd.solid.mesh import BushMesh, Line, Surface
+from exudyn_ehd.status import InputError, require_number, require_vector
+
+History = Callable[[float], float]
+
+_EDGE_POINTS, _EDGE_WEIGHTS = np.polynomial.legendre.leggauss(3)
+_EDGE_SHAPES = np.stack(
+    [_EDGE_POINTS * (_EDGE_POINTS - 1) / 2, _EDGE_POINTS * (_EDGE_POINTS + 1) / 2, 1 - _EDGE_POINTS**2], axis=1
+)
+_EDGE_SLOPES = np.stack([_EDGE_POINTS - 0.5, _EDGE_POINTS + 0.5, -2 * _EDGE_POINTS], axis=1)
+_FACE_POINTS, _FACE_WEIGHTS = face_gauss(3)
+_FACE_SHAPES, _FACE_SLOPES = face_shapes(_FACE_POINTS)
+
+
+class DeadLoad(Protocol):
+    """A load whose nodal forces don't depend on the motion."""
+
+    history: History | None
+
+    def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
+        """Return the nodal forces, shape (n, 3) [N], at history = 1; the mesh's nodes are the reference positions."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class LineLoad:
+    """Dead force per length along a line.
+
+    Parameters
+    ----------
+    line : Line
+        For example ``mesh.generatrix(mesh.outer, pi / 2)``.
+    force_per_length : three numbers
+        [N/m] per reference length, global frame.
+    history : function of time, optional
+        Factor on the force.
+    """
+
+    line: Line
+    force_per_length: tuple[float, float, float] | np.ndarray
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        require_vector("LineLoad.force_per_length", self.force_per_length, 3, "N/m")
+        _require_history("LineLoad.history", self.history)
+
+    def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
+        """Return int N_a q ds as nodal forces, shape (n, 3) [N]."""
+        tangent = np.einsum("qa,eai->eqi", _EDGE_SLOPES, mesh.nodes[self.line.edges])
+        weight = _EDGE_WEIGHTS * np.linalg.norm(tangent, axis=2)
+        share = np.einsum("eq,qa->ea", weight, _EDGE_SHAPES)
+        forces = np.zeros((len(mesh.nodes), 3))
+        np.add.at(forces, self.line.edges, share[..., None] * np.asarray(self.force_per_length, dtype=float))
+        return forces
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SurfaceLoad:
+    """Dead force per area on a surface.
+
+    Parameters
+    ----------
+    surface : Surface
+    traction : three numbers
+        [N/m^2] per reference area, global frame.
+    distribution : ndarray, shape (k,), optional
+        Factor at every node of the surface, interpolated between them; without it the traction is uniform.
+    history : function of time, optional
+        Factor on the force.
+    """
+
+    surface: Surface
+    traction: tuple[float, float, float] | np.ndarray
+    distribution: np.ndarray | None = None
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        require_vector("SurfaceLoad.traction", self.traction, 3, "Pa")
+        _require_distribution("SurfaceLoad.distribution", self.distribution, self.surface)
+        _require_history("SurfaceLoad.history", self.history)
+
+    def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
+        """Return int N_a t dA as nodal forces, shape (n, 3) [N]."""
+        normal = _area_vectors(mesh.nodes[self.surface.faces])
+        factor = _at_points(self.distribution, self.surface)
+        share = np.einsum("fq,fq,qa->fa", np.linalg.norm(normal, axis=2), factor, _FACE_SHAPES)
+        forces = np.zeros((len(mesh.nodes), 3))
+        np.add.at(forces, self.surface.faces, share[..., None] * np.asarray(self.traction, dtype=float))
+        return forces
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DeadPressure:
+    """Pressure along the inward normal of the undeformed surface, on its undeformed area.
+
+    Parameters
+    ----------
+    surface : Surface
+    pressure : float
+        [Pa]; positive pushes onto the solid.
+    distribution : ndarray, shape (k,), optional
+        Factor at every node of the surface, interpolated between them.
+    history : function of time, optional
+        Factor on the pressure.
+    """
+
+    surface: Surface
+    pressure: float
+    distribution: np.ndarray | None = None
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        require_number("DeadPressure.pressure", self.pressure, "Pa")
+        _require_distribution("DeadPressure.distribution", self.distribution, self.surface)
+        _require_history("DeadPressure.history", self.history)
+
+    def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
+        """Return -int N_a p n dA as nodal forces, shape (n, 3) [N]."""
+        return _pressure_forces(mesh.nodes, self.surface, self.pressure * _at_points(self.distribution, self.surface))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FollowerPressure:
+    """Pressure along the inward normal of the deformed surface, on its deformed area.
+
+    Parameters
+    ----------
+    surface, pressure, distribution, history
+        As in `DeadPressure`.
+    """
+
+    surface: Surface
+    pressure: float
+    distribution: np.ndarray | None = None
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        require_number("FollowerPressure.pressure", self.pressure, "Pa")
+        _require_distribution("FollowerPressure.distribution", self.distribution, self.surface)
+        _require_history("FollowerPressure.history", self.history)
+
+    def forces(self, positions: np.ndarray) -> np.ndarray:
+        """Return -int N_a p n da at current positions (n, 3) [m] and history = 1, shape (n, 3) [N]."""
+        return _pressure_forces(positions, self.surface, self.pressure * _at_points(self.distribution, self.surface))
+
+    def stiffness(self, positions: np.ndarray) -> np.ndarray:
+        """Return -d(forces)/d(positions) of every face, shape (f, 24, 24) [N/m], coordinates node by node.
+
+        With n da = x_,r × x_,s dr ds, the variation of f_a = -int N_a p x_,r × x_,s gives
+        -df_a/dx_b = int N_a p (N_b,s [x_,r]× - N_b,r [x_,s]×); not symmetric, since the edges of a patch carry no load.
+        """
+        corners = positions[self.surface.faces]
+        slope = np.einsum("qar,fai->fqri", _FACE_SLOPES, corners)
+        pressure = _FACE_WEIGHTS * self.pressure * _at_points(self.distribution, self.surface)
+        along_r, along_s = _cross_matrix(slope[:, :, 0]), _cross_matrix(slope[:, :, 1])
+        block = np.einsum("fq,qa,qb,fqij->faibj", pressure, _FACE_SHAPES, _FACE_SLOPES[..., 1], along_r)
+        block -= np.einsum("fq,qa,qb,fqij->faibj", pressure, _FACE_SHAPES, _FACE_SLOPES[..., 0], along_s)
+        return block.reshape(len(corners), 24, 24)
+
+
+Load = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure
+
+
+def factor(load: Load, time: float) -> float:
+    """Return the load's history at a time [s]."""
+    return 1.0 if load.history is None else float(load.history(time))
+
+
+def _area_vectors(corners: np.ndarray) -> np.ndarray:
+    """x_,r × x_,s times quadrature weight, (f, q, 3), of faces (f, 8, 3)."""
+    slope = np.einsum("qar,fai->fqri", _FACE_SLOPES, corners)
+    return _FACE_WEIGHTS[:, None] * np.cross(slope[:, :, 0], slope[:, :, 1])
+
+
+def _pressure_forces(positions: np.ndarray, surface: Surface, pressure: np.ndarray) -> np.ndarray:
+    normal = _area_vectors(positions[surface.faces])
+    forces = np.zeros_like(positions)
+    np.add.at(forces, surface.faces, -np.einsum("fq,qa,fqi->fai", pressure, _FACE_SHAPES, normal))
+    return forces
+
+
+def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:
+    if distribution is None:
+        return np.ones((len(surface.faces), len(_FACE_WEIGHTS)))
+    return np.asarray(distribution, dtype=float)[surface.local_faces] @ _FACE_SHAPES.T
+
+
+def _cross_matrix(vector: np.ndarray) -> np.ndarray:
+    matrix = np.zeros((*vector.shape, 3))
+    x, y, z = np.moveaxis(vector, -1, 0)
+    matrix[..., 0, 1], matrix[..., 0, 2] = -z, y
+    matrix[..., 1, 0], matrix[..., 1, 2] = z, -x
+    matrix[..., 2, 0], matrix[..., 2, 1] = -y, x
+    return matrix
+
+
+def _require_history(where: str, history: History | None) -> None:
+    if history is not None and not callable(history):
+        raise InputError(
+            f"{where} must be a function of time or None, got {history!r}; write history=lambda t: ... for a load "
+            "that varies."
+        )
+
+
+def _require_distribution(where: str, distribution: np.ndarray | None, surface: Surface) -> None:
+    if distribution is None:
+        return
+    shape = np.shape(distribution)
+    if shape != (len(surface.nodes),) or not np.all(np.isfinite(distribution)):
+        raise InputError(
+            f"{where} must be {len(surface.nodes)} finite numbers, one per node of the surface, got shape {shape}; "
+            "evaluate it from surface.theta and surface.z."
+        )

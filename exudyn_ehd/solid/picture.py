@@ -1,0 +1,165 @@
+"""Contour pictures of a deformed bush with matplotlib; no display needed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+from exudyn_ehd.solid.hex20 import face_shapes
+from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.status import InputError
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Frame:
+    """One deformed shape with a field on its nodes.
+
+    Parameters
+    ----------
+    title : str
+    displacements : ndarray, shape (n, 3)
+        [m]
+    values : ndarray, shape (n,)
+        Field at the nodes, in the unit named in the colour bar's label.
+    """
+
+    title: str
+    displacements: np.ndarray
+    values: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True)
+class View:
+    """How the bush is looked at.
+
+    Parameters
+    ----------
+    axes : three ints
+        Which coordinates run along the picture's first, second and vertical axis; the default puts y upright.
+    elevation, azimuth : float
+        Camera angles [deg].
+    magnification : float
+        Factor on the displacements.
+    facets : int
+        Each element face is drawn as facets x facets flat quadrilaterals.
+    """
+
+    axes: tuple[int, int, int] = (2, 0, 1)
+    elevation: float = 18.0
+    azimuth: float = 25.0
+    magnification: float = 1.0
+    facets: int = 3
+
+
+def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view: View | None = None) -> Figure:
+    """Return a figure of deformed shapes side by side with one colour scale.
+
+    Parameters
+    ----------
+    mesh : BushMesh
+    frames : sequence of Frame
+    label : str
+        Of the colour bar, with unit.
+    view : View, optional
+    """
+    if len(frames) == 0:
+        raise InputError("contour_figure frames must hold at least one Frame, got none; pass what is to be drawn.")
+    view = View() if view is None else view
+    columns = min(3, int(np.ceil(np.sqrt(len(frames)))))
+    rows = -(-len(frames) // columns)
+    figure = Figure(figsize=(3.4 * columns + 1.0, 3.3 * rows), layout="constrained")
+    low = min(float(np.min(frame.values)) for frame in frames)
+    high = max(float(np.max(frame.values)) for frame in frames)
+    norm = Normalize(low, high if high > low else low + 1.0)
+    colours = matplotlib.colormaps["viridis"]
+    box = _box(mesh, frames, view)
+    plots = []
+    for i, frame in enumerate(frames):
+        axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
+        _draw(axes, mesh, frame, view, norm, colours)
+        axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
+        axes.set_box_aspect(np.ptp(box, axis=1), zoom=1.1)
+        axes.view_init(elev=view.elevation, azim=view.azimuth)
+        axes.set_axis_off()
+        axes.set_title(frame.title, y=1.0)
+        plots.append(axes)
+    bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
+    figure.colorbar(bar, ax=plots, label=label, shrink=0.8, pad=0.02)
+    return figure
+
+
+def _box(mesh: BushMesh, frames: Sequence[Frame], view: View) -> np.ndarray:
+    shapes = [mesh.nodes] + [mesh.nodes + view.magnification * frame.displacements for frame in frames]
+    points = np.concatenate(shapes)[:, list(view.axes)]
+    return np.stack([points.min(axis=0), points.max(axis=0)], axis=1)
+
+
+def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colours) -> None:
+    order = list(view.axes)
+    positions = (mesh.nodes + view.magnification * frame.displacements)[:, order]
+    polygons, values = _facets(positions[mesh.boundary], frame.values[mesh.boundary], view.facets)
+    outlines = _outlines(positions[mesh.boundary])
+    elevation, azimuth = np.radians([view.elevation, view.azimuth])
+    camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    sign = np.linalg.det(np.eye(3)[order])
+    normals = _normals(polygons)
+    # facets seen edge-on stay in: without them slits open along curved edges
+    toward = sign * normals @ camera > -0.1 * np.linalg.norm(normals, axis=1)
+    polygons, values = polygons[toward], values[toward]
+    # painter's order: far facets first
+    nearness = np.argsort(polygons.mean(axis=1) @ camera)
+    face_colours = colours(norm(values[nearness]))
+    axes.add_collection3d(
+        Poly3DCollection(polygons[nearness], facecolors=face_colours, edgecolors=face_colours, linewidths=0.3, zorder=1)
+    )
+    front = sign * _normals(positions[mesh.boundary][:, :4]) @ camera > 0
+    visible = front & _unhidden(positions[mesh.boundary][:, :4], camera)
+    axes.add_collection3d(Line3DCollection(outlines[visible].reshape(-1, 9, 3), colors="k", linewidths=0.25, zorder=2))
+
+
+def _facets(corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Flat quadrilaterals (m, 4, 3) and their mean values (m,) of 8-node faces (f, 8, 3)."""
+    ticks = np.linspace(-1, 1, count + 1)
+    r, s = np.meshgrid(ticks, ticks, indexing="ij")
+    shapes, _ = face_shapes(np.stack([r.ravel(), s.ravel()], axis=1))
+    points = np.einsum("pa,fai->fpi", shapes, corners)
+    fields = np.einsum("pa,fa->fp", shapes, nodal)
+    i, j = (x.ravel() for x in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
+    quad = np.stack(
+        [i * (count + 1) + j, (i + 1) * (count + 1) + j, (i + 1) * (count + 1) + j + 1, i * (count + 1) + j + 1]
+    )
+    return points[:, quad.T].reshape(-1, 4, 3), fields[:, quad.T].mean(axis=2).ravel()
+
+
+def _outlines(corners: np.ndarray) -> np.ndarray:
+    """Closed polylines (f, 9, 3) through the corners and mid-edge nodes of 8-node faces."""
+    return corners[:, [0, 4, 1, 5, 2, 6, 3, 7, 0]]
+
+
+def _normals(quads: np.ndarray) -> np.ndarray:
+    return np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+
+
+def _unhidden(quads: np.ndarray, camera: np.ndarray) -> np.ndarray:
+    """Faces whose centre no other face covers, seen along the camera direction."""
+    side = np.cross(camera, np.eye(3)[int(np.argmin(np.abs(camera)))])
+    side /= np.linalg.norm(side)
+    plane = np.stack([side, np.cross(camera, side)], axis=1)
+    flat, depth = quads @ plane, quads.mean(axis=1) @ camera
+    centre = flat.mean(axis=1)
+    hidden = np.zeros(len(quads), dtype=bool)
+    extent = np.linalg.norm(np.ptp(flat, axis=1), axis=1).max()
+    size = np.linalg.norm(quads[:, 2] - quads[:, 0], axis=1).max()
+    for k in range(len(quads)):
+        near = np.flatnonzero((np.abs(centre - centre[k]).max(axis=1) < extent) & (depth > depth[k] + 0.5 * size))
+        corner = flat[near] - centre[k]
+        following = np.roll(corner, -1, axis=1)
+        turn = corner[..., 0] * following[..., 1] - corner[..., 1] * following[..., 0]
+        hidden[k] = bool(((turn > 0).all(axis=1) | (turn < 0).all(axis=1)).any())
+    return ~hidden

@@ -1,0 +1,135 @@
+"""Cauchy and von Mises stress of a deformed bush, at nodes and at any material point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from exudyn_ehd.solid.hex20 import GAUSS8, NODES, shape_functions, shape_gradients
+from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
+from exudyn_ehd.status import InputError
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MaterialPoints:
+    """Points of the solid by element and natural coordinates.
+
+    Parameters
+    ----------
+    element : ndarray of int, shape (n,)
+    natural : ndarray, shape (n, 3)
+    """
+
+    element: np.ndarray
+    natural: np.ndarray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StressRecovery:
+    """Stress of a mesh of one material.
+
+    Parameters
+    ----------
+    mesh : BushMesh
+        Reference positions.
+    material : SaintVenantKirchhoff
+    """
+
+    mesh: BushMesh
+    material: SaintVenantKirchhoff
+
+    def cauchy_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
+        """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points; u has a row per mesh node [m]."""
+        nodes = self.mesh.elements[points.element]
+        natural = shape_gradients(points.natural)
+        jacobian = np.einsum("nar,nai->nir", natural, self.mesh.nodes[nodes])
+        gradient = np.einsum("nar,nri->nai", natural, np.linalg.inv(jacobian))
+        return _cauchy(np.einsum("nai,naj->nij", np.asarray(u)[nodes], gradient), self.material)
+
+    def von_mises_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
+        """Return the von Mises stress, shape (n,) [Pa], at material points."""
+        return von_mises(self.cauchy_at(points, u))
+
+    def cauchy_at_nodes(self, u: np.ndarray) -> np.ndarray:
+        """Return the Cauchy stress at all nodes, shape (mesh nodes, 3, 3) [Pa].
+
+        Sampled at the 2 x 2 x 2 Gauss points, where the derivatives of the quadratic element are one order more
+        accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
+        node.
+        """
+        elements, gradient, extrapolation = self._sampling
+        samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
+        at_nodes = np.einsum("aq,eqij->eaij", extrapolation, samples)
+        total = np.zeros((len(self.mesh.nodes), 3, 3))
+        np.add.at(total, elements, at_nodes)
+        count = np.bincount(elements.ravel(), minlength=len(total))
+        return total / count[:, None, None]
+
+    def von_mises_at_nodes(self, u: np.ndarray) -> np.ndarray:
+        """Return the von Mises stress of the averaged Cauchy stress at all nodes, shape (mesh nodes,) [Pa]."""
+        return von_mises(self.cauchy_at_nodes(u))
+
+    def locate(self, positions: np.ndarray) -> MaterialPoints:
+        """Find the material points at reference positions, shape (n, 3) [m].
+
+        Raises
+        ------
+        InputError
+            A position lies outside the solid.
+        """
+        positions = np.atleast_2d(np.asarray(positions, dtype=float))
+        corners = self.mesh.nodes[self.mesh.elements]
+        _, near = cKDTree(corners.mean(axis=1)).query(positions, k=min(27, len(corners)))
+        near = near.reshape(len(positions), -1)
+        element = np.empty(len(positions), dtype=int)
+        natural = np.empty((len(positions), 3))
+        for i, position in enumerate(positions):
+            element[i], natural[i] = _invert(corners, near[i], position)
+        return MaterialPoints(element=element, natural=natural)
+
+    @cached_property
+    def _sampling(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        elements = self.mesh.elements
+        natural = shape_gradients(GAUSS8.points)
+        jacobian = np.einsum("qar,eai->eqir", natural, self.mesh.nodes[elements])
+        gradient = np.einsum("qar,eqri->eqai", natural, np.linalg.inv(jacobian))
+        trilinear = np.prod(1 + 3 * GAUSS8.points[None, :, :] * NODES[:, None, :], axis=2) / 8
+        return elements, gradient, trilinear
+
+
+def von_mises(stress: np.ndarray) -> np.ndarray:
+    """Return sqrt(3/2 s:s), shape (...) [Pa], of stresses (..., 3, 3) with s their deviator."""
+    deviator = stress - np.einsum("...ii->...", stress)[..., None, None] / 3 * np.eye(3)
+    return np.sqrt(1.5 * np.einsum("...ij,...ij->...", deviator, deviator))
+
+
+def _cauchy(H: np.ndarray, material: SaintVenantKirchhoff) -> np.ndarray:
+    """Cauchy stress of displacement gradients H (..., 3, 3)."""
+    lam, mu = material.lame
+    F = H + np.eye(3)
+    E = 0.5 * (H + H.swapaxes(-1, -2) + np.einsum("...ki,...kj->...ij", H, H))
+    S = 2 * mu * E + lam * np.einsum("...ii->...", E)[..., None, None] * np.eye(3)
+    return np.einsum("...ij,...jk,...lk->...il", F, S, F) / np.linalg.det(F)[..., None, None]
+
+
+def _invert(corners: np.ndarray, candidates: np.ndarray, position: np.ndarray) -> tuple[int, np.ndarray]:
+    """Element and natural coordinates of a position, by Newton's method in the candidate elements at once."""
+    natural = np.zeros((len(candidates), 3))
+    for _ in range(20):
+        error = np.einsum("ea,eai->ei", shape_functions(natural), corners[candidates]) - position
+        jacobian = np.einsum("ear,eai->eir", shape_gradients(natural), corners[candidates])
+        step = np.linalg.solve(jacobian, error[..., None])[..., 0]
+        natural = np.clip(natural - step, -1.6, 1.6)
+    outside = np.abs(natural).max(axis=1)
+    best = int(np.argmin(outside))
+    if outside[best] > 1 + 1e-6:
+        raise InputError(
+            f"StressRecovery.locate positions must lie inside the solid, got {position.tolist()} m in the reference "
+            "configuration; a point on the cylinder between two nodes may lie a little outside the quadratic faces: "
+            "move it inward."
+        )
+    return int(candidates[best]), natural[best]

@@ -1,0 +1,257 @@
+"""The flexible bush as a total Lagrangian solid: force, tangent, mass, energy.
+
+Positions are absolute (the absolute nodal coordinate formulation): x = X + u with the displacement u in one fixed
+frame, interpolated by the 20-node hexahedron. Internal virtual work in first Piola-Kirchhoff form,
+
+    delta W = int P : d(delta u)/dX dV0,   P = F S,   S = lam tr(E) I + 2 mu E,   E = (F^T F - I)/2,   F = I + du/dX,
+
+the St. Venant-Kirchhoff material: exact at any rotation and displacement, meant for small strain.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from exudyn_ehd.solid import kernels
+from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature, shape_functions, shape_gradients
+from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.status import InputError, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class SaintVenantKirchhoff:
+    """Isotropic material of a bush.
+
+    Parameters
+    ----------
+    youngs_modulus : float
+        [Pa]
+    poisson_ratio : float
+        In (-1, 0.5); the element locks above about 0.49.
+    density : float
+        [kg/m^3], reference configuration.
+    """
+
+    youngs_modulus: float
+    poisson_ratio: float
+    density: float
+
+    def __post_init__(self) -> None:
+        require_number("SaintVenantKirchhoff.youngs_modulus", self.youngs_modulus, "Pa", above=0.0)
+        require_number("SaintVenantKirchhoff.density", self.density, "kg/m^3", above=0.0)
+        nu = require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, above=-1.0)
+        if nu >= 0.5:
+            raise InputError(
+                f"SaintVenantKirchhoff.poisson_ratio must be below 0.5, got {nu:g}; an incompressible bush needs "
+                "another element, 0.49 is the sensible limit of this one."
+            )
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """Lamé's constants (lam, mu) [Pa]."""
+        E, nu = self.youngs_modulus, self.poisson_ratio
+        return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class TotalLagrange:
+    """A mesh with a material: the nonlinear solid.
+
+    Parameters
+    ----------
+    mesh : BushMesh
+    material : SaintVenantKirchhoff
+    quadrature : Quadrature
+        `GAUSS27`, `IRONS14` (default) or `GAUSS8`. The mass always takes 27 points.
+    viscosity_time : float
+        beta [s] of the Kelvin-Voigt law S = C : (E + beta dE/dt). In the small it is the stiffness-proportional part
+        of Rayleigh damping, D = beta K; unlike that, it does no work in a rigid motion.
+    parallel : bool
+        Run the loops over elements on numba's threads; the results are the same, bit for bit.
+    """
+
+    mesh: BushMesh
+    material: SaintVenantKirchhoff
+    quadrature: Quadrature = IRONS14
+    viscosity_time: float = 0.0
+    parallel: bool = False
+
+    def __post_init__(self) -> None:
+        require_number("TotalLagrange.viscosity_time", self.viscosity_time, "s", at_least=0.0)
+
+    @cached_property
+    def _geometry(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Elements sorted by colour, colour limits, G (m, nq, 3, 20) and w (m, nq)."""
+        order, limits = _colouring(self.mesh.elements)
+        elements = np.ascontiguousarray(self.mesh.elements[order])
+        gradient, weight = reference_gradients(self.mesh.nodes[elements], self.quadrature)
+        if weight.min() <= 0:
+            raise InputError(
+                "TotalLagrange.mesh must have elements of positive volume, got a non-positive Jacobian at a quadrature "
+                "point; check the node order and the mid-edge nodes of the mesh."
+            )
+        return elements, limits, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
+
+    @cached_property
+    def pattern(self) -> Pattern:
+        """The fixed sparsity pattern of the tangent."""
+        return Pattern.of(self._geometry[0], len(self.mesh.nodes))
+
+    def force(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
+        """Return the internal force, shape (n, 3) [N], of displacements u [m] and velocities v [m/s], shape (n, 3)."""
+        elements, colours, G, w = self._geometry
+        u, v, beta = self._state(u, v)
+        lam, mu = self.material.lame
+        f = np.empty_like(u)
+        if self.parallel:
+            kernels.force_parallel(G, w, elements, colours, u, v, lam, mu, beta, f)
+        else:
+            kernels.force_serial(G, w, elements, u, v, lam, mu, beta, f)
+        return f
+
+    def tangent(
+        self, u: np.ndarray, v: np.ndarray | None = None, *, position_factor: float = 1.0, velocity_factor: float = 0.0
+    ) -> csr_matrix:
+        """Return position_factor df/du + velocity_factor df/dv, shape (3 n, 3 n) [N/m], on the fixed pattern.
+
+        Symmetric and exact without damping; with a viscosity time the term beta dF/dt of the strain rate's variation
+        is left out, which is of the size of strain rate times beta.
+        """
+        values = self.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
+        return self.pattern.matrix(values)
+
+    def tangent_values(
+        self, u: np.ndarray, v: np.ndarray | None = None, *, position_factor: float = 1.0, velocity_factor: float = 0.0
+    ) -> np.ndarray:
+        """Return the values of `tangent` in the order of `pattern`, shape (nnz,)."""
+        elements, colours, G, w = self._geometry
+        u, v, beta = self._state(u, v)
+        lam, mu = self.material.lame
+        pattern = self.pattern
+        data = np.empty(pattern.size)
+        factors = (position_factor, position_factor + self.viscosity_time * velocity_factor)
+        if self.parallel:
+            kernels.tangent_parallel(
+                G, w, elements, colours, u, v, lam, mu, beta, *factors, pattern.stride, pattern.slot, data
+            )
+        else:
+            kernels.tangent_serial(G, w, elements, u, v, lam, mu, beta, *factors, pattern.stride, pattern.slot, data)
+        return data
+
+    def energy(self, u: np.ndarray) -> float:
+        """Return the strain energy [J], int (lam/2 tr(E)^2 + mu E:E) dV0."""
+        elements, _, G, w = self._geometry
+        lam, mu = self.material.lame
+        H = np.einsum("eai,eqja->eqij", np.asarray(u)[elements], G)
+        E = 0.5 * (H + H.swapaxes(-1, -2) + np.einsum("eqki,eqkj->eqij", H, H))
+        trace = np.einsum("eqii->eq", E)
+        return float(np.sum(w * (0.5 * lam * trace**2 + mu * np.einsum("eqij,eqij->eq", E, E))))
+
+    @cached_property
+    def scalar_mass(self) -> csr_matrix:
+        """Consistent mass int rho N_a N_b dV0 of one direction, shape (n, n) [kg]; the same for x, y and z."""
+        elements = self.mesh.elements
+        N = shape_functions(GAUSS27.points)
+        _, w = reference_gradients(self.mesh.nodes[elements], GAUSS27)
+        blocks = self.material.density * np.einsum("eq,qa,qb->eab", w, N, N)
+        rows, columns = np.repeat(elements, 20, axis=1).ravel(), np.tile(elements, (1, 20)).ravel()
+        n = len(self.mesh.nodes)
+        return csr_matrix((blocks.ravel(), (rows, columns)), shape=(n, n))
+
+    @cached_property
+    def mass(self) -> csr_matrix:
+        """Constant consistent mass, shape (3 n, 3 n) [kg], coordinates ordered node by node as x, y, z."""
+        block = self.scalar_mass.tocoo()
+        rows = (3 * block.row[:, None] + np.arange(3)).ravel()
+        columns = (3 * block.col[:, None] + np.arange(3)).ravel()
+        size = 3 * len(self.mesh.nodes)
+        return csr_matrix((np.repeat(block.data, 3), (rows, columns)), shape=(size, size))
+
+    def _state(self, u: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, float]:
+        shape = self.mesh.nodes.shape
+        u = np.ascontiguousarray(u, dtype=float).reshape(shape)
+        if v is None or self.viscosity_time == 0.0:
+            return u, u, 0.0
+        return u, np.ascontiguousarray(v, dtype=float).reshape(shape), self.viscosity_time
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Pattern:
+    """CSR pattern of 3 x 3 node blocks and the place of every element's blocks in it.
+
+    Parameters
+    ----------
+    indptr, indices : ndarray of int32
+        CSR structure, shapes (3 n + 1,) and (nnz,).
+    stride : ndarray of int64, shape (n,)
+        Entries in each of the three rows of a node.
+    slot : ndarray of int32, shape (m, 20, 20)
+        Entry (3 I, 3 J) of every node pair of every element.
+    """
+
+    indptr: np.ndarray
+    indices: np.ndarray
+    stride: np.ndarray
+    slot: np.ndarray
+
+    @classmethod
+    def of(cls, elements: np.ndarray, n: int) -> Pattern:
+        """Return the pattern of a connectivity (m, 20) over n nodes."""
+        key = elements[:, :, None].astype(np.int64) * n + elements[:, None, :]
+        pairs, place = np.unique(key, return_inverse=True)
+        row, column = pairs // n, pairs % n
+        count = np.bincount(row, minlength=n)
+        start = np.concatenate([[0], np.cumsum(count)])
+        rank = np.arange(len(pairs)) - start[row]
+        slot = 9 * start[row] + 3 * rank
+        indptr = np.concatenate([[0], np.cumsum(np.repeat(3 * count, 3))]).astype(np.int32)
+        indices = np.empty(9 * len(pairs), dtype=np.int32)
+        for i in range(3):
+            for j in range(3):
+                indices[slot + 3 * i * count[row] + j] = 3 * column + j
+        return cls(
+            indptr=indptr,
+            indices=indices,
+            stride=3 * count.astype(np.int64),
+            slot=slot[place].reshape(key.shape).astype(np.int32),
+        )
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        return len(self.indices)
+
+    def matrix(self, values: np.ndarray) -> csr_matrix:
+        """Return the CSR matrix with these values; no copy."""
+        order = len(self.indptr) - 1
+        return csr_matrix((values, self.indices, self.indptr), shape=(order, order), copy=False)
+
+    def places(self, rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
+        """Return the positions of entries (row, column) among the values; every entry must belong to the pattern."""
+        matrix = csr_matrix((np.arange(1, self.size + 1), self.indices, self.indptr))
+        return np.asarray(matrix[np.ravel(rows), np.ravel(columns)]).ravel().astype(np.int64) - 1
+
+
+def reference_gradients(corners: np.ndarray, quadrature: Quadrature) -> tuple[np.ndarray, np.ndarray]:
+    """Return dN_a/dX, shape (m, nq, 20, 3) [1/m], and volume weights, shape (m, nq) [m^3], of nodes (m, 20, 3)."""
+    natural = shape_gradients(quadrature.points)
+    jacobian = np.einsum("qar,eai->eqir", natural, corners)
+    gradient = np.einsum("qar,eqri->eqai", natural, np.linalg.inv(jacobian))
+    return gradient, quadrature.weights * np.linalg.det(jacobian)
+
+
+def _colouring(elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Greedy colouring: element order sorted by colour, and the limits of the colours in it."""
+    used = np.zeros(int(elements.max()) + 1, dtype=np.int64)
+    colour = np.empty(len(elements), dtype=np.int64)
+    for e, nodes in enumerate(elements):
+        taken = int(np.bitwise_or.reduce(used[nodes]))
+        free = ((~taken) & (taken + 1)).bit_length() - 1
+        colour[e] = free
+        used[nodes] |= 1 << free
+    order = np.argsort(colour, kind="stable")
+    return order, np.concatenate([[0], np.cumsum(np.bincount(colour))])

@@ -1,0 +1,77 @@
+"""Random films for the tests of kernels and solvers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.film import reynolds
+
+
+class Film(NamedTuple):
+    """Everything that a linear film problem is made of."""
+
+    H: np.ndarray
+    HF: np.ndarray
+    H_t: np.ndarray
+    width_x: np.ndarray
+    width_z: np.ndarray
+    link_x: np.ndarray
+    link_z: np.ndarray
+    vx: float
+    vz: float
+    flow_x: float
+    kx: np.ndarray
+    kz: np.ndarray
+    fx: np.ndarray
+    fz: np.ndarray
+    b: np.ndarray
+
+
+@pytest.fixture
+def make_film() -> Callable[..., Film]:
+    """A film with random gaps on a random grid; ``cut`` removes the link between the last and the first column."""
+
+    def make(seed: int, n: int = 12, m: int = 6, *, cut: bool = False, flow_x: float = 1.0) -> Film:
+        rng = np.random.default_rng(seed)
+        H, HF, H_t = 0.2 + rng.random((n, m)), 0.2 + rng.random((n, m)), rng.normal(size=(n, m))
+        width_x, width_z = 0.5 + rng.random(n), 0.5 + rng.random(m)
+        link_x, link_z = 1.0 + rng.random(n), 1.0 + rng.random(m - 1)
+        if cut:
+            link_x[-1] = 0.0
+        vx, vz = rng.normal(size=2)
+        kx, kz, fx, fz, b = (np.full((n, m), np.nan) for _ in range(5))
+        reynolds.conductances(H, HF, width_x, width_z, link_x, link_z, flow_x, kx, kz)
+        reynolds.couette_fluxes(H, HF, vx, vz, width_x, width_z, link_x, fx, fz)
+        reynolds.right_hand_side(fx, fz, b)
+        reynolds.add_squeeze(H_t, width_x, width_z, b)
+        return Film(H, HF, H_t, width_x, width_z, link_x, link_z, vx, vz, flow_x, kx, kz, fx, fz, b)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def dense_matrix() -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """The film's matrix of all vertices (n m, n m), link by link."""
+
+    def build(kx: np.ndarray, kz: np.ndarray) -> np.ndarray:
+        n, m = kx.shape
+        A = np.zeros((n * m, n * m))
+
+        def add(a: int, b: int, k: float) -> None:
+            A[a, a] += k
+            A[b, b] += k
+            A[a, b] -= k
+            A[b, a] -= k
+
+        for i in range(n):
+            for j in range(m):
+                add(i * m + j, (i + 1) % n * m + j, kx[i, j])
+                if j + 1 < m:
+                    add(i * m + j, i * m + j + 1, kz[i, j])
+        return A
+
+    return build

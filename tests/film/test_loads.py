@@ -1,0 +1,97 @@
+"""Integrals over the film: readable twins, the peak, and the flows through the ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from exudyn_ehd import FullSommerfeld, bearing_grid
+from exudyn_ehd.film import loads
+from exudyn_ehd.film.solver import FilmSolver
+
+
+@pytest.fixture
+def field():
+    rng = np.random.default_rng(0)
+    theta, z = rng.uniform(0, 6, 9), np.linspace(-1, 1, 5)
+    return rng, theta, z, rng.random((9, 5)), rng.normal(size=(9, 5))
+
+
+def test_pressure_integrals(field):
+    _, theta, z, weight, P = field
+    out = np.empty(4)
+    loads.pressure_integrals(P, weight, np.cos(theta), np.sin(theta), z, out)
+    shapes = [np.cos(theta)[:, None] + 0 * z, np.sin(theta)[:, None] + 0 * z,
+              np.cos(theta)[:, None] * z, np.sin(theta)[:, None] * z]  # fmt: skip
+    np.testing.assert_allclose(out, [(P * weight * s).sum() for s in shapes], rtol=1e-12)
+
+
+def test_couette_integral_and_gradient(field):
+    rng, _, _, weight, _ = field
+    H, active, fixed = 0.2 + rng.random((9, 5)), rng.random((9, 5)) < 0.5, rng.random((9, 5)) < 0.2
+    share = np.where(active | fixed, 1.0, 0.3)
+    whole, unbroken = loads.couette_integral(H, weight, active, fixed, 0.3)
+    assert whole == pytest.approx((share * weight / H).sum(), rel=1e-13)
+    assert unbroken == pytest.approx((weight / H)[active | fixed].sum(), rel=1e-13)
+    gradient = np.empty_like(H)
+    loads.couette_gradient(H, weight, active, fixed, 0.3, gradient)
+    np.testing.assert_allclose(gradient, -share * weight / H**2, rtol=1e-13)
+
+
+def test_adjoint_right_hand_sides_and_scatter(field):
+    rng, theta, z, weight, _ = field
+    order = np.sort(rng.choice(45, 20, replace=False))
+    active = rng.random((9, 5)) < 0.7
+    rhs = np.empty((4, 20))
+    loads.load_adjoint_rhs(order, 20, weight, np.cos(theta), np.sin(theta), z, active, rhs)
+    fields = np.full((4, 9, 5), np.nan)
+    loads.scatter(rhs, order, 20, fields)
+    numbered = np.zeros(45, dtype=bool)
+    numbered[order] = True
+    w = np.where(numbered.reshape(9, 5) & active, weight, 0.0)
+    c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
+    np.testing.assert_allclose(fields, [w * c, w * s, w * c * z, w * s * z], rtol=1e-14)
+
+
+def test_peak(field):
+    P = field[-1]
+    value, i, j = loads.peak_of(P)
+    assert value == P.max()
+    assert (i, j) == np.unravel_index(P.argmax(), P.shape)
+
+
+@pytest.mark.parametrize("centre", (3.1, 0.02, 6.25))
+def test_refined_peak_is_exact_for_a_parabola(centre):
+    # Also across the seam of the ring; the axial vertices are not equidistant.
+    x = 2 * np.pi * np.arange(32) / 32
+    z = np.sin(np.linspace(-1, 1, 9))
+    d = np.remainder(x - centre + np.pi, 2 * np.pi) - np.pi
+    P = 5.0 - 2.0 * d[:, None] ** 2 - 3.0 * (z - 0.1) ** 2
+    peak, position_x, position_z = loads.refined_peak(P, x, z, True)
+    assert peak == pytest.approx(5.0, rel=1e-12)
+    assert np.remainder(position_x - centre + np.pi, 2 * np.pi) - np.pi == pytest.approx(0.0, abs=1e-12)
+    assert position_z == pytest.approx(0.1, rel=1e-12)
+
+
+def test_end_flows_balance_supply_and_squeeze():
+    """Mass: what leaves through the ends is what the inlet line supplies minus the growth of the film's volume."""
+    for seed, open_ring in ((1, False), (2, True)):
+        rng = np.random.default_rng(seed)
+        g = bearing_grid(1.0, 2.0, 24, 6, open_ring=open_ring)
+        s = FilmSolver(g, FullSommerfeld())
+        s.H[:], s.HF[:] = 0.5 + rng.random(g.shape), 0.5 + rng.random(g.shape)
+        s.H_t[:] = rng.normal(size=g.shape)
+        s.pressure[:, 0], s.pressure[:, -1] = 2.0, 5.0
+        s.solve(3.0, 1.0, -np.inf)
+        y = s.system
+        lower, upper = loads.end_flows(
+            s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, True, np.ones(g.shape, dtype=bool), g.fixed
+        )
+        inflow = s.inflow()
+        growth = (s.H_t * np.outer(g.width_x, g.width_z)).sum()
+        scale = abs(inflow).sum()
+        assert inflow.sum() == pytest.approx(growth, abs=1e-12 * scale)
+        if not open_ring:
+            assert -lower == pytest.approx(inflow[:, 0].sum(), abs=1e-12 * scale)
+            assert -upper == pytest.approx(inflow[:, -1].sum(), abs=1e-12 * scale)
+            assert lower + upper == pytest.approx(-growth, abs=1e-12 * scale)
