@@ -99,6 +99,8 @@ class ClassicSolver(FilmSolver):
         As for `FilmSolver`; the grid uniform, the closure `Gumbel`.
     """
 
+    plain_links = False
+
     def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None

@@ -65,6 +65,8 @@ def long_bearing_grid(
 class LongSolver(FilmSolver):
     """`FilmSolver` without any axial flow, that of an axially moving surface included."""
 
+    plain_links = False
+
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:

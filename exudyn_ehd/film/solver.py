@@ -99,6 +99,9 @@ class FilmSolver:
         Scaled pressure (prescribed where ``grid.fixed``) and, for closures that conserve mass, the film fraction.
     """
 
+    # False where a film model has equations of its own, so that only `sensitivities` knows its gradients.
+    plain_links = True
+
     def __init__(
         self,
         grid: FilmGrid,

@@ -14,7 +14,6 @@ import numpy as np
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 from exudyn_ehd.film.pose_gradient import plain_pose_gradient
-from exudyn_ehd.film.solver import FilmSolver
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.solver import Sensitivities
@@ -81,10 +80,8 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
 
 def is_plain(model: BearingModel) -> bool:
     """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
-    solver = model.solver
-    if type(solver) is not FilmSolver or solver.flux is not None or solver.closure.conserves_mass:
-        return False
-    return model.limiter_fields is None
+    s = model.solver
+    return s.plain_links and model.limiter_fields is None and s.flux is None and not s.closure.conserves_mass
 
 
 def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
