@@ -22,10 +22,19 @@ from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
+from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.oils import oil
+from exudyn_ehd.film.shear import CarreauShear
+from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
+from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
@@ -71,8 +80,13 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "ANCFBush",
+    "AxialGroove",
+    "BarusPressure",
     "BushMesh",
+    "CarreauShear",
     "CarriedOuter",
+    "CircumferentialGroove",
+    "ClassicSOR",
     "ConfigureSolver",
     "CreateFlexibleBush",
     "CreateLubricatedJoint",
@@ -81,6 +95,7 @@ __all__ = [
     "ElrodAdams",
     "EquilibriumResult",
     "FactorReuse",
+    "FilmEnergy",
     "FilmError",
     "FilmResult",
     "FiniteLength",
@@ -92,19 +107,26 @@ __all__ = [
     "FullSommerfeld",
     "Gumbel",
     "Held",
+    "Hole",
     "HollowCylinder",
+    "ImpedanceMap",
     "InputError",
     "JointHistory",
     "JournalBearing",
     "LineLoad",
+    "LongBearing",
     "Lubricant",
     "LubricatedJoint",
+    "LumpedThermal",
     "MaximumGap",
     "ModalBush",
     "Periodic",
+    "Pocket",
     "Quantity",
     "Rayleigh",
     "RegularisedWall",
+    "ReynoldsTemperature",
+    "RoelandsPressure",
     "SaintVenantKirchhoff",
     "ShortBearing",
     "SolveDynamicSparse",
@@ -113,10 +135,13 @@ __all__ = [
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
+    "VogelTemperature",
+    "WaltherTemperature",
     "bearing_grid",
     "equilibrium",
     "mesh_from_arrays",
     "mesh_from_fem",
+    "oil",
     "slider_grid",
     "solve_film",
     "steady",

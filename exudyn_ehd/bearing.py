@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.choice import Film, check_film
+from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
+from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.supply import SupplyArea, check_supply
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 if TYPE_CHECKING:
@@ -36,7 +42,6 @@ class MaximumGap:
     """
 
 
-Film = FiniteLength | ShortBearing
 Cavitation = FullSommerfeld | Gumbel | SwiftStieber | ElrodAdams
 Inlet = Periodic | MaximumGap
 
@@ -54,7 +59,7 @@ class JournalBearing:
     radial_clearance : float
         c = bore radius - journal radius, m. A ratio c/R outside 1e-4 to 1e-2 warns.
     lubricant : Lubricant
-    film : FiniteLength or ShortBearing
+    film : FiniteLength, ShortBearing, LongBearing, ImpedanceMap or ClassicSOR
         Film model and grid.
     cavitation : FullSommerfeld, Gumbel, SwiftStieber or ElrodAdams
         What happens below the cavity pressure.
@@ -66,6 +71,10 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    supply : tuple of AxialGroove, CircumferentialGroove, Hole or Pocket
+        Areas with a prescribed supply pressure; empty: none.
+    thermal : LumpedThermal, FilmEnergy or None
+        Temperature of the film; None: isothermal.
     bush : ModalBush, ANCFBush or None
         Flexible bush, whose outer surface moves with the housing; None: a rigid bore.
 
@@ -85,6 +94,8 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    supply: tuple[SupplyArea, ...] = ()
+    thermal: LumpedThermal | FilmEnergy | None = None
     bush: ModalBush | ANCFBush | None = None
 
     def __post_init__(self) -> None:
@@ -97,17 +108,58 @@ class JournalBearing:
             hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
         )  # fmt: skip
         _require_type("lubricant", self.lubricant, (Lubricant,))
-        _require_type("film", self.film, (FiniteLength, ShortBearing))
+        _require_type("film", self.film, (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap))
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
+        open_ring = isinstance(self.inlet, MaximumGap)
+        check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
+        if isinstance(self.film, ImpedanceMap):
+            self._check_plain()
+        self._check_supply()
         self._check_pressures()
         self._check_clearance()
         if self.bush is not None:
             _check_bush(self)
+
+    def _check_plain(self) -> None:
+        """What `ImpedanceMap` needs: nothing beside geometry, viscosity and a closure at ambient cavity pressure."""
+        expected = "the map holds plain bearings only; use film=FiniteLength(...)."
+        own = {"journal_radius", "length", "radial_clearance", "lubricant", "film", "cavitation"}
+        for item, known in ((self, own), (self.lubricant, {"viscosity", "density"})):
+            for f in fields(item):
+                if f.name not in known and getattr(item, f.name) != f.default:
+                    raise InputError(
+                        f"{type(item).__name__}.{f.name} must be {f.default!r} with film=ImpedanceMap(...), got "
+                        f"{getattr(item, f.name)!r}; {expected}"
+                    )
+        closure = self.cavitation
+        known_closure = isinstance(closure, (Gumbel, SwiftStieber))
+        if not known_closure or closure.cavity_pressure != 0.0 or closure.cavity_shear != 1.0:
+            raise InputError(
+                "JournalBearing.cavitation must be Gumbel() or SwiftStieber() at cavity_pressure=0 and cavity_shear=1 "
+                f"with film=ImpedanceMap(...), got {closure!r}; {expected}"
+            )
+
+    def _check_supply(self) -> None:
+        if self.supply == ():
+            return
+        check_supply(self.supply, self.journal_radius, self.length, self.film)
+        if isinstance(self.inlet, MaximumGap):
+            raise InputError(
+                "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its grooves; use "
+                "inlet=Periodic()."
+            )
+        lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
+        if pc > lowest:
+            raise InputError(
+                f"JournalBearing.supply: pressures must not be below {type(self.cavitation).__name__}.cavity_pressure "
+                f"({pc:g} Pa), got {lowest:g} Pa; both are gauge pressures."
+            )
 
     def _check_pressures(self) -> None:
         pc = self.cavitation.cavity_pressure
@@ -160,6 +212,10 @@ def _check_bush(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.reduce import ModalBush
 
     _require_type("bush", bearing.bush, (ModalBush, ANCFBush, type(None)))
+    if not isinstance(bearing.film, FiniteLength | ShortBearing):
+        raise InputError(
+            f"JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got {type(bearing.film).__name__}(...)."
+        )
     mesh = bearing.bush.mesh if bearing.bush is not None else None
     if not isinstance(mesh, HollowCylinder):
         return

@@ -17,6 +17,7 @@ class Status(enum.IntEnum):
     NO_FILM = 2
     NOT_FINITE = 3
     NO_PRESSURE = 4
+    OUTSIDE_MAP = 5
 
     @property
     def advice(self) -> str:
@@ -32,6 +33,8 @@ _ADVICE = {
     "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
     Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; use "
     "RoelandsPressure instead of BarusPressure, or name an elastic liner or bush.",
+    Status.OUTSIDE_MAP: "the journal left the domain of its impedance map; give ImpedanceMap a larger "
+    "largest_eccentricity_ratio, or use film=FiniteLength(...), with contact=RegularisedWall(onset=...) if surfaces may touch.",
     Status.NOT_FINITE: "the state handed to the film is not finite; reduce the step size and check the masses and "
     "loads of the model.",
 }

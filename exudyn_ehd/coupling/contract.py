@@ -55,13 +55,19 @@ class JointModel(Protocol):
         """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
         ...
 
+    @property
+    def needs_spin(self) -> bool:
+        """Whether the journal's angle matters (supply areas in the journal)."""
+        ...
+
     def initial_history(self, motion: np.ndarray) -> Any:
         """Memory at the start of a run, at this motion."""
         ...
 
-    def evaluate(self, motion: np.ndarray, history: Any = None, step: float = 0.0) -> Evaluation:
+    def evaluate(self, motion: np.ndarray, history: Any = None, step: float = 0.0, spin: float = 0.0) -> Evaluation:
         """Evaluate the film at [x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w] (m, rad, m/s, rad/s).
 
-        ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s].
+        ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s],
+        ``spin`` the journal's angle against the housing about the axis [rad].
         """
         ...

@@ -8,6 +8,7 @@ user function alone, when the start of the step has moved on, so that a rejected
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import exudyn as exu
@@ -127,7 +128,7 @@ class FilmElement:
         evaluation = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
-            evaluation = self.model.evaluate(motion) if memory is None else self.model.evaluate(motion, memory, step)
+            evaluation = self.model.evaluate(motion, memory, step, self._spin() if self.model.needs_spin else 0.0)
             self.evaluations += 1
         self._trial = Trial(q, q_t, memory, step, motion, evaluation)
         return self._trial
@@ -146,6 +147,12 @@ class FilmElement:
         motion = np.empty(10)
         kinematics.relative_motion(housing.frame, journal.frame, motion)
         return motion
+
+    def _spin(self) -> float:
+        """Angle of the journal against the housing about the bearing's axis [rad], 0 in the reference configuration."""
+        housing, journal = self.sides
+        turn = housing.frame[:, :3].T @ journal.frame[:, 0]
+        return math.atan2(turn[1], turn[0])
 
     def _bind(self, mbs: Any) -> None:
         for side in self.sides:

@@ -9,7 +9,18 @@ from typing import Any
 
 import numpy as np
 
-_SCALARS = ("minimum_gap", "peak_pressure", "friction_torque", "power_loss", "leakage", "contact_load")
+_SCALARS = (
+    "minimum_gap",
+    "peak_pressure",
+    "friction_torque",
+    "power_loss",
+    "leakage",
+    "contact_load",
+    "contact_torque",
+    "supply_flow",
+    "film_temperature",
+    "peak_temperature",
+)
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 _WIDTH = _FIRST_SCALAR + len(_SCALARS)
 
@@ -29,6 +40,10 @@ class Quantity(enum.Enum):
     POWER_LOSS = "power_loss"
     LEAKAGE = "leakage"
     CONTACT_LOAD = "contact_load"
+    CONTACT_TORQUE = "contact_torque"
+    SUPPLY_FLOW = "supply_flow"
+    FILM_TEMPERATURE = "film_temperature"
+    PEAK_TEMPERATURE = "peak_temperature"
 
 
 _COLUMNS: dict[str, Any] = {
@@ -66,6 +81,8 @@ class JointHistory:
         [N], [N m].
     minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
         [m], [Pa], [N m], [W], [m3/s], [N].
+    contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
+        [N m], [m3/s], [K], [K].
     """
 
     time: np.ndarray
@@ -81,6 +98,10 @@ class JointHistory:
     power_loss: np.ndarray
     leakage: np.ndarray
     contact_load: np.ndarray
+    contact_torque: np.ndarray
+    supply_flow: np.ndarray
+    film_temperature: np.ndarray
+    peak_temperature: np.ndarray
 
 
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:

@@ -106,15 +106,62 @@ def _forward_backward(column_form, row_form, unit_forward, inv_diag, count, widt
             x[k] *= inv_diag[k]
 
 
+@njit(cache=True, fastmath=_FAST)
+def _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count, width, x):
+    """As `_forward_backward` for four right-hand sides x (4, count) at once."""
+    x0, x1, x2, x3 = x[0], x[1], x[2], x[3]
+    for k in range(count):
+        if not unit_forward:
+            inverse = inv_diag[k]
+            x0[k] *= inverse
+            x1[k] *= inverse
+            x2[k] *= inverse
+            x3[k] *= inverse
+        c0, c1, c2, c3 = x0[k], x1[k], x2[k], x3[k]
+        col = column_form[k]
+        reach = min(width, count - 1 - k)
+        for d in range(1, reach + 1):
+            u = col[d]
+            x0[k + d] -= c0 * u
+            x1[k + d] -= c1 * u
+            x2[k + d] -= c2 * u
+            x3[k + d] -= c3 * u
+    for k in range(count - 1, -1, -1):
+        row = row_form[k]
+        reach = min(width, count - 1 - k)
+        s0 = 0.0
+        s1 = 0.0
+        s2 = 0.0
+        s3 = 0.0
+        for d in range(1, reach + 1):
+            u = row[d]
+            s0 += u * x0[k + d]
+            s1 += u * x1[k + d]
+            s2 += u * x2[k + d]
+            s3 += u * x3[k + d]
+        inverse = inv_diag[k] if unit_forward else 1.0
+        x0[k] = (x0[k] - s0) * inverse
+        x1[k] = (x1[k] - s1) * inverse
+        x2[k] = (x2[k] - s2) * inverse
+        x3[k] = (x3[k] - s3) * inverse
+
+
+@njit(cache=True)
+def _solve_all(column_form, row_form, unit_forward, inv_diag, count, width, x):
+    full = x.shape[0] - x.shape[0] % 4
+    for k in range(0, full, 4):
+        _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count, width, x[k : k + 4])
+    for k in range(full, x.shape[0]):
+        _forward_backward(column_form, row_form, unit_forward, inv_diag, count, width, x[k])
+
+
 @njit(cache=True)
 def solve_lu(lower, upper, inv_diag, count, width, x):
-    """Solve ``A x = b`` for every row of x (k, count), in place."""
-    for k in range(x.shape[0]):
-        _forward_backward(lower, upper, True, inv_diag, count, width, x[k])
+    """Solve ``A x = b`` for every row of x (k, count), in place, four at a time."""
+    _solve_all(lower, upper, True, inv_diag, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu_transposed(lower, upper, inv_diag, count, width, x):
-    """Solve ``A^T x = b`` for every row of x (k, count), in place."""
-    for k in range(x.shape[0]):
-        _forward_backward(upper, lower, False, inv_diag, count, width, x[k])
+    """Solve ``A^T x = b`` for every row of x (k, count), in place, four at a time."""
+    _solve_all(upper, lower, False, inv_diag, count, width, x)

@@ -63,8 +63,14 @@ class ElrodAdams:
             np.logical_not(system.fixed, out=work.active)
             steps = SwiftStieber().solve(system, work)[1]
             system.fill[:] = 1.0
+        was_warm = work.warm
         ok, count = self._newton(system, work, lu, system.inverse_step, system.mass_old)
         steps += count
+        if not ok and was_warm:
+            # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
+            np.logical_not(system.fixed, out=work.active)
+            ok, count = self._newton(system, work, lu, system.inverse_step, system.mass_old)
+            steps += count
         if not ok:
             ok, count = self._pseudo_transient(system, work, lu)
             steps += count
@@ -86,9 +92,13 @@ class ElrodAdams:
         return ok, steps
 
     def _pseudo_transient(self, s: FilmSystem, work: Workspace, lu: tuple[np.ndarray, np.ndarray]) -> tuple[bool, int]:
-        """Implicit steps towards the target, from short to long; the last one is the target itself."""
-        rate = float(np.max(np.abs(s.fx)) / np.min(s.area[s.area > 0.0])) + s.inverse_step + 1e-300
-        mass = np.where(s.inverse_step > 0.0, s.mass_old, s.fill * s.H)
+        """Implicit steps towards the target, from short to long and from a full film; the last one is the target itself."""
+        largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
+        largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
+        rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
+        if rate == 0.0:
+            rate = 1.0
+        mass = s.mass_old if s.inverse_step > 0.0 else s.H.copy()
         np.logical_not(s.fixed, out=work.active)
         s.fill[:] = 1.0
         extra, total = 4.0 * rate, 0

@@ -80,6 +80,21 @@ def couette_integral_fill(H, weight, fill):
     return whole, full
 
 
+@njit(cache=True, fastmath=_FAST)
+def couette_integral_ratio(H, weight, ratio, share, whole):
+    """(C of a film with a viscosity ratio, C where ``whole``), all (n, m)."""
+    n, m = H.shape
+    total = 0.0
+    unbroken = 0.0
+    for i in range(n):
+        for j in range(m):
+            s = weight[i, j] * ratio[i, j] / H[i, j]
+            total += share[i, j] * s
+            if whole[i, j]:
+                unbroken += s
+    return total, unbroken
+
+
 @njit(cache=True)
 def couette_adjoint_rhs(order, count, weight, H, active, rhs_out):
     """dC/dfill at the cavitated unknowns: rhs_out (count,)."""

@@ -99,6 +99,9 @@ class FilmSolver:
         Scaled pressure (prescribed where ``grid.fixed``) and, for closures that conserve mass, the film fraction.
     """
 
+    # False where a film model has equations of its own, so that only `sensitivities` knows its gradients.
+    plain_links = True
+
     def __init__(
         self,
         grid: FilmGrid,
@@ -144,6 +147,12 @@ class FilmSolver:
     def forget(self) -> None:
         """Drop the warm start; the next solution starts from a coarser grid."""
         self.work.warm = False
+
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        if self.coarse is not None:
+            self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
+            self.coarse.refresh_fixed()
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
@@ -210,6 +219,8 @@ class FilmSolver:
     def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
         coarse = self.coarse
         assert coarse is not None
+        if self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any():
+            return 0  # the coarser grid has lost the supply and would starve
         coarse.H[:] = self.H[::2, ::2]
         coarse.HF[:] = self.H[1::2, ::2]
         coarse.H_t[:] = self.H_t[::2, ::2]

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
+from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.joint.impedance import ImpedanceModel
 from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.rheology import collect_rheology
 from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
 
@@ -12,7 +15,15 @@ from exudyn_ehd.status import InputError
 def collect_effects(bearing: JournalBearing) -> Effects:
     """The effects that a bearing names, in scaled form."""
     wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
-    return Effects(limiter=wall, contacts=() if wall is None else (wall,))
+    rheology = collect_rheology(bearing)
+    return Effects(
+        limiter=wall,
+        contacts=() if wall is None else (wall,),
+        flux=rheology.flux,
+        pressure_law=rheology.pressure_law,
+        shear_factor=rheology.shear_factor,
+        thermal=rheology.thermal,
+    )
 
 
 def _model(bearing: JournalBearing, start_angle: float) -> BearingModel:
@@ -32,7 +43,7 @@ def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingMod
     return model
 
 
-def build_model(bearing: JournalBearing) -> BearingModel:
+def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
     """Model of a bearing for a moving journal.
 
     Raises
@@ -47,6 +58,8 @@ def build_model(bearing: JournalBearing) -> BearingModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
             "concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
+    if isinstance(bearing.film, ImpedanceMap):
+        return ImpedanceModel(bearing)
     model = _model(bearing, 0.0)
     compile_kernels(model)
     return model

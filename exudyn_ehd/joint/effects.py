@@ -7,13 +7,16 @@ pressure laws are in Pa.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from exudyn_ehd.film.flux import FluxEffect
 
-__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor"]
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.model import BearingModel
+
+__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor", "ThermalEffect"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,3 +88,29 @@ class ShearFactor(Protocol):
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> None:
         """mu/mu_0 at the vertices with its derivatives with respect to H and vx."""
+
+
+class ThermalEffect(Protocol):
+    """Temperature of the film: history of accepted steps, and viscosity of the next one.
+
+    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it will become.
+    """
+
+    @property
+    def temperature(self) -> float | np.ndarray:
+        """K, of the film that was evaluated last."""
+
+    def initial_temperature(self, model: BearingModel) -> float | np.ndarray:
+        """K, at the start of a motion."""
+
+    def begin(self, model: BearingModel, history: History | None) -> None:
+        """Set the viscosity for the temperature of the history."""
+
+    def advance(self, model: BearingModel) -> float | np.ndarray:
+        """Temperature at the end of the step that was evaluated last, K."""
+
+    def steady_temperature(self, model: BearingModel) -> float | np.ndarray:
+        """Temperature in balance with the heat of the last evaluation, K; not finite if there is none."""
+
+    def quantities(self) -> dict[str, float]:
+        """``film_temperature`` and ``peak_temperature`` of the film that was evaluated last, K."""

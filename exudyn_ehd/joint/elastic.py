@@ -21,7 +21,7 @@ from exudyn_ehd.joint.bore import Bore
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
 from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
-from exudyn_ehd.joint.settle import Elasticity, condensed_tangent, settle
+from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.status import Status
 
 
@@ -41,9 +41,9 @@ class ElasticEvaluation(Evaluation):
 class BoreTerm:
     """The bore's displacement as a gap term; its field belongs to the motion being evaluated."""
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.displacement = np.zeros(shape)
-        self.rate = np.zeros(shape)
+    def __init__(self) -> None:
+        self.displacement = np.zeros((0, 0))
+        self.rate = np.zeros((0, 0))
 
     def field(self, history: History | None) -> np.ndarray:
         """Scaled displacement (n, m)."""
@@ -74,7 +74,7 @@ class ElasticBearingModel(BearingModel):
         effects: Effects | None = None,
     ) -> None:
         effects = Effects() if effects is None else effects
-        term = BoreTerm((bearing.film.n_theta, bearing.film.n_z + 1))
+        term = BoreTerm()
         effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
         super().__init__(bearing, start_angle=start_angle, effects=effects)
         self.term = term
@@ -116,16 +116,18 @@ class ElasticBearingModel(BearingModel):
                 field = field + P * area
         return field
 
-    def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> ElasticEvaluation:
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
         """Evaluate the film; ``motion`` (10 + 2 k,) as in the module's docstring, the rest as in `BearingModel`."""
-        base = super().evaluate(motion, history, step)
+        base = super().evaluate(motion, history, step, spin)
         if base.status is not Status.CONVERGED:
             self.bore_load = np.full(self.bore.size, np.nan)
         return ElasticEvaluation(**{f.name: getattr(base, f.name) for f in dataclasses.fields(base)}, bore_load=self.bore_load)
 
-    def evaluate_steady(self, motion: np.ndarray) -> ElasticEvaluation:
+    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> ElasticEvaluation:
         """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0."""
-        return settle(self, motion)
+        return settle(self, motion, history)
 
     def tangent(self) -> np.ndarray:
         """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of the last evaluation; nan without a film."""

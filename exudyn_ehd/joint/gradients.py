@@ -89,7 +89,8 @@ def _integral_gradients(
 
 def is_plain(model: BearingModel) -> bool:
     """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
-    return model.limiter_fields is None and model.solver.flux is None and not model.solver.closure.conserves_mass
+    s = model.solver
+    return s.plain_links and model.limiter_fields is None and s.flux is None and not s.closure.conserves_mass
 
 
 def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:

@@ -19,17 +19,27 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
-from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
+    couette_integral_ratio,
     end_flows,
     pressure_integrals,
     refined_peak,
 )
-from exudyn_ehd.film.solver import FilmSolver
-from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
+from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.joint.effects import (
+    Contact,
+    FluxEffect,
+    GapLimiter,
+    GapTerm,
+    History,
+    PressureLaw,
+    ShearFactor,
+    ThermalEffect,
+)
 from exudyn_ehd.joint.gradients import wrench_tangent
 from exudyn_ehd.status import Status
 
@@ -48,6 +58,7 @@ class Effects:
     flux : tuple of FluxEffect
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
+    thermal : ThermalEffect or None
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -56,6 +67,7 @@ class Effects:
     flux: tuple[FluxEffect, ...] = ()
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
+    thermal: ThermalEffect | None = None
 
 
 @dataclass(eq=False)
@@ -138,14 +150,14 @@ class BearingModel:
         R, c = bearing.journal_radius, bearing.radial_clearance
         self.bearing = bearing
         self.effects = Effects() if effects is None else effects
-        self.grid = bearing_grid(
-            R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
-            start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
-        )  # fmt: skip
-        self.solver = FilmSolver(
-            self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
-            circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
-        )  # fmt: skip
+        self.grid = film_grid(
+            bearing.film, R, bearing.length, start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap)
+        )
+        self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
+        self.needs_spin = self.supply is not None and self.supply.rotating
+        self.solver = film_solver(
+            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux
+        )
         self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
         self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
         self.half_length = 0.5 * bearing.length / R
@@ -161,8 +173,15 @@ class BearingModel:
         self.ratio_h: np.ndarray | None = None
         self.ratio_v: np.ndarray | None = None
         self.P_q: np.ndarray | None = None
+        self.flow_scale = c * R**2
+        if self.effects.pressure_law is not None:
+            self.known = self.effects.pressure_law.transform(
+                np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
+            )
         self.set_viscosity_ratio(1.0)
-        self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers = self.remembers_mass or self.effects.thermal is not None
+        self.start: tuple[History | None, float] = (None, 0.0)
         self.serial = 0
         self.status = Status.NOT_FINITE
         self.integrals = np.zeros(4)
@@ -185,9 +204,11 @@ class BearingModel:
         """History of a flooded bearing (every gap full of oil) at this motion; None without effects that remember."""
         if not self.remembers:
             return None
+        thermal = self.effects.thermal
+        temperature = None if thermal is None else thermal.initial_temperature(self)
         self._set_motion(motion)
         self._set_gap(None)
-        return History(mass=self.solver.H.copy())
+        return History(mass=self.solver.H.copy() if self.remembers_mass else None, temperature=temperature)
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -203,9 +224,13 @@ class BearingModel:
             )
         if not self.remembers:
             return None
-        return History(mass=self.solver.fill * self.solver.H)
+        thermal = self.effects.thermal
+        temperature = None if thermal is None else thermal.advance(self)
+        return History(mass=self.solver.fill * self.solver.H if self.remembers_mass else None, temperature=temperature)
 
-    def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> Evaluation:
         """Evaluate the film.
 
         Parameters
@@ -216,6 +241,9 @@ class BearingModel:
             At the last accepted step; None asks for the steady film.
         step : float
             Time since then, s; 0 asks for the force at that very instant.
+        spin : float
+            Angle of the journal against the housing about the bearing's axis, rad; only read if ``needs_spin`` (supply areas in
+            the journal).
 
         Returns
         -------
@@ -223,9 +251,14 @@ class BearingModel:
             With ``status`` other than CONVERGED the wrench is nan.
         """
         self.serial += 1
+        self.start = (history, step)
         self._set_motion(motion)
+        if self.effects.thermal is not None:
+            self.effects.thermal.begin(self, history)
         self.wrench = np.full(6, np.nan)
         self.iterations = 0
+        if self.supply is not None and self.supply.turn(spin):
+            self.solver.refresh_fixed()
         self.status = self._solve(history, step)
         if self.status is Status.CONVERGED:
             self.wrench = self._loads()
@@ -283,11 +316,14 @@ class BearingModel:
         ends, cavity = self.end_pressures, self.cavity_pressure
         law = self.effects.pressure_law
         if law is not None:
-            known = law.transform(np.array([*ends, cavity]) * self.pressure_scale) / self.pressure_scale
+            known = self.known / self.pressure_scale
             ends, cavity = known[:2], float(known[2])
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends
-        mass = history.mass if history is not None and self.remembers else None
+        if self.supply is not None:
+            fed = self.supply.pressures()
+            self.supply.prescribe((fed if law is None else law.transform(fed)) / self.pressure_scale, P)
+        mass = history.mass if history is not None and self.remembers_mass else None
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )
@@ -312,12 +348,14 @@ class BearingModel:
             ratio_q *= self.pressure_scale
             self.P_q = ratio.copy()
         if self.effects.shear_factor is not None:
-            factor, factor_h, factor_v = np.empty(shape), np.empty(shape), np.empty(shape)
-            self.effects.shear_factor.factor(s.H, s.vx, factor, factor_h, factor_v)
-            ratio_h = ratio * factor_h
-            ratio_v = ratio * factor_v
-            ratio_q *= factor
-            ratio *= factor
+            factor = np.empty(shape)
+            self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+            if self.P_q is not None:
+                ratio_h *= ratio
+                ratio_v *= ratio
+                ratio_q *= factor
+                factor *= ratio
+            ratio = factor
         self.ratio, self.ratio_q, self.ratio_h, self.ratio_v = ratio, ratio_q, ratio_h, ratio_v
         return Status.CONVERGED
 
@@ -331,9 +369,8 @@ class BearingModel:
     def _couette(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
         if self.ratio is not None:
-            density = g.weight * self.ratio / s.H
             unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-            return float(np.sum(density * self.share())), float(np.sum(density[unbroken]))
+            return couette_integral_ratio(s.H, g.weight, self.ratio, self.share(), unbroken)
         if s.closure.conserves_mass:
             return couette_integral_fill(s.H, g.weight, s.fill)
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
@@ -415,9 +452,9 @@ class BearingModel:
             return np.full((6, MOTION_SIZE), np.nan)
         return wrench_tangent(self)
 
-    def evaluate_steady(self, motion: np.ndarray) -> Evaluation:
-        """Evaluate the steady film at a motion (10,); a flexible bore settles under it."""
-        return self.evaluate(motion)
+    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> Evaluation:
+        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
+        return self.evaluate(motion, history)
 
     def bore_fields(self) -> dict[str, np.ndarray]:
         """Displacement and coordinates of a flexible bore by name; empty for a rigid one."""
@@ -439,9 +476,9 @@ class BearingModel:
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about O).
+            by contact), ``contact_torque`` (Nm, its friction on the journal about O); with supply areas also ``supply_flow``
+            (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K).
         """
-        c = self.bearing.radial_clearance
         out = {
             "minimum_gap": self.minimum_gap,
             "eccentricity_ratio": math.hypot(self.pose[0], self.pose[1]),
@@ -452,7 +489,6 @@ class BearingModel:
         R = self.grid.reference_length
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
-        flow_scale = c * R**2
         poiseuille = 6.0 * self.s_theta
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
@@ -465,13 +501,23 @@ class BearingModel:
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
             "power_loss": -power,
-            "leakage": flow_scale * (lower + upper),
-            "leakage_lower": flow_scale * lower,
-            "leakage_upper": flow_scale * upper,
+            "leakage": self.flow_scale * (lower + upper),
+            "leakage_lower": self.flow_scale * lower,
+            "leakage_upper": self.flow_scale * upper,
             "contact_load": math.hypot(load[0], load[1]),
             "contact_torque": float(self.contact_wrench[5]),
         }
+        if self.supply is not None:
+            out["supply_flow"] = float(self.supply_flows().sum())
+        if self.effects.thermal is not None:
+            out |= self.effects.thermal.quantities()
         return out
+
+    def supply_flows(self) -> np.ndarray:
+        """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
+        if self.supply is None:
+            return np.zeros(0)
+        return self.supply.flows(self.solver.inflow()) * self.bearing.radial_clearance * self.grid.reference_length**2
 
     def _contact_torque(self) -> float:
         """Contact friction on the journal about its own axis."""
@@ -480,6 +526,8 @@ class BearingModel:
 
     def _end_flows(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
+        if not g.link_z.any():
+            return 0.0, 0.0
         if s.closure.conserves_mass:
             inflow = s.inflow()
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())

@@ -1,149 +1,131 @@
-"""Steady elastohydrodynamics: the bore's coordinates in equilibrium with the film, and the tangent of a bore that follows.
-
-With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure falls with the gap it
-opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the solution and stay on the safe side.
-"""
+"""Steady temperature of a film at a given motion: a fixed point between film and heat balance."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import cached_property
-from typing import TYPE_CHECKING, Protocol
+import math
 
 import numpy as np
 
-from exudyn_ehd.joint.model import MOTION_SIZE
-from exudyn_ehd.status import Status
+from exudyn_ehd.joint.effects import History, ThermalEffect
+from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.status import FilmError, Status
 
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.elastic import ElasticBearingModel, ElasticEvaluation
-
-LARGEST_SETTLING_STEPS = 60
-SETTLING_TOLERANCE = 1e-11
-SMALLEST_PART = 1e-3
-
-
-class Elasticity(Protocol):
-    """What resists the bore's coordinates in a steady state."""
-
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """Generalised force (k,) that holds the bore at q, N."""
-
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
+# Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
+SETTLED = 1e-11
+MAX_ROUNDS = 200
+# Differences of past rounds that the acceleration combines.
+DEPTH = 6
+HOTTEST = 2000.0
+LARGEST_CHANGE = 50.0
+# Largest change of a round, K, that the acceleration starts from, and rounds without progress before the damping grows.
+ACCELERATED = 5.0
+PATIENCE = 8
 
 
-class ModalElasticity:
-    """Diagonal stiffness of modes (k,), N/m."""
+def settle(model: BearingModel, motion: np.ndarray) -> History | None:
+    """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
-    def __init__(self, stiffness: np.ndarray) -> None:
-        self.stiffness = stiffness
+    One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant method inside a
+    bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain rounds, damped
+    as needed, have brought the change below 5 K, and anew from the best field when it makes no progress. Both end when the
+    temperature changes by less than 1e-11 of its rise, or at a film that has no solution, which the caller then finds.
 
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """K q (k,)."""
-        return self.stiffness * q
+    Parameters
+    ----------
+    model : BearingModel
+    motion : (10,) array
+        As for `BearingModel.evaluate`.
 
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs``."""
-        return np.linalg.solve(np.diag(self.stiffness) - softening, rhs)
-
-
-class DenseElasticity:
-    """Constant stiffness matrix (k, k), N/m, made when first needed."""
-
-    def __init__(self, make: Callable[[], np.ndarray]) -> None:
-        self._make = make
-
-    @cached_property
-    def stiffness(self) -> np.ndarray:
-        """K (k, k)."""
-        return self._make()
-
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """K q (k,)."""
-        return self.stiffness @ q
-
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs``."""
-        return np.linalg.solve(self.stiffness - softening, rhs)
-
-
-def settle(model: ElasticBearingModel, motion: np.ndarray) -> ElasticEvaluation:
-    """Evaluate with the bore in equilibrium; the eccentricity is approached in parts where the rigid surfaces would touch.
-
-    Starts from the model's last coordinates if they leave a gap, else from the undeformed bore. The status of the evaluation is
-    NOT_CONVERGED if no equilibrium was found.
+    Raises
+    ------
+    FilmError
+        If the heat has no way out, or the temperature does not settle.
     """
-    q = model.coordinates.copy()
-    model.settling_steps = 0
-    found = _newton(model, motion, q, 1.0)
-    if found is None and q.any():
-        found = _newton(model, motion, np.zeros_like(q), 1.0)
-    if found is not None:
-        return found
-    reached, part, q = 0.0, 0.5, np.zeros_like(q)
-    while part > SMALLEST_PART:
-        target = min(1.0, reached + part)
-        found = _newton(model, motion, q, target)
-        if found is None:
-            part *= 0.5
-            continue
-        if target == 1.0:
-            return found
-        reached, q = target, model.coordinates.copy()
-    evaluation = model.evaluate(motion)
-    if evaluation.status is Status.CONVERGED:
-        evaluation.status = model.status = Status.NOT_CONVERGED
-    return evaluation
-
-
-def _newton(model: ElasticBearingModel, motion: np.ndarray, q: np.ndarray, part: float) -> ElasticEvaluation | None:
-    """Newton on q with the pose scaled by ``part``; steps are halved until the gap stays open and the residual falls."""
-    elasticity, k = model.elasticity, model.bore.size
-    full = np.concatenate((motion[:MOTION_SIZE], q, np.zeros(k)))
-    full[:4] *= part
-    evaluation = model.evaluate(full)
-    if evaluation.status is not Status.CONVERGED:
+    thermal = model.effects.thermal
+    if thermal is None:
         return None
-    scale = max(float(np.linalg.norm(evaluation.bore_load)), 1e-300)
-    residual = evaluation.bore_load - elasticity.force(q)
-    error, last = float(np.linalg.norm(residual)), np.inf
-    for _ in range(LARGEST_SETTLING_STEPS):
-        # stop at the tolerance, or where rounding keeps a converged residual from falling
-        if error <= SETTLING_TOLERANCE * scale or (error <= 1e-8 * scale and error > 0.5 * last):
-            return evaluation
-        softening = model.tangent()[6:, MOTION_SIZE : MOTION_SIZE + k]
-        step = elasticity.solve(q, softening, residual)
-        last = error
-        for _ in range(12):
-            full[MOTION_SIZE : MOTION_SIZE + k] = q + step
-            evaluation = model.evaluate(full)
-            model.settling_steps += 1
-            if evaluation.status is Status.CONVERGED:
-                residual = evaluation.bore_load - elasticity.force(q + step)
-                error = float(np.linalg.norm(residual))
-                if error < 2.0 * last or error <= 1e-8 * scale:
-                    break
-            step = 0.5 * step
+    start = thermal.initial_temperature(model)
+    if isinstance(start, np.ndarray):
+        return _settle_field(model, thermal, motion, start)
+    return _settle_number(model, thermal, motion, float(start))
+
+
+def _target(
+    model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, T: float | np.ndarray
+) -> np.ndarray | None:
+    """Temperature in balance with the heat of the film at T; None without a film."""
+    if model.evaluate(motion, History(temperature=T)).status is not Status.CONVERGED:
+        return None
+    return np.asarray(thermal.steady_temperature(model))
+
+
+def _require_way_out(T: float) -> None:
+    if not T < HOTTEST:
+        raise FilmError(
+            "steady temperature: the heat of the film has no way out; let oil flow through (end pressures, eccentricity, supply) "
+            "or give the thermal effect heat transfer to the surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
+        )
+
+
+def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float) -> History:
+    lower, upper = -math.inf, math.inf
+    T, slope, previous, f_previous = start, -1.0, math.nan, math.nan
+    for _ in range(MAX_ROUNDS):
+        target = _target(model, thermal, motion, T)
+        if target is None:
+            return History(temperature=T)
+        _require_way_out(T if math.isfinite(float(target)) else math.inf)
+        f = float(target) - T
+        if abs(f) <= SETTLED * max(abs(T - start), abs(f), 1e-3):
+            return History(temperature=T)
+        if f > 0.0:
+            lower = T
         else:
-            return None
-        q = q + step
-        scale = max(scale, float(np.linalg.norm(evaluation.bore_load)))
-    return None
+            upper = T
+        if previous != T and not math.isnan(previous):
+            slope = (f - f_previous) / (T - previous)
+        guess = T - f / slope if slope < 0.0 else T + f
+        if not lower < guess < upper:
+            guess = 0.5 * (lower + upper) if math.isfinite(lower + upper) else T + f
+        previous, f_previous, T = T, f, min(guess, 1.5 * T)
+    raise _unsettled(abs(f))
 
 
-def condensed_tangent(model: ElasticBearingModel) -> np.ndarray:
-    """d wrench / d motion (6, 10) with a massless bore in equilibrium, to first order in the rates.
+def _settle_field(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: np.ndarray) -> History:
+    T = best = start
+    past: list[tuple[np.ndarray, np.ndarray]] = []
+    smallest, damping, patience = math.inf, 1.0, 0
+    for _ in range(MAX_ROUNDS):
+        target = _target(model, thermal, motion, T)
+        if target is None:
+            return History(temperature=T)
+        change = target - T
+        size = float(np.abs(change).max())
+        _require_way_out(float(T.max()) if math.isfinite(size) else math.inf)
+        if size <= SETTLED * max(float(np.ptp(target)), float(np.abs(T - start).max()), 1e-3):
+            return History(temperature=T)
+        near = size < ACCELERATED
+        patience = 0 if size < 0.9 * smallest else patience + 1
+        if size < smallest:
+            smallest, best = size, T
+        if patience > PATIENCE:
+            patience, damping = 0, max(0.6 * damping, 0.1)
+            if near and past:
+                T, past = best, []
+                continue
+        past = [*past, (T.ravel(), change.ravel())][-DEPTH - 1 :] if near else []
+        step = damping * min(1.0, LARGEST_CHANGE / size) * change
+        if len(past) > 1:
+            dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
+            share = np.linalg.lstsq(dF, change.ravel(), rcond=1e-12)[0]
+            step = step - ((dX + damping * dF) @ share).reshape(T.shape)
+            step = step * min(1.0, 4.0 * size / float(np.abs(step).max()))
+        T = T + step
+    raise _unsettled(size)
 
-    With A = (K - dQ/dq)^-1 the bore follows the journal as ``dq = A Q_m dm``; its rate follows the pose's rate likewise and acts through
-    squeeze on wrench and bore.
-    """
-    T, k, M = model.tangent(), model.bore.size, MOTION_SIZE
-    softening = T[6:, M : M + k]
-    follow = model.elasticity.solve(model.coordinates, softening, T[6:, :M])
-    rate = np.zeros_like(follow)
-    rate[:, 4:8] = follow[:, :4]
-    second = model.elasticity.solve(model.coordinates, softening, T[6:, M + k :] @ rate)
-    return T[:6, :M] + T[:6, M : M + k] @ (follow + second) + T[:6, M + k :] @ rate
 
-
+def _unsettled(change: float) -> FilmError:
+    return FilmError(
+        f"steady temperature: not settled after {MAX_ROUNDS} rounds, last change {change:.3g} K; the heating is too strong for a "
+        "steady film, check speed, clearance and the temperature law."
+    )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,8 +12,12 @@ from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
-from exudyn_ehd.joint.build import build_model, build_study_model
+from exudyn_ehd.film.steps import SteppedGap
+from exudyn_ehd.joint.build import build_study_model
+from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.joint.rheology import known_pressures, true_pressure
+from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
@@ -41,6 +45,10 @@ class FilmResult:
         Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
     load : float
         Integral of the pressure, N.
+    fill : (n, m) array
+        Film fraction; ones for closures that do not conserve mass.
+    content : (n, m) array
+        fill times gap, m: the ``history`` of the next step.
     """
 
     status: Status
@@ -50,6 +58,8 @@ class FilmResult:
     unbroken: np.ndarray
     inflow: np.ndarray
     load: float
+    fill: np.ndarray
+    content: np.ndarray
 
 
 def solve_film(
@@ -61,6 +71,9 @@ def solve_film(
     gap_rate: np.ndarray | None = None,
     cavitation: Closure | None = None,
     boundary: float | np.ndarray = 0.0,
+    stepped_gap: bool = False,
+    history: np.ndarray | None = None,
+    step: float = 0.0,
 ) -> FilmResult:
     """Solve the Reynolds equation for any gap, on a bearing's ring or on a slider.
 
@@ -69,8 +82,9 @@ def solve_film(
     grid : FilmGrid
         From `bearing_grid` or `slider_grid`.
     gap : (n, m) array
-        Film thickness at the vertices, m, > 0. On links between columns the mean of both neighbours is used.
+        Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
+        Its pressure law takes part; a shear law needs a bearing.
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
     gap_rate : (n, m) array, optional
@@ -79,6 +93,14 @@ def solve_film(
         Default `SwiftStieber`.
     boundary : float or (n, m) array
         Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
+    stepped_gap : bool
+        True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
+        `exudyn_ehd.film.steps`.
+    history : (n, m) array, optional
+        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its squeeze, so
+        that ``gap_rate`` is not needed. None: the film is steady.
+    step : float
+        Time since ``history``, s, > 0 with it.
 
     Raises
     ------
@@ -88,33 +110,69 @@ def solve_film(
         If the film could not be solved.
     """
     gap = np.asarray(gap, dtype=float)
-    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
-        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
-    if gap_rate is not None and np.shape(gap_rate) != grid.shape:
-        raise InputError(f"solve_film: gap_rate must have shape {grid.shape}, got {np.shape(gap_rate)}.")
     closure = SwiftStieber() if cavitation is None else cavitation
+    _check_film(grid, gap, gap_rate, closure, history, step)
     speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
     c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
     scale = 12.0 * lubricant.viscosity * R**2 / c**2
-    solver = FilmSolver(grid, closure, squeeze=gap_rate is not None)
-    solver.H[:] = gap / c
-    solver.HF[:] = 0.5 * (solver.H + np.roll(solver.H, -1, axis=0))
-    if gap_rate is not None:
-        solver.H_t[:] = np.asarray(gap_rate) / c
+    H = gap / c
+    rate, mass = None if gap_rate is None else np.asarray(gap_rate) / c, None
+    if history is not None:
+        mass = np.asarray(history) / c
+        rate = (H - mass) / step
+    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=(SteppedGap(H),) if stepped_gap else ())
+    solver.H[:] = H
+    solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
+    if rate is not None:
+        solver.H_t[:] = rate
+    boundary, cavity = known_pressures(lubricant, boundary, closure.cavity_pressure)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
-    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), closure.cavity_pressure / scale)
-    if status is not Status.CONVERGED:
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), cavity / scale, mass, step)
+    pressure = true_pressure(lubricant, solver.pressure, scale) if status is Status.CONVERGED else None
+    if pressure is None and status is Status.CONVERGED:
+        status = Status.NO_PRESSURE
+    if status is not Status.CONVERGED or pressure is None:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
+    fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
     return FilmResult(
         status=status,
         iterations=iterations,
-        pressure=solver.pressure * scale,
+        pressure=pressure * scale,
         gap=gap,
         unbroken=solver.work.active.copy(),
         inflow=solver.inflow() * c * R**2,
-        load=float(np.sum(solver.pressure * grid.weight)) * scale * R**2,
+        load=float(np.sum(pressure * grid.weight)) * scale * R**2,
+        fill=fill,
+        content=fill * gap,
     )
+
+
+def _check_film(
+    grid: FilmGrid,
+    gap: np.ndarray,
+    gap_rate: np.ndarray | None,
+    closure: Closure,
+    history: np.ndarray | None,
+    step: float,
+) -> None:
+    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
+        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
+    for name, field_ in (("gap_rate", gap_rate), ("history", history)):
+        if field_ is not None and np.shape(field_) != grid.shape:
+            raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {np.shape(field_)}.")
+    if history is None:
+        return
+    require_number("solve_film: step", step, "s", above=0.0, hint="it is the time since the history.")
+    if not closure.conserves_mass:
+        raise InputError(
+            f"solve_film: history is for closures that conserve mass, got {type(closure).__name__}; use "
+            "cavitation=ElrodAdams(...), or gap_rate for the squeeze of a film without memory."
+        )
+    if gap_rate is not None:
+        raise InputError(
+            "solve_film: give history or gap_rate, not both: the film's change since history is its squeeze."
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,10 +195,14 @@ class SteadyResult:
         Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
     power_loss, leakage, contact_load : float
         W, m3/s out of both ends, N.
+    supply_flows : (k,) array
+        m3/s out of every area of ``bearing.supply``.
     sommerfeld_number, attitude_angle : float
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    temperature : (n, m) array, float or None
+        Of the film, K; None for an isothermal bearing.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
@@ -163,10 +225,12 @@ class SteadyResult:
     power_loss: float
     leakage: float
     contact_load: float
+    supply_flows: np.ndarray
     sommerfeld_number: float
     attitude_angle: float
     status: Status
     iterations: int
+    temperature: float | np.ndarray | None = None
     bore_displacement: np.ndarray | None = None
     bore_coordinates: np.ndarray | None = None
 
@@ -195,7 +259,8 @@ def steady(
     tilt : (float, float)
         Slopes (bx, by) of the journal axis, rad.
     velocity : (float, float)
-        dx/dt, dy/dt, m/s.
+        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets this
+        velocity, so that full parts are squeezed at once and cavities keep their oil content.
     axial_speed : float
         w, m/s.
 
@@ -212,14 +277,42 @@ def steady(
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
+    require_oil(bearing, "steady", w)
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
     model = build_study_model(bearing, start)
     return _result(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
 
 
+def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
+    """Raise `InputError` if a steady mass-conserving film has no source of oil and would starve to nothing."""
+    closure = bearing.cavitation
+    if not closure.conserves_mass or axial_speed != 0.0 or isinstance(bearing.inlet, MaximumGap) or bearing.supply:
+        return
+    if max(bearing.end_pressures) <= closure.cavity_pressure:
+        raise InputError(
+            f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity pressure "
+            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give the bearing "
+            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or ElrodAdams(cavity_pressure=-1e5) below "
+            "ambient pressure."
+        )
+
+
+def _history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
+    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there; None if nothing remembers."""
+    history = settle(model, motion)
+    if not model.remembers_mass or not np.any(motion[4:8]):
+        return history
+    at_rest = motion.copy()
+    at_rest[4:8] = 0.0
+    _evaluate(model, at_rest, where)
+    content = model.history()
+    assert content is not None
+    return replace(content, temperature=None if history is None else history.temperature)
+
+
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    evaluation = model.evaluate_steady(motion)
+    evaluation = model.evaluate_steady(motion, _history_at(model, motion, where))
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -258,10 +351,12 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
+        supply_flows=model.supply_flows(),
         sommerfeld_number=force / reference if reference > 0.0 else math.nan,
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
+        temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
         **model.bore_fields(),
     )
 
@@ -309,6 +404,10 @@ def equilibrium(
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
     the bearing and costs nothing near the solution.
 
+    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping that of a
+    sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion. A transient
+    joint has what lies between.
+
     Parameters
     ----------
     bearing : JournalBearing
@@ -335,7 +434,8 @@ def equilibrium(
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    model = build_model(bearing)
+    require_oil(bearing, "equilibrium")
+    model = build_study_model(bearing, 0.0)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
     residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
@@ -352,7 +452,7 @@ def equilibrium(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
             f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
-    K, C = -tangent[:2, :2], -tangent[:2, 4:6]
+    K, C = -tangent[:2, :2], -_rate_tangent(model, motion, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = _result(model, motion, "equilibrium")
     return EquilibriumResult(
@@ -367,6 +467,13 @@ def equilibrium(
         iterations=count,
         film=film,
     )
+
+
+def _rate_tangent(model: BearingModel, motion: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+    """Tangent whose rate columns hold for a sudden velocity in the steady film; see `equilibrium`."""
+    if not model.remembers:
+        return tangent
+    return model.evaluate(motion, model.history()).tangent()
 
 
 def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

@@ -39,4 +39,5 @@ def compile_kernels(model: BearingModel) -> None:
         if evaluation.status is Status.CONVERGED:
             evaluation.tangent()
             evaluation.quantities()
+            evaluation.history()
     model.forget()

@@ -28,7 +28,7 @@ class FragileFilm(toy.ToyFilm):
         self.fails = fails
         self.asked = []
 
-    def evaluate(self, motion):
+    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
         self.count += 1
         self.asked.append(motion.copy())
         return FragileEvaluation(self, motion.copy())
@@ -354,7 +354,7 @@ class LaggingFilm(FragileFilm):
         self.count += 1
         return 0.5 * motion[0]
 
-    def evaluate(self, motion, history=None, step=0.0):
+    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
         self.count += 1
         self.asked.append(step)
         # without a memory the lag is over

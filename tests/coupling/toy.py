@@ -56,8 +56,9 @@ class ToyFilm:
     count: int = 0
     linear: bool = False
     remembers: bool = False
+    needs_spin = False
 
-    def evaluate(self, motion):
+    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
         self.count += 1
         return ToyEvaluation(self, motion.copy())
 

@@ -1,0 +1,142 @@
+"""Film-averaged energy equation on the film grid: heat sources, flows, and the upwind system.
+
+Scaled: flows in units of c R^2 (1/s), heat in kelvin per second of such a flow, that is divided by rho c_p c R^2. The
+content m = fill H of a control volume changes by its flows and by what enters from outside, ``S = out - in + A dm/dt``
+(ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times mass:
+
+    A m* (T - T_old)/dt + sum over inflows F (T - T_upstream) + S+ (T - T_source) + A walls (T - T_wall) = heat,
+
+an M-matrix, so that the temperature has no wiggles and stays above its sources'. m* is the old content, or the present one where
+the old one is not kept.
+
+Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A areas.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+from exudyn_ehd.film.band_lu import PAD
+
+
+@njit(cache=True)
+def film_heat(P, q, kx, kz, couette, heat_out):
+    """Heat of the film at the vertices: ``couette`` (n, m) plus the pressure flow's, halved between a link's vertices."""
+    n, m = P.shape
+    for i in range(n):
+        for j in range(m):
+            heat_out[i, j] = couette[i, j]
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            w = 0.5 * kx[i, j] * (q[i, j] - q[nxt, j]) * (P[i, j] - P[nxt, j])
+            heat_out[i, j] += w
+            heat_out[nxt, j] += w
+            if j + 1 < m:
+                w = 0.5 * kz[i, j] * (q[i, j] - q[i, j + 1]) * (P[i, j] - P[i, j + 1])
+                heat_out[i, j] += w
+                heat_out[i, j + 1] += w
+
+
+@njit(cache=True)
+def film_flows(q, fill, kx, kz, fx, fz, area, rate, qx_out, qz_out, source_out):
+    """Flows over the links i -> i+1 and j -> j+1, and the source S of every vertex; ``rate`` = dm/dt (n, m)."""
+    n, m = q.shape
+    for i in range(n):
+        for j in range(m):
+            source_out[i, j] = area[i, j] * rate[i, j]
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
+            f = kx[i, j] * (q[i, j] - q[nxt, j]) + fx[i, j] * up
+            qx_out[i, j] = f
+            source_out[i, j] += f
+            source_out[nxt, j] -= f
+            qz_out[i, j] = 0.0
+            if j + 1 < m:
+                up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
+                f = kz[i, j] * (q[i, j] - q[i, j + 1]) + fz[i, j] * up
+                qz_out[i, j] = f
+                source_out[i, j] += f
+                source_out[i, j + 1] -= f
+
+
+@njit(cache=True)
+def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
+    """Rate of the content fill H: from the old content if ``inverse_step`` > 0, else from the gap's rate if ``squeeze``."""
+    n, m = H.shape
+    for i in range(n):
+        for j in range(m):
+            if inverse_step > 0.0:
+                rate_out[i, j] = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
+            elif squeeze:
+                rate_out[i, j] = fill[i, j] * H_t[i, j]
+            else:
+                rate_out[i, j] = 0.0
+
+
+@njit(cache=True)
+def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_out):
+    """What enters at fixed vertices: their balance; next to a ruptured film only the flow over the end's link.
+
+    ``unbroken`` (n, m) is all True for cavitation models that conserve mass.
+    """
+    n, m = q.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            outside_out[i, j] = 0.0
+            if not fixed[i, j]:
+                continue
+            up = 0.0
+            down = 0.0
+            if j + 1 < m:
+                f = fz[i, j]
+                up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
+            if j > 0:
+                f = fz[i, j - 1]
+                down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
+            outside_out[i, j] = up - down
+            if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
+                continue
+            f = fx[i, j]
+            out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
+            f = fx[prv, j]
+            into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
+            outside_out[i, j] += out - into + area[i, j] * rate[i, j]
+
+
+@njit(cache=True)
+def assemble_energy(qx, qz, diagonal, number, width, lower, upper):
+    """Band of the upwind system: ``diagonal`` (n, m) holds everything but the inflows from neighbours."""
+    n, m = qx.shape
+    for r in range(n * m):
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a = number[i, j]
+            upper[a, 0] += diagonal[i, j]
+            _add_inflow(a, number[nxt, j], qx[i, j], lower, upper)
+            if j + 1 < m:
+                _add_inflow(a, number[i, j + 1], qz[i, j], lower, upper)
+
+
+@njit(cache=True)
+def _add_inflow(a, b, flow, lower, upper):
+    """One link a -> b: the downstream vertex takes in the upstream one's temperature."""
+    if flow >= 0.0:
+        row, col, f = b, a, flow
+    else:
+        row, col, f = a, b, -flow
+    if f == 0.0:
+        return
+    upper[row, 0] += f
+    if col >= row:
+        upper[row, col - row] -= f
+    else:
+        lower[col, row - col] -= f

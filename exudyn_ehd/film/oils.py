@@ -1,0 +1,93 @@
+"""Named oils: ISO viscosity grades and SAE grades from two viscosity points.
+
+ISO VG: mid-point kinematic viscosity at 40 degrees Celsius by definition (ISO 3448); at 100 degrees Celsius, and the density at
+15, typical figures of paraffinic mineral oils with a viscosity index near 95 to 100, as hydraulic and gear oils have.
+
+SAE: single grades after A. S. Seireg and S. Dandage, J. Lubrication Technology 104 (1982) 135, ``mu = mu_0 exp(b / (T + 95))``
+with T in degrees Fahrenheit and mu_0 in reyn, which is Vogel's law with its pole at -95 degrees Fahrenheit.
+
+Oils of one grade differ: take the two points of the data sheet where it is known.
+"""
+
+from __future__ import annotations
+
+import math
+
+from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.temperature import VogelTemperature, WaltherTemperature
+from exudyn_ehd.status import InputError, require_number
+
+CELSIUS_40 = 313.15
+CELSIUS_100 = 373.15
+REYN = 6894.757  # Pa s
+VOGEL_POLE = (459.67 - 95.0) / 1.8  # K
+
+# grade: (nu at 40, nu at 100 in mm2/s, density in kg/m3)
+ISO_GRADES = {
+    "ISO VG 22": (22.0, 4.3, 866.0),
+    "ISO VG 32": (32.0, 5.4, 875.0),
+    "ISO VG 46": (46.0, 6.7, 879.0),
+    "ISO VG 68": (68.0, 8.6, 886.0),
+    "ISO VG 100": (100.0, 11.1, 891.0),
+    "ISO VG 150": (150.0, 15.0, 897.0),
+    "ISO VG 220": (220.0, 19.4, 899.0),
+    "ISO VG 320": (320.0, 25.0, 903.0),
+    "ISO VG 460": (460.0, 30.8, 904.0),
+}
+
+# grade: (mu_0 in 1e-6 reyn, b in degrees Fahrenheit)
+SAE_GRADES = {
+    "SAE 10": (0.0158, 1157.5),
+    "SAE 20": (0.0136, 1271.6),
+    "SAE 30": (0.0141, 1360.0),
+    "SAE 40": (0.0121, 1474.4),
+    "SAE 50": (0.0170, 1509.6),
+    "SAE 60": (0.0187, 1564.0),
+}
+SAE_DENSITY = 880.0
+
+
+def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
+    """A lubricant by the name of its grade.
+
+    Parameters
+    ----------
+    name : str
+        ``"ISO VG 22"`` to ``"ISO VG 460"`` or ``"SAE 10"`` to ``"SAE 60"``; spaces and case do not matter.
+    temperature : float
+        At which its viscosity is taken, K.
+
+    Returns
+    -------
+    Lubricant
+        With its temperature law; add further laws by `dataclasses.replace`.
+
+    Raises
+    ------
+    InputError
+        For a name that is not in the tables.
+    """
+    require_number("oil: temperature", temperature, "K", above=0.0)
+    known = {_key(k): k for k in (*ISO_GRADES, *SAE_GRADES)}
+    grade = known.get(_key(name)) if isinstance(name, str) else None
+    if grade is None:
+        raise InputError(
+            f"oil: name must be one of {', '.join(known.values())}, got {name!r}; for any other oil use "
+            "Lubricant(temperature_law=WaltherTemperature(first=..., second=...), temperature=...)."
+        )
+    if grade in ISO_GRADES:
+        nu40, nu100, density = ISO_GRADES[grade]
+        walther = WaltherTemperature(first=(CELSIUS_40, 1e-6 * nu40), second=(CELSIUS_100, 1e-6 * nu100))
+        return Lubricant(temperature_law=walther, temperature=temperature, density=density)
+    law = VogelTemperature(first=_sae_point(grade, CELSIUS_40), second=_sae_point(grade, CELSIUS_100), pole=VOGEL_POLE)
+    return Lubricant(temperature_law=law, temperature=temperature, density=SAE_DENSITY)
+
+
+def _sae_point(grade: str, temperature: float) -> tuple[float, float]:
+    mu_0, b = SAE_GRADES[grade]
+    fahrenheit = 1.8 * temperature - 459.67
+    return temperature, 1e-6 * mu_0 * REYN * math.exp(b / (fahrenheit + 95.0))
+
+
+def _key(name: str) -> str:
+    return "".join(name.split()).upper()

@@ -1,0 +1,336 @@
+"""Oil supply: grooves, holes and pockets in which the pressure is prescribed.
+
+A supply area is deep against the clearance, so that its pressure is uniform. On the grid, the vertices inside the area (its edges
+included) carry the supply pressure; the area thus reaches from the first to the last vertex inside and may be up to one cell
+narrower per edge than drawn. Choose a grid with vertices on the edges where that matters (edges at multiples of 2 pi / n_theta), or
+refine. The rows at the bearing's ends keep the end pressures: a groove up to the ends leaves one axial interval of land.
+
+With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its pressure acts on
+the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams` supply, leakage and the
+film's change of content balance to rounding, the other closures lose oil at the film's rupture.
+
+Areas lie in the housing, or with ``rotating=True`` in the journal; those need the spin angle of the journal, and the force then
+steps when the area's edge passes a vertex.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.film.grid import FilmGrid, axial_vertices
+from exudyn_ehd.status import InputError, require_number
+
+# Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
+EDGE = 1e-9
+LARGEST_REFINEMENT = 64
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialGroove:
+    """Groove along the axis, centred at mid-plane.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    width_angle : float
+        Angle that it spans, rad, below 2 pi.
+    length : float or None
+        Axial length, m; None: the whole bearing but for the last interval at each end.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    width_angle: float
+    length: float | None = None
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad", width_angle="rad", pressure="Pa")
+        _check_width(self)
+        if self.length is not None:
+            require_number("AxialGroove.length", self.length, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        half = math.inf if self.length is None else 0.5 * self.length
+        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, 0.0, half)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircumferentialGroove:
+    """Groove around the bearing; it parts the film.
+
+    Parameters
+    ----------
+    z : float
+        Axial position of its centre, m.
+    width : float
+        Axial width, m.
+    pressure : float
+        Gauge pressure, Pa.
+    """
+
+    z: float = 0.0
+    width: float
+    pressure: float = 0.0
+
+    rotating = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, z="m", pressure="Pa")
+        require_number("CircumferentialGroove.width", self.width, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        return _rectangle(theta, z, 0.0, math.pi, self.z, 0.5 * self.width)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hole:
+    """Round hole.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    z : float
+        Axial position of its centre, m.
+    diameter : float
+        m.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    z: float = 0.0
+    diameter: float
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad", z="m", pressure="Pa")
+        require_number("Hole.diameter", self.diameter, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        x = radius * _turn(theta - self.angle)
+        return x[:, None] ** 2 + (z - self.z) ** 2 <= (0.5 * self.diameter * (1.0 + EDGE)) ** 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pocket:
+    """Rectangular pocket.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    z : float
+        Axial position of its centre, m.
+    width_angle : float
+        Angle that it spans, rad, below 2 pi.
+    length : float
+        Axial length, m.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    z: float = 0.0
+    width_angle: float
+    length: float
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad", z="m", width_angle="rad", pressure="Pa")
+        _check_width(self)
+        require_number("Pocket.length", self.length, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, self.z, 0.5 * self.length)
+
+
+SupplyArea = AxialGroove | CircumferentialGroove | Hole | Pocket
+
+
+def _check_area(area: SupplyArea, **units: str) -> None:
+    name = type(area).__name__
+    for argument, unit in units.items():
+        require_number(f"{name}.{argument}", getattr(area, argument), unit)
+    if not isinstance(area.rotating, bool):
+        raise InputError(
+            f"{name}.rotating must be True (in the journal) or False (in the housing), got {area.rotating!r}."
+        )
+
+
+def _check_width(area: AxialGroove | Pocket) -> None:
+    name = type(area).__name__
+    width = require_number(f"{name}.width_angle", area.width_angle, "rad", above=0.0)
+    if width >= 2.0 * math.pi:
+        raise InputError(
+            f"{name}.width_angle must be below 2 pi rad, got {width:g}; if yours is in degrees, use math.radians; a groove all "
+            "around is a CircumferentialGroove."
+        )
+
+
+def _turn(angle: np.ndarray) -> np.ndarray:
+    """Angles brought to -pi .. pi."""
+    return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def _rectangle(
+    theta: np.ndarray, z: np.ndarray, angle: float, half_angle: float, center: float, half_length: float
+) -> np.ndarray:
+    inside_theta = np.abs(_turn(theta - angle)) <= half_angle * (1.0 + EDGE)
+    inside_z = np.abs(z - center) <= half_length * (1.0 + EDGE)
+    return np.outer(inside_theta, inside_z)
+
+
+class _FilmSize(Protocol):
+    @property
+    def n_theta(self) -> int: ...
+
+    @property
+    def n_z(self) -> int: ...
+
+    @property
+    def stretch(self) -> float: ...
+
+
+def check_supply(supply: Sequence[SupplyArea], radius: float, length: float, film: _FilmSize) -> None:
+    """Raise `InputError` for areas without a vertex of the film grid inside, or areas that overlap at different pressures."""
+    if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
+        raise InputError(
+            "JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or Pocket(...), got "
+            f"{supply!r}; for a single one write supply=(AxialGroove(...),)."
+        )
+    masks = []
+    for k, area in enumerate(supply):
+        mask = _covered(area, radius, length, film.n_theta, film.n_z, film.stretch)
+        if not mask.any():
+            raise InputError(
+                f"JournalBearing.supply[{k}]: no vertex of the {film.n_theta} x {film.n_z} film grid lies inside {area!r}; "
+                f"{_grid_needed(area, radius, length, film)}"
+            )
+        masks.append(mask)
+    for k, area in enumerate(supply):
+        for i in range(k):
+            if area.pressure != supply[i].pressure and np.any(masks[k] & masks[i]):
+                raise InputError(
+                    f"JournalBearing.supply[{i}] and [{k}] overlap with different pressures, {supply[i].pressure:g} and "
+                    f"{area.pressure:g} Pa; give overlapping areas one pressure or move them apart."
+                )
+
+
+def _covered(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: int, stretch: float) -> np.ndarray:
+    """Vertices inside (n, m), end rows excepted; a rotating area in its worst position between the vertices."""
+    step = 2.0 * math.pi / n_theta
+    theta = step * np.arange(n_theta)
+    z = axial_vertices(n_z, 0.5 * length, stretch)[0]
+    mask = area.covers(theta, z, radius)
+    mask[:, 0] = mask[:, -1] = False
+    if isinstance(area, CircumferentialGroove) or not area.rotating:
+        return mask
+    return mask if _covered_when_turned(area, theta, z, radius, step) else np.zeros_like(mask)
+
+
+def _covered_when_turned(
+    area: AxialGroove | Hole | Pocket, theta: np.ndarray, z: np.ndarray, radius: float, step: float
+) -> bool:
+    return all(area.covers(theta + s * step, z, radius)[:, 1:-1].any() for s in np.linspace(0.0, 1.0, 17))
+
+
+def _grid_needed(area: SupplyArea, radius: float, length: float, film: _FilmSize) -> str:
+    for k in range(2, LARGEST_REFINEMENT + 1):
+        for n_theta, n_z in (
+            (k * film.n_theta, film.n_z),
+            (film.n_theta, k * film.n_z),
+            (k * film.n_theta, k * film.n_z),
+        ):
+            if _covered(area, radius, length, n_theta, n_z, film.stretch).any():
+                return f"a grid of n_theta={n_theta}, n_z={n_z} would do; or make the area larger."
+    return "it lies outside the bearing or is far too small; check its position (m, rad) and size."
+
+
+class SupplyMap:
+    """Supply areas of one bearing on its film grid.
+
+    Parameters
+    ----------
+    supply : tuple of SupplyArea
+    grid : FilmGrid
+        Its array ``fixed`` is extended by the areas, in place.
+
+    Attributes
+    ----------
+    masks : list of (n, m) bool arrays
+        Vertices of every area at its last position.
+    rotating : bool
+        Whether an area turns with the journal.
+    """
+
+    def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid) -> None:
+        self.supply = supply
+        self.grid = grid
+        self.rotating = any(area.rotating for area in supply)
+        self.ends = grid.fixed.copy()
+        self.masks = [self._mask(area, 0.0) for area in supply]
+        self.spin = 0.0
+        self._fix()
+
+    def _mask(self, area: SupplyArea, spin: float) -> np.ndarray:
+        g = self.grid
+        theta = g.x - spin if area.rotating else g.x
+        mask = area.covers(theta, g.z * g.reference_length, g.reference_length)
+        return mask & ~self.ends
+
+    def _fix(self) -> None:
+        self.grid.fixed[:] = self.ends
+        for mask in self.masks:
+            self.grid.fixed[mask] = True
+
+    def turn(self, spin: float) -> bool:
+        """Move the rotating areas to the spin angle, rad; True if a vertex changed."""
+        if not self.rotating or spin == self.spin:
+            return False
+        self.spin = spin
+        old = self.grid.fixed.copy()
+        for k, area in enumerate(self.supply):
+            if area.rotating:
+                self.masks[k] = self._mask(area, spin)
+        self._fix()
+        return not np.array_equal(old, self.grid.fixed)
+
+    def pressures(self) -> np.ndarray:
+        """Gauge pressure of every area, Pa."""
+        return np.array([area.pressure for area in self.supply])
+
+    def prescribe(self, values: np.ndarray, P: np.ndarray) -> None:
+        """Write one value per area into the field P (n, m)."""
+        for mask, value in zip(self.masks, values, strict=True):
+            P[mask] = value
+
+    def flows(self, inflow: np.ndarray) -> np.ndarray:
+        """What every area feeds into the film, in the unit of ``inflow`` (n, m); a shared vertex counts for the first area."""
+        left = np.ones(inflow.shape, dtype=np.bool_)
+        out = np.empty(len(self.masks))
+        for k, mask in enumerate(self.masks):
+            out[k] = float(np.sum(inflow[mask & left]))
+            left &= ~mask
+        return out

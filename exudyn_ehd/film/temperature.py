@@ -1,0 +1,140 @@
+"""Viscosity that depends on temperature: Reynolds, Vogel and Walther laws, each through published points in closed form.
+
+A law returns the dynamic viscosity at ambient pressure. Temperatures in kelvin. Laws are monotone: hotter oil is thinner.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.status import InputError, require_number, require_vector
+
+# Walther's constant for viscosities above 2 mm2/s, ASTM D341.
+WALTHER_SHIFT = 0.7
+
+
+class TemperatureLaw(Protocol):
+    """What a lubricant's temperature law offers."""
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at temperatures in K (any shape), for a density in kg/m3."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReynoldsTemperature:
+    """Exponential law ``mu = mu_1 exp(-beta (T - T_1))`` (O. Reynolds 1886), for narrow ranges of temperature.
+
+    Parameters
+    ----------
+    point : (float, float)
+        Temperature T_1, K, and dynamic viscosity mu_1, Pa s.
+    coefficient : float
+        beta, 1/K; 0.02 to 0.05 for mineral oils.
+    """
+
+    point: tuple[float, float]
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        _check_point("ReynoldsTemperature.point", self.point, "Pa s")
+        require_number("ReynoldsTemperature.coefficient", self.coefficient, "1/K", at_least=0.0)
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at temperatures in K; the density does not matter."""
+        return self.point[1] * np.exp(-self.coefficient * (np.asarray(temperature) - self.point[0]))
+
+
+@dataclass(frozen=True, kw_only=True)
+class VogelTemperature:
+    """Vogel's law ``mu = A exp(B / (T - T_0))`` (H. Vogel, Physikalische Zeitschrift 22 (1921) 645) through two points.
+
+    ``B = ln(mu_1 / mu_2) / (1 / (T_1 - T_0) - 1 / (T_2 - T_0))``, ``A = mu_1 exp(-B / (T_1 - T_0))``.
+
+    Parameters
+    ----------
+    first, second : (float, float)
+        Temperature, K, and dynamic viscosity, Pa s; the second one hotter and thinner.
+    pole : float
+        T_0, K; -95 degrees Celsius suits mineral oils (A. Cameron, Principles of Lubrication).
+    """
+
+    first: tuple[float, float]
+    second: tuple[float, float]
+    pole: float = 178.15
+
+    def __post_init__(self) -> None:
+        _check_points("VogelTemperature", self.first, self.second, "Pa s")
+        pole = require_number("VogelTemperature.pole", self.pole, "K", at_least=0.0)
+        if not pole < self.first[0]:
+            raise InputError(
+                f"VogelTemperature.pole must be below both temperatures ({self.first[0]:g} K), got {pole:g} K; the law has no "
+                "viscosity at its pole."
+            )
+
+    @property
+    def constants(self) -> tuple[float, float]:
+        """(A in Pa s, B in K)."""
+        (t1, mu1), (t2, mu2) = self.first, self.second
+        B = math.log(mu1 / mu2) / (1.0 / (t1 - self.pole) - 1.0 / (t2 - self.pole))
+        return mu1 * math.exp(-B / (t1 - self.pole)), B
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at temperatures in K above the pole; the density does not matter."""
+        A, B = self.constants
+        return A * np.exp(B / (np.asarray(temperature) - self.pole))
+
+
+@dataclass(frozen=True, kw_only=True)
+class WaltherTemperature:
+    """Walther's law ``log10 log10(nu + 0.7) = a - b log10 T``, nu in mm2/s (ASTM D341), through two points.
+
+    Parameters
+    ----------
+    first, second : (float, float)
+        Temperature, K, and kinematic viscosity, m2/s, above 2 mm2/s; the second one hotter and thinner.
+    """
+
+    first: tuple[float, float]
+    second: tuple[float, float]
+
+    def __post_init__(self) -> None:
+        _check_points("WaltherTemperature", self.first, self.second, "m2/s")
+        if not 1e6 * self.second[1] + WALTHER_SHIFT > 1.0 or not 1e6 * self.first[1] < 1e7:
+            raise InputError(
+                f"WaltherTemperature takes kinematic viscosities in m2/s (46 mm2/s is 46e-6), got {self.first[1]!r} and "
+                f"{self.second[1]!r}."
+            )
+
+    @property
+    def constants(self) -> tuple[float, float]:
+        """(a, b) for natural logarithms inside: ``ln ln(nu + 0.7) = a - b ln T``."""
+        w1, w2 = (math.log(math.log(1e6 * nu + WALTHER_SHIFT)) for _, nu in (self.first, self.second))
+        t1, t2 = math.log(self.first[0]), math.log(self.second[0])
+        b = (w1 - w2) / (t2 - t1)
+        return w1 + b * t1, b
+
+    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
+        """Dynamic viscosity, Pa s, at temperatures in K, for a density in kg/m3."""
+        a, b = self.constants
+        nu = np.exp(np.exp(a - b * np.log(np.asarray(temperature)))) - WALTHER_SHIFT
+        return 1e-6 * nu * density
+
+
+def _check_point(where: str, point: tuple[float, float], unit: str) -> None:
+    values = require_vector(where, point, 2)
+    if not (values[0] > 0.0 and values[1] > 0.0):
+        raise InputError(f"{where} must be (temperature > 0 K, viscosity > 0 {unit}), got {point!r}.")
+
+
+def _check_points(name: str, first: tuple[float, float], second: tuple[float, float], unit: str) -> None:
+    _check_point(f"{name}.first", first, unit)
+    _check_point(f"{name}.second", second, unit)
+    if not (first[0] < second[0] and first[1] > second[1]):
+        raise InputError(
+            f"{name}: the second point must be hotter and thinner than the first, got {first!r} and {second!r}; temperatures "
+            "are in kelvin."
+        )

@@ -1,0 +1,238 @@
+"""Viscosity that depends on pressure, through the Kirchhoff transform ``q = integral of dp / r(p)``, ``r = mu(p) / mu(0)``.
+
+``r(p)^-1 grad p = grad q``: in q the pressure flow is that of a film of constant viscosity. Pressures are gauge, in Pa.
+
+Barus (C. Barus 1893): ``r = exp(alpha p)``, ``q = (1 - exp(-alpha p)) / alpha``, ``p = -ln(1 - alpha q) / alpha``; no pressure
+carries a film with ``q >= 1 / alpha``.
+
+Roelands (C. J. A. Roelands, Correlational aspects of the viscosity-temperature-pressure relationship of lubricating oils, 1966):
+``ln r = a ((1 + p / p_0)^Z - 1)``, ``a = ln(mu_0) + 9.67``, ``Z = alpha p_0 / a``, for p >= 0; below, where oil cavitates,
+it is continued by Barus' law with the same slope.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.status import InputError, require_number
+
+ROELANDS_SHIFT = 9.67
+TABLE_INTERVALS = 4096
+# The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
+LARGEST_RATIO = 1e7
+LARGEST_PRESSURE = 5e9
+_GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
+
+
+class BoundPressureLaw(Protocol):
+    """A pressure law for one reference viscosity."""
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BarusPressure:
+    """Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
+
+    Parameters
+    ----------
+    coefficient : float
+        alpha, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
+    """
+
+    coefficient: float
+
+    def __post_init__(self) -> None:
+        require_number(
+            "BarusPressure.coefficient",
+            self.coefficient,
+            "1/Pa",
+            above=0.0,
+            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
+        )
+
+    def check(self, viscosity: float) -> None:
+        """Any reference viscosity will do."""
+
+    def bound(self, viscosity: float) -> BoundPressureLaw:
+        """The law for a reference viscosity in Pa s (which does not matter here)."""
+        return self
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+        return -np.expm1(-self.coefficient * p) / self.coefficient
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p."""
+        return bool(barus_inverse(q, self.coefficient, p_out, ratio_out, ratio_q_out))
+
+
+@dataclass(frozen=True, kw_only=True)
+class RoelandsPressure:
+    """Roelands' law: like Barus' at low pressure, less steep at high pressure.
+
+    Parameters
+    ----------
+    coefficient : float
+        alpha, the slope of ln(mu) at ambient pressure, 1/Pa; 1e-8 to 2.5e-8 for mineral oils.
+    reference_pressure : float
+        p_0, Pa.
+    """
+
+    coefficient: float
+    reference_pressure: float = 1.96e8
+
+    def __post_init__(self) -> None:
+        require_number(
+            "RoelandsPressure.coefficient", self.coefficient, "1/Pa", above=0.0,
+            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
+        )  # fmt: skip
+        require_number("RoelandsPressure.reference_pressure", self.reference_pressure, "Pa", above=0.0)
+
+    def check(self, viscosity: float) -> None:
+        """Raise `InputError` for a reference viscosity below exp(-9.67) Pa s, where the law has no meaning."""
+        if math.log(viscosity) + ROELANDS_SHIFT <= 0.0:
+            raise InputError(
+                f"RoelandsPressure needs a lubricant with a viscosity > {math.exp(-ROELANDS_SHIFT):.3g} Pa s, got "
+                f"{viscosity:g} Pa s; use BarusPressure for thinner liquids."
+            )
+
+    def bound(self, viscosity: float) -> BoundPressureLaw:
+        """The law for a reference viscosity in Pa s, tabulated."""
+        return RoelandsTable(math.log(viscosity) + ROELANDS_SHIFT, self.coefficient, self.reference_pressure)
+
+
+class RoelandsTable:
+    """Roelands' law for one reference viscosity, with the inverse transform p(q) as a quintic Hermite spline.
+
+    q comes from Gauss quadrature over each of 4096 intervals of p; p, dp/dq = r and d2p/dq2 = r dr/dp are exact at the nodes. The
+    spline's error in p is about (alpha dp)^6 / (400 alpha), below 1e-13 of p, and its derivatives are those of the pressures that it gives,
+    so that a tangent built with them is exact.
+
+    Parameters
+    ----------
+    a : float
+        ln(mu_0) + 9.67.
+    coefficient, reference_pressure : float
+        alpha, 1/Pa, and p_0, Pa.
+    """
+
+    def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
+        self.a, self.alpha, self.p0 = a, coefficient, reference_pressure
+        self.Z = coefficient * reference_pressure / a
+        # ln(1 + p / p_0) where the ratio is reached; bounded, because nearly constant viscosities reach it nowhere.
+        top = reference_pressure * math.expm1(min(math.log1p(math.log(LARGEST_RATIO) / a) / self.Z, 100.0))
+        self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
+        widths = self._quadrature(self.p[:-1], self.p[1:])
+        self.q = np.concatenate(([0.0], np.cumsum(widths)))
+        self.table = self._coefficients(widths)
+        edges = np.linspace(0.0, self.q[-1], TABLE_INTERVALS + 1)
+        self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
+        self.bucket_scale = TABLE_INTERVALS / self.q[-1]
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p) for p >= 0."""
+        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+
+    def _coefficients(self, h: np.ndarray) -> np.ndarray:
+        """1 / width and the coefficients of p in t = (q - q_k) / width, (intervals, 7)."""
+        r = self.ratio(self.p)
+        r_q = r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
+        d0, d1, e0, e1 = r[:-1] * h, r[1:] * h, 0.5 * r_q[:-1] * h**2, 0.5 * r_q[1:] * h**2
+        f, g, w = np.diff(self.p) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
+        c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
+        return np.ascontiguousarray(np.array([1.0 / h, self.p[:-1], d0, e0, c3, c4, c5]).T)
+
+    def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+        lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
+        points = lower[..., None] + half[..., None] * (1.0 + _GAUSS_X)
+        return half * np.sum(_GAUSS_W / self.ratio(points), axis=-1)
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+        p = np.asarray(p, dtype=float)
+        negative = -np.expm1(-self.alpha * np.minimum(p, 0.0)) / self.alpha
+        at = np.clip(np.searchsorted(self.p, p, side="right") - 1, 0, TABLE_INTERVALS - 1)
+        positive = self.q[at] + self._quadrature(self.p[at], np.maximum(p, 0.0))
+        return np.where(p > 0.0, positive, negative)
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
+        return bool(
+            hermite_inverse(
+                q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
+            )
+        )
+
+
+@njit(cache=True)
+def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
+    """p, r and dr/dq of Barus' law; False if q >= 1 / alpha anywhere."""
+    n, m = q.shape
+    for i in range(n):
+        for j in range(m):
+            if q[i, j] == 0.0:
+                p_out[i, j] = 0.0
+                ratio_out[i, j] = 1.0
+                ratio_q_out[i, j] = alpha
+                continue
+            s = 1.0 - alpha * q[i, j]
+            if not s > 0.0:
+                return False
+            r = 1.0 / s
+            p_out[i, j] = -np.log1p(-alpha * q[i, j]) / alpha
+            ratio_out[i, j] = r
+            ratio_q_out[i, j] = alpha * r * r
+    return True
+
+
+@njit(cache=True)
+def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
+    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table.
+
+    ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval at the
+    start of each of b equal parts of q.
+    """
+    n, m = q.shape
+    top = q_table[-1]
+    for i in range(n):
+        for j in range(m):
+            x = q[i, j]
+            if x == 0.0:
+                p_out[i, j] = 0.0
+                ratio_out[i, j] = 1.0
+                ratio_q_out[i, j] = alpha
+                continue
+            if x < 0.0:
+                r = 1.0 / (1.0 - alpha * x)
+                p_out[i, j] = -np.log1p(-alpha * x) / alpha
+                ratio_out[i, j] = r
+                ratio_q_out[i, j] = alpha * r * r
+                continue
+            if not x < top:
+                return False
+            at = min(int(x * bucket_scale), bucket.size - 2)
+            low = bucket[at]
+            high = bucket[at + 1] + 1
+            while high - low > 1:
+                middle = (low + high) // 2
+                if q_table[middle] <= x:
+                    low = middle
+                else:
+                    high = middle
+            c = table[low]
+            w = c[0]
+            t = (x - q_table[low]) * w
+            p_out[i, j] = c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6]))))
+            ratio_out[i, j] = w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6]))))
+            ratio_q_out[i, j] = w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6])))
+    return True

@@ -1,0 +1,70 @@
+"""Time of the mass-conserving film: L/D = 1, eccentricity ratio 0.8, whirling at half the spin."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+
+pytestmark = pytest.mark.benchmark
+SPEED, STEP = 300.0, 1e-4
+
+
+def _model(n_theta, n_z, cavitation=None, **options):
+    closure = ehd.ElrodAdams(cavity_pressure=-1e5) if cavitation is None else cavitation
+    return build_model(
+        ehd.JournalBearing(
+            journal_radius=0.01, length=0.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=0.04),
+            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure, **options,
+        )
+    )  # fmt: skip
+
+
+def _motion(k):
+    angle, e = 0.5 * SPEED * STEP * k, 1.6e-5
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([e * c, e * s, 0.0, 0.0, -0.5 * SPEED * e * s, 0.5 * SPEED * e * c, 0.0, 0.0, SPEED, 0.0])
+
+
+@pytest.mark.parametrize("grid", [(64, 16), (128, 12)], ids=lambda g: f"{g[0]}x{g[1]}")
+def test_warm_transient_step_with_tangent(benchmark, grid):
+    """Targets 1 ms at 64 x 16, 1.2 ms at 128 x 12."""
+    model = _model(*grid)
+    state = {"k": 0, "history": model.initial_history(_motion(0))}
+
+    def step():
+        state["k"] += 1
+        evaluation = model.evaluate(_motion(state["k"]), state["history"], STEP)
+        evaluation.tangent()
+        state["history"] = evaluation.history()
+
+    benchmark.pedantic(step, rounds=200, warmup_rounds=20)
+
+
+def test_steady_cold(benchmark):
+    """Target 10 ms at 100 x 26."""
+    model = _model(100, 26)
+    motion = _motion(0)
+    motion[4:8] = 0.0
+
+    def cold():
+        model.forget()
+        model.evaluate(motion)
+
+    benchmark.pedantic(cold, rounds=20, warmup_rounds=2)
+
+
+@pytest.mark.parametrize("supplied", [False, True], ids=["plain", "two grooves"])
+def test_supply(benchmark, supplied):
+    """Swift-Stieber with tangent; two axial grooves cut the ring and make it cheaper."""
+    grooves = tuple(ehd.AxialGroove(angle=a, width_angle=0.35) for a in (0.0, np.pi))
+    model = _model(96, 10, ehd.SwiftStieber(), supply=grooves if supplied else ())
+    state = {"k": 0}
+
+    def step():
+        state["k"] += 1
+        model.evaluate(_motion(state["k"])).tangent()
+
+    benchmark.pedantic(step, rounds=200, warmup_rounds=20)

@@ -1,0 +1,218 @@
+"""What every law and every pair of laws must keep: exact tangent, recovery of the constant law, nothing when absent."""
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film import flux, solver, viscosity
+from exudyn_ehd.film.loads import couette_integral_ratio
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.model import Effects
+
+C = 25e-6
+WALTHER = ehd.WaltherTemperature(first=(313.15, 23e-6), second=(373.15, 5e-6))
+OIL = ehd.Lubricant(viscosity=0.02, temperature_law=WALTHER, temperature=325.0)
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+PRESSURE = [None, ehd.BarusPressure(coefficient=1e-8), ehd.RoelandsPressure(coefficient=2e-8)]
+SHEAR = [None, ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)]
+THERMAL = [None, ehd.LumpedThermal(supply_temperature=330.0), ehd.FilmEnergy(supply_temperature=330.0)]
+MOTION = np.array(
+    [11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3]
+)  # tilted, squeezing, sliding axially
+STEP = 1e-4
+
+
+def make(pressure=None, shear=None, thermal=None, cavitation=ehd.SwiftStieber(), **options):  # noqa: B008
+    oil = dataclasses.replace(OIL, pressure_law=pressure, shear_law=shear)
+    values = {
+        "journal_radius": 0.025, "length": 0.05, "radial_clearance": C, "lubricant": oil, "thermal": thermal,
+        "cavitation": cavitation, "end_pressures": (1e5, 2e5), "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }  # fmt: skip
+    return build_model(ehd.JournalBearing(**(values | options)))
+
+
+def start(model):
+    """A history with a temperature field that varies, three steps after a flooded start."""
+    history = model.initial_history(MOTION)
+    if history is not None and isinstance(history.temperature, np.ndarray):
+        field = 330.0 + 20.0 * np.random.default_rng(0).random(model.grid.shape)
+        history = History(mass=history.mass, temperature=field)
+    for _ in range(3):
+        assert model.evaluate(MOTION, history, STEP).status is ehd.Status.CONVERGED
+        history = model.history()
+    return history
+
+
+def tangent_error(model, history, scales):
+    """Largest difference between tangent and fourth-order central differences, relative to the rows, over several steps."""
+    unit = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
+    exact = model.evaluate(MOTION, history, STEP).tangent() * unit
+    size = np.abs(exact).max(axis=1, keepdims=True)
+    errors = []
+    for h in scales:
+        columns = []
+        for k in range(10):
+            d = h * np.eye(10)[k] * unit
+            w = [model.evaluate(MOTION + a * d, history, STEP).wrench for a in (-2, -1, 1, 2)]
+            columns.append((8.0 * (w[2] - w[1]) - (w[3] - w[0])) / (12.0 * h))
+        errors.append(float((np.abs(np.array(columns).T - exact) / size).max()))
+    return min(errors)
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize(
+    "laws", list(itertools.product(PRESSURE, SHEAR, THERMAL)), ids=lambda laws: "-".join(type(x).__name__ for x in laws)
+)
+def test_tangent_is_exact(laws, cavitation):
+    """Against central differences; several steps, because a rupture line that moves within one spoils the difference."""
+    model = make(*laws, cavitation=cavitation)
+    assert tangent_error(model, start(model), (1e-4, 1e-5, 1e-6, 1e-7)) < 1e-6
+
+
+@pytest.mark.parametrize("laws", [PRESSURE[1:2] + SHEAR[1:], PRESSURE[2:] + SHEAR[1:]], ids=["barus", "roelands"])
+def test_tangent_is_exact_where_a_wall_limits_the_gap(laws):
+    model = make(*laws, contact=ehd.RegularisedWall(onset=20e-6))
+    assert tangent_error(model, None, (1e-4, 1e-5, 1e-6)) < 1e-6
+
+
+def constant_limit(law, amplitudes):
+    plain = make().evaluate(MOTION).wrench
+    return [
+        float(np.abs(make(**law(a)).evaluate(MOTION).wrench - plain).max() / np.abs(plain).max()) for a in amplitudes
+    ]
+
+
+@pytest.mark.parametrize(
+    ("law", "amplitudes", "order"),
+    [
+        (lambda a: {"pressure": ehd.BarusPressure(coefficient=a)}, (1e-11, 1e-12), 1),
+        (lambda a: {"pressure": ehd.RoelandsPressure(coefficient=a)}, (1e-11, 1e-12), 1),
+        (lambda a: {"shear": ehd.CarreauShear(relaxation_time=a, exponent=0.6)}, (1e-9, 1e-10), 2),
+    ],
+    ids=["barus", "roelands", "carreau"],
+)
+def test_vanishing_coefficient_recovers_the_constant_law(law, amplitudes, order):
+    """The difference falls with the law's own order in its coefficient."""
+    errors = constant_limit(law, amplitudes)
+    assert errors[0] < 1e-3
+    assert 0.9 * 10**order < errors[0] / errors[1] < 1.1 * 10**order
+
+
+def test_newtonian_exponent_is_the_constant_law():
+    plain, thin = (
+        make().evaluate(MOTION),
+        make(shear=ehd.CarreauShear(relaxation_time=1e-6, exponent=1.0)).evaluate(MOTION),
+    )
+    np.testing.assert_allclose(
+        thin.wrench, plain.wrench, rtol=1e-12, atol=1e-12 * np.abs(plain.wrench).max()
+    )  # other kernels
+
+
+@pytest.mark.parametrize("thermal", THERMAL[1:], ids=["lumped", "field"])
+def test_constant_viscosity_makes_the_temperature_irrelevant(thermal):
+    law = ehd.ReynoldsTemperature(point=(325.0, 0.02), coefficient=0.0)
+    oil = ehd.Lubricant(temperature_law=law, temperature=325.0)
+    hot = make(thermal=thermal, lubricant=oil).evaluate(MOTION)
+    plain = make(lubricant=ehd.Lubricant(viscosity=0.02)).evaluate(MOTION)
+    np.testing.assert_allclose(
+        hot.wrench, plain.wrench, rtol=1e-12, atol=1e-12 * np.abs(plain.wrench).max()
+    )  # other kernels
+
+
+def test_thicker_under_pressure_and_thinner_in_shear():
+    plain, barus, carreau = (make(**o).evaluate(MOTION) for o in ({}, {"pressure": PRESSURE[1]}, {"shear": SHEAR[1]}))
+    loads = [float(np.hypot(*e.wrench[:2])) for e in (plain, barus, carreau)]
+    assert loads[1] > 1.01 * loads[0] > loads[0] > 1.01 * loads[2]
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
+    """A bearing without laws gives the bits of a model built without effects, with every kernel of the laws forbidden.
+
+    A temperature law alone changes nothing either: without a thermal effect the film has the lubricant's temperature.
+    """
+    expected = make(cavitation=cavitation, lubricant=ehd.Lubricant(viscosity=0.02))
+    bare = type(expected)(expected.bearing, effects=Effects())
+
+    def forbidden(*_):
+        raise AssertionError("an absent law was called")
+
+    for module, names in (
+        (solver, ("plain_flux", "conductances_from", "couette_fluxes_from", "flux_sensitivity")),
+        (viscosity, ("barus_inverse", "hermite_inverse")),
+    ):
+        for name in names:
+            monkeypatch.setattr(module, name, forbidden)
+    for target in ("ShearThinning.apply", "ShearThinning.factor"):
+        monkeypatch.setattr(f"exudyn_ehd.film.shear.{target}", forbidden)
+    for target in ("thermal.viscosity_ratio", "thermal.film_flows", "model.couette_integral_ratio", "settle._target"):
+        monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
+    monkeypatch.setattr(type(bare), "_apply_rheology", forbidden)
+    for model in (expected, make(cavitation=cavitation)):
+        history, other = bare.initial_history(MOTION), model.initial_history(MOTION)
+        for _ in range(3):
+            a, b = bare.evaluate(MOTION, history, STEP), model.evaluate(MOTION, other, STEP)
+            np.testing.assert_array_equal(a.wrench, b.wrench)
+            np.testing.assert_array_equal(a.tangent(), b.tangent())
+            assert a.quantities() == b.quantities()
+            history, other = a.history(), b.history()
+            assert (history is None) == (other is None)
+    assert ehd.steady(expected.bearing, speed=100.0, eccentricity_ratio=0.5).temperature is None
+
+
+def test_plain_lubricant_leaves_every_seam_empty():
+    model = make(lubricant=ehd.Lubricant(viscosity=0.02))
+    assert model.effects == Effects()
+    assert model.solver.flux is None
+    assert flux.LinkFlux is not None
+
+
+@pytest.mark.parametrize(
+    "laws",
+    list(itertools.product(PRESSURE, SHEAR, THERMAL))[1:],
+    ids=lambda laws: "-".join(type(x).__name__ for x in laws),
+)
+def test_mass_is_conserved(laws):
+    """Elrod-Adams: the oil that enters equals the change of the content at every step, whatever the laws."""
+    model = make(*laws, cavitation=CLOSURES[3])
+    history = start(model)
+    for _ in range(3):
+        model.evaluate(MOTION, history, STEP)
+        new, area = model.history(), model.solver.area
+        change = float(np.sum(area * (new.mass - history.mass))) / STEP
+        inflow = model.solver.inflow()
+        assert abs(change - inflow.sum()) < 1e-10 * np.abs(inflow).sum()  # banded solution: rounding times its growth
+        history = new
+
+
+@pytest.mark.parametrize("speed", [0.0, -250.0, 250.0])
+@pytest.mark.parametrize("eccentricity", [0.0, 0.5, 0.95])
+def test_finite_over_the_range_of_states(speed, eccentricity):
+    for laws in itertools.product((PRESSURE[2],), SHEAR, THERMAL):
+        model = make(*laws)
+        at = np.zeros(10)
+        at[0], at[8] = eccentricity * C, speed
+        e = model.evaluate(at, model.initial_history(at), STEP)
+        assert e.status in (ehd.Status.CONVERGED, ehd.Status.NO_PRESSURE)
+        if e.status is ehd.Status.CONVERGED:
+            assert np.all(np.isfinite(e.wrench)) and np.all(np.isfinite(e.tangent()))
+            assert model.history() is None or np.all(np.isfinite(model.history().temperature))
+
+
+def test_no_pressure_in_a_bearing_is_a_status():
+    e = make(pressure=ehd.BarusPressure(coefficient=1e-5)).evaluate(MOTION)
+    assert e.status is ehd.Status.NO_PRESSURE
+    assert np.all(np.isnan(e.wrench)) and np.all(np.isnan(e.tangent()))
+
+
+def test_couette_kernel_equals_its_twin():
+    rng = np.random.default_rng(5)
+    H, weight, ratio, share = rng.uniform(0.2, 2.0, (4, 5, 3))
+    whole = rng.random((5, 3)) > 0.5
+    total, unbroken = couette_integral_ratio(H, weight, ratio, share, whole)
+    assert total == pytest.approx(float(np.sum(weight * ratio * share / H)), rel=1e-14)
+    assert unbroken == pytest.approx(float(np.sum((weight * ratio / H)[whole])), rel=1e-14)

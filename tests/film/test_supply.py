@@ -1,0 +1,140 @@
+"""Supply areas on the grid: what they cover, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.supply import SupplyMap
+
+RADIUS, LENGTH = 0.025, 0.05
+AREAS = [
+    ehd.AxialGroove(angle=0.3, width_angle=0.4),
+    ehd.AxialGroove(angle=-3.1, width_angle=0.4, length=0.03, pressure=1e5),
+    ehd.CircumferentialGroove(width=0.01, pressure=2e5),
+    ehd.CircumferentialGroove(z=0.012, width=0.006),
+    ehd.Hole(angle=6.2, z=-0.005, diameter=0.012, pressure=1e5),
+    ehd.Pocket(angle=2.0, z=0.01, width_angle=0.5, length=0.01, pressure=3e5),
+    ehd.Pocket(angle=2.0, width_angle=0.5, length=0.01, rotating=True),
+]
+
+
+def _inside(area, theta, z):
+    """Plain twin: is one point (rad, m) inside?"""
+    d = math.remainder(theta - getattr(area, "angle", 0.0), 2.0 * math.pi)
+    if isinstance(area, ehd.Hole):
+        return math.hypot(RADIUS * d, z - area.z) <= 0.5 * area.diameter
+    if isinstance(area, ehd.CircumferentialGroove):
+        return abs(z - area.z) <= 0.5 * area.width
+    if abs(d) > 0.5 * area.width_angle:
+        return False
+    return area.length is None or abs(z - getattr(area, "z", 0.0)) <= 0.5 * area.length
+
+
+@pytest.mark.parametrize("area", AREAS, ids=lambda a: type(a).__name__)
+def test_twin(area):
+    grid = ehd.bearing_grid(RADIUS, LENGTH, 64, 12)
+    supply = SupplyMap((area,), grid)
+    for i, theta in enumerate(grid.x):
+        for j, z in enumerate(grid.z * RADIUS):
+            end = j in (0, 12)
+            assert supply.masks[0][i, j] == (_inside(area, theta, z) and not end)
+            assert grid.fixed[i, j] == (end or supply.masks[0][i, j])
+
+
+def test_edges_on_vertices_count_as_inside():
+    grid = ehd.bearing_grid(RADIUS, LENGTH, 144, 10)
+    supply = SupplyMap((ehd.AxialGroove(angle=math.pi, width_angle=math.radians(20.0)),), grid)
+    covered = np.flatnonzero(supply.masks[0][:, 5])
+    np.testing.assert_array_equal(covered, np.arange(68, 77))
+
+
+def test_areas_in_the_journal_turn_with_it():
+    grid = ehd.bearing_grid(RADIUS, LENGTH, 64, 12)
+    supply = SupplyMap(tuple(AREAS[-2:]), grid)
+    before = [m.copy() for m in supply.masks]
+    assert not supply.turn(0.0)
+    assert supply.turn(5.0 * 2.0 * math.pi / 64)
+    np.testing.assert_array_equal(supply.masks[0], before[0])
+    np.testing.assert_array_equal(supply.masks[1], np.roll(before[1], 5, axis=0))
+    np.testing.assert_array_equal(grid.fixed[:, 1:-1], (supply.masks[0] | supply.masks[1])[:, 1:-1])
+    supply.turn(2.0 * math.pi)
+    np.testing.assert_array_equal(supply.masks[1], before[1])
+
+
+def test_flows_count_a_shared_vertex_once():
+    grid = ehd.bearing_grid(RADIUS, LENGTH, 64, 12)
+    supply = SupplyMap((ehd.CircumferentialGroove(width=0.01), ehd.AxialGroove(angle=1.0, width_angle=0.5)), grid)
+    inflow = np.random.default_rng(0).uniform(size=grid.shape)
+    union = supply.masks[0] | supply.masks[1]
+    assert supply.flows(inflow).sum() == pytest.approx(inflow[union].sum(), rel=1e-14)
+
+
+def _bearing(**options):
+    return ehd.JournalBearing(
+        journal_radius=RADIUS, length=LENGTH, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02), **options
+    )
+
+
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ({"supply": ehd.Hole(angle=0.0, diameter=0.01)}, "must be a tuple"),
+        ({"supply": ("hole",)}, "must be a tuple"),
+        ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "grid of n_theta=.*would do"),
+        ({"supply": (ehd.Hole(angle=0.1, z=1.0, diameter=0.001),)}, "outside the bearing"),
+        ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "no vertex"),
+        (
+            {
+                "supply": (
+                    ehd.AxialGroove(angle=0.0, width_angle=0.5),
+                    ehd.CircumferentialGroove(width=0.02, pressure=1e5),
+                )
+            },
+            "overlap",
+        ),
+        ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.5),), "inlet": ehd.MaximumGap()}, "exclude each other"),
+        (
+            {"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.5, pressure=-1e4),), "cavitation": ehd.Gumbel()},
+            "must not be below Gumbel.cavity_pressure",
+        ),
+    ],
+)
+def test_refused_supply(options, message):
+    with pytest.raises(ehd.InputError, match=message):
+        _bearing(**options)
+
+
+@pytest.mark.parametrize(
+    "kind, values, message",
+    [
+        (ehd.AxialGroove, {"angle": 0.0, "width_angle": 20.0}, "math.radians"),
+        (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.0}, "width_angle must be > 0"),
+        (ehd.AxialGroove, {"angle": math.nan, "width_angle": 0.1}, "angle must be finite"),
+        (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.1, "length": -1.0}, "length must be > 0"),
+        (ehd.AxialGroove, {"angle": 0.0, "width_angle": 0.1, "rotating": "yes"}, "rotating must be"),
+        (ehd.Hole, {"angle": 0.0, "diameter": 0.0}, "diameter must be > 0"),
+        (ehd.CircumferentialGroove, {"width": -1.0}, "width must be > 0"),
+        (ehd.Pocket, {"angle": 0.0, "width_angle": 0.1, "length": 0.0}, "length must be > 0"),
+        (
+            ehd.Pocket,
+            {"angle": 0.0, "width_angle": 0.1, "length": 0.1, "pressure": "high"},
+            "pressure must be a number",
+        ),
+    ],
+)
+def test_refused_areas(kind, values, message):
+    with pytest.raises(ehd.InputError, match=message):
+        kind(**values)
+
+
+def test_the_named_grid_does():
+    area = ehd.Hole(angle=0.1, z=0.003, diameter=0.001)
+    with pytest.raises(ehd.InputError) as error:
+        _bearing(supply=(area,))
+    n_theta = int(str(error.value).split("n_theta=")[1].split(",")[0])
+    n_z = int(str(error.value).split("n_z=")[1].split()[0])
+    _bearing(supply=(area,), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
