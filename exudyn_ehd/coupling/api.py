@@ -54,6 +54,8 @@ class LubricatedJoint:
         The axial constraint, if `Held`.
     element : FilmElement
         The film between the two frames.
+    bush : FlexibleBush or None
+        The nodal bush, if the bearing has one.
     """
 
     def __init__(self, mbs: Any, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
@@ -62,6 +64,7 @@ class LubricatedJoint:
         self.element = element
         self.bearing = element.model.bearing
         self.objectNumber, self.constraintNumber = numbers
+        self.bush = getattr(element, "bush", None)
 
     @property
     def history(self) -> JointHistory:
@@ -226,7 +229,7 @@ def attach(
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
         attach_bush = importlib.import_module("exudyn_ehd.coupling.elastic_attach").attach_bush
-        element, more = attach_bush(mbs, model, sides, name)
+        element, more = attach_bush(mbs, model, sides, (points[0], rotation), name, show)
         nodes += element.bore_nodes
     number = mbs.AddObject(
         eii.ObjectGenericODE2(

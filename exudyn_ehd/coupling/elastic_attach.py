@@ -10,13 +10,15 @@ import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.bush_object import CarriedOuter, CreateFlexibleBush, FixedOuter
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.sides import NodeSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
 from exudyn_ehd.joint.elastic import ElasticBearingModel
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import InputError, Status
 
 # the index types exist at run time, but not in the type stubs
 exu: Any = exudyn
@@ -26,9 +28,22 @@ NUMERICAL_PERIOD = 1e-6
 
 
 def attach_bush(
-    mbs: Any, model: Any, sides: tuple[Side, Side], name: str
+    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
 ) -> tuple[BoreFilmElement, dict[str, Any]]:
     """Add the bush of ``model`` (an `ElasticBearingModel`).
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    model : ElasticBearingModel
+    sides : pair of sides
+        Housing and journal in the initial configuration.
+    place : ndarray (3,), ndarray (3, 3)
+        Joint point and joint frame in the reference configuration, global.
+    name : str
+        Of the joint.
+    show : bool
+        Draw the bush.
 
     Returns
     -------
@@ -37,7 +52,8 @@ def attach_bush(
     arguments : dict
         What the element's ObjectGenericODE2 needs beside nodes and functions.
     """
-    assert isinstance(model.bore, ModalBore)
+    if not isinstance(model.bore, ModalBore):
+        return _attach_nodes(mbs, model, sides, place, name, show), {}
     start = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
@@ -51,6 +67,23 @@ def attach_bush(
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     return element, {} if start is None else {"massMatrix": _numerical_mass(element)}
+
+
+def _attach_nodes(
+    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
+) -> NodalFilmElement:
+    housing = sides[0]
+    if not isinstance(housing, NodeSide) or housing.kind == kinematics.PLANAR:
+        raise InputError(
+            "CreateLubricatedJoint.itemNumbers[0] must be ground or a rigid body with an ANCFBush, which it carries; use a "
+            "ModalBush on other markers and planar bodies."
+        )
+    outer = CarriedOuter(itemNumber=housing.nodes[0]) if housing.nodes else FixedOuter()
+    bush = CreateFlexibleBush(
+        mbs, f"{name} bush", bush=model.bearing.bush, outer=outer, position=place[0], rotationMatrix=place[1], show=show
+    )
+    nodes = [exu.NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
+    return NodalFilmElement(model, *sides, nodes, name, bush)
 
 
 def _numerical_mass(element: ModalFilmElement) -> np.ndarray:
