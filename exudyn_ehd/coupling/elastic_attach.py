@@ -17,6 +17,7 @@ from exudyn_ehd.coupling.sides import NodeSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
+from exudyn_ehd.joint.bush import displacements_at_rest
 from exudyn_ehd.joint.elastic import ElasticBearingModel
 from exudyn_ehd.status import InputError, Status
 
@@ -82,6 +83,14 @@ def _attach_nodes(
     bush = CreateFlexibleBush(
         mbs, f"{name} bush", bush=model.bearing.bush, outer=outer, position=place[0], rotationMatrix=place[1], show=show
     )
+    start = initial_coordinates(model, sides)
+    if start is not None:
+        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ housing.frame[:, :3].T
+        for number, shift in zip(bush.nodeNumbers, u):
+            if number >= 0 and shift.any():
+                node = exu.NodeIndex(int(number))
+                initial = np.array(mbs.GetNodeParameter(node, "initialCoordinates")) + shift
+                mbs.SetNodeParameter(node, "initialCoordinates", initial.tolist())
     nodes = [exu.NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
     return NodalFilmElement(model, *sides, nodes, name, bush)
 
