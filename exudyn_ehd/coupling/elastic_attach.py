@@ -81,7 +81,13 @@ def _attach_nodes(
         )
     outer = CarriedOuter(itemNumber=housing.nodes[0]) if housing.nodes else FixedOuter()
     bush = CreateFlexibleBush(
-        mbs, f"{name} bush", bush=model.bearing.bush, outer=outer, position=place[0], rotationMatrix=place[1], show=show
+        mbs,
+        f"{name} bush",
+        bush=model.bearing.bush,
+        outer=outer,
+        position=place[0].tolist(),
+        rotationMatrix=place[1],
+        show=show,
     )
     start = initial_coordinates(model, sides)
     if start is not None:

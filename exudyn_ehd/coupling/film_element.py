@@ -163,9 +163,7 @@ class FilmElement:
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
         assert trial.evaluation is not None
-        stiffness, damping, _, _ = self._rigid_derivatives(
-            mbs, trial, np.ascontiguousarray(trial.evaluation.tangent())
-        )
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(trial.evaluation.tangent()))
         return stiffness, damping
 
     def _rigid_derivatives(

@@ -153,5 +153,3 @@ def condensed_tangent(model: ElasticBearingModel) -> np.ndarray:
     rate[:, 4:8] = follow[:, :4]
     second = model.elasticity.solve(model.coordinates, softening, T[6:, M + k :] @ rate)
     return T[:6, :M] + T[:6, M : M + k] @ (follow + second) + T[:6, M + k :] @ rate
-
-

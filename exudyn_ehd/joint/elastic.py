@@ -18,10 +18,10 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore import Bore
+from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
 from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
-from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.status import Status
 
 
@@ -123,7 +123,9 @@ class ElasticBearingModel(BearingModel):
         base = super().evaluate(motion, history, step, spin)
         if base.status is not Status.CONVERGED:
             self.bore_load = np.full(self.bore.size, np.nan)
-        return ElasticEvaluation(**{f.name: getattr(base, f.name) for f in dataclasses.fields(base)}, bore_load=self.bore_load)
+        return ElasticEvaluation(
+            **{f.name: getattr(base, f.name) for f in dataclasses.fields(base)}, bore_load=self.bore_load
+        )
 
     def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> ElasticEvaluation:
         """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0."""

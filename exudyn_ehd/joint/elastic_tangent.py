@@ -120,7 +120,8 @@ def _wrench_by_bore(model: ElasticBearingModel, gradient: np.ndarray, direct: _D
     dc = np.zeros(gradient.shape[1])
     if shear_needs_adjoint(model):
         dc, at = gradient[4], 5
-    slopes, ends, friction = gradient[at : at + 2], 0.0, 0.0
+    slopes = gradient[at : at + 2]
+    ends, friction = np.zeros_like(dc), np.zeros((6, dc.size))
     if direct is not None:
         ds, dc, slopes = ds + direct.contact, dc + direct.couette, slopes + direct.slopes
         ends, friction = direct.ends, direct.friction

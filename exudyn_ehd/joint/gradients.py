@@ -109,6 +109,7 @@ def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -
 
 
 def shear_needs_adjoint(model: BearingModel) -> bool:
+    """Whether fill or pressure enter the Couette shear."""
     return model.solver.closure.conserves_mass or model.effects.pressure_law is not None
 
 
