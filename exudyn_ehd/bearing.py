@@ -6,11 +6,13 @@ import math
 import warnings
 from dataclasses import dataclass
 
+from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -61,6 +63,10 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    asperity : GreenwoodTripp or None
+        Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
+    roughness : PatirCheng or None
+        Flow factors of rough surfaces.
 
     Raises
     ------
@@ -78,6 +84,8 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    asperity: GreenwoodTripp | None = None
+    roughness: PatirCheng | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -93,6 +101,8 @@ class JournalBearing:
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
+        _require_type("roughness", self.roughness, (PatirCheng, type(None)))
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")

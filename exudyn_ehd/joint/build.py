@@ -5,13 +5,22 @@ from __future__ import annotations
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.surfaces import surface_effects
 from exudyn_ehd.status import InputError
 
 
 def collect_effects(bearing: JournalBearing) -> Effects:
     """The effects that a bearing names, in scaled form."""
-    wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
-    return Effects(limiter=wall, contacts=() if wall is None else (wall,))
+    c = bearing.radial_clearance
+    wall = None if bearing.contact is None else WallContact(bearing.contact, c)
+    surfaces = surface_effects(bearing)
+    limiter = wall if wall is not None else surfaces.limiter
+    return Effects(
+        limiter=limiter,
+        contacts=(() if wall is None else (wall,)) + surfaces.contacts,
+        flux=surfaces.flux,
+        shear_factor=surfaces.shear_factor,
+    )
 
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:

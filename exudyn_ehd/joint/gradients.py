@@ -23,10 +23,9 @@ SIZE = 10
 
 def wrench_tangent(model: BearingModel) -> np.ndarray:
     """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``."""
-    film, contact, dc, extra = _integral_gradients(model)
-    ds = film + contact
+    ds, dc, extra = _integral_gradients(model)
     x, y, bx, by = model.pose
-    sc, ss, szc, szs = model.total
+    sc, ss, szc, szs = model.integrals
     ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] + extra[0]
     ds_theta[:4] += (ss, -sc, szs, -szc)
     ds_z = -(bx * ds[0] + by * ds[1]) + extra[1]
@@ -45,12 +44,13 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     out[2, 9] -= c0 * model.couette
     out[5, 8] -= c0 * R**2 * model.couette
     if model.contact_fields is not None:
+        _add_contact_normal(model, model.contact_fields, out)
         _add_contact_friction(model, model.contact_fields, out)
     return out
 
 
-def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), the contacts' S, C (10,), slopes' S (2, 10)."""
+def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     s, g = model.solver, model.grid
     rows = _adjoint_rows(model)
     k = rows.shape[0]
@@ -72,10 +72,7 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
     _add_couette_direct(model, dc)
     if model.extra_slope_x is not None:
         extra = gradient[at : at + 2]
-    contact = np.zeros((4, SIZE))
-    if model.contact_fields is not None:
-        _contact_gradients(model, model.contact_fields, contact, extra)
-    return gradient[:4], contact, dc, extra
+    return gradient[:4], dc, extra
 
 
 def _shear_needs_adjoint(model: BearingModel) -> bool:
@@ -139,19 +136,21 @@ def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
         sens.rate *= f.slope
 
 
-def _contact_gradients(model: BearingModel, f: ContactFields, contact: np.ndarray, extra: np.ndarray) -> None:
-    """Add the contacts' gradients to the pose to ``contact`` (4, 10) and ``extra`` (2, 10), in the film's pressure unit."""
-    g = model.grid
-    slope = np.sum(f.slope, axis=0) * g.weight / model.pressure_scale
-    fields = [slope * model.cos_x[:, None], slope * model.sin_x[:, None]]
-    fields += [fields[0] * g.z, fields[1] * g.z]
-    if model.extra_slope_x is not None and model.extra_slope_z is not None:
-        fields += [slope * model.extra_slope_x, slope * model.extra_slope_z]
-    out = np.zeros((len(fields), 4))
-    contract_pose(np.array(fields), model.cos_x, model.sin_x, g.z, out)
-    contact[:, :4] += out[:4]
-    if len(fields) == 6:
-        extra[:, :4] += out[4:]
+def _add_contact_normal(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
+    """Add the gradient of the contact pressures' wrench to ``out`` (6, 10), SI units."""
+    g, R = model.grid, model.grid.reference_length
+    slope = np.sum(f.slope, axis=0) * g.weight * R**2
+    c_field, s_field = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
+    grads = np.zeros((4, 4))
+    contract_pose(np.array([c_field, s_field, c_field * g.z, s_field * g.z]), model.cos_x, model.sin_x, g.z, grads)
+    gc, gs, gzc, gzs = grads * model.pose_scale
+    sc, ss, szc, szs = f.integrals.sum(axis=0) * R**2
+    x, y, bx, by = model.motion[:4]
+    out[0, :4] -= gc
+    out[1, :4] -= gs
+    out[3, :4] += R * gzs
+    out[4, :4] -= R * gzc
+    out[5, :4] += y * gc - x * gs + R * (by * gzc - bx * gzs) + (-ss, sc, -R * szs, R * szc)
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:

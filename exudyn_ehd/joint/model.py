@@ -279,7 +279,7 @@ class BearingModel:
         if not np.all(np.isfinite(self.motion)):
             return Status.NOT_FINITE
         self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
-        if self.effects.limiter is None and self.minimum_gap <= 0.0:
+        if self.minimum_gap <= 0.0 and not self.effects.contacts:
             return Status.NO_FILM
         ends, cavity = self.end_pressures, self.cavity_pressure
         law = self.effects.pressure_law
@@ -342,7 +342,6 @@ class BearingModel:
     def _loads(self) -> np.ndarray:
         s, g = self.solver, self.grid
         pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
-        self.total = self.integrals
         self.extra_theta = self.extra_z = 0.0
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
             self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
@@ -351,7 +350,7 @@ class BearingModel:
             self._contact_loads(self.contact_fields)
         self.couette, self.couette_unbroken = self._couette()
         x, y, bx, by = self.pose
-        sc, ss, szc, szs = self.total
+        sc, ss, szc, szs = self.integrals
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
         R, fs = g.reference_length, self.force_scale
@@ -369,19 +368,22 @@ class BearingModel:
         self.contact_wrench = np.zeros(6)
         if self.contact_fields is not None:
             self._add_contact_friction(self.contact_fields)
-            wrench += self.contact_wrench
+            wrench += self.contact_wrench + self._contact_normal_wrench(self.contact_fields)
         return wrench
 
+    def _contact_normal_wrench(self, f: ContactFields) -> np.ndarray:
+        """Wrench (6,) of the contact pressures: they do no work on the journal's spin, so that their torque about O is e x F."""
+        R = self.grid.reference_length
+        sc, ss, szc, szs = f.integrals.sum(axis=0) * R**2
+        x, y, bx, by = self.motion[:4]
+        return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
+
     def _contact_loads(self, f: ContactFields) -> None:
-        """Integrals of the contact pressures, added to the film's in the unit of its pressures."""
+        """Integrals of the contact pressures, in Pa."""
         g = self.grid
         for k in range(len(f.P)):
             pressure_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
             f.normal[k] = float(np.sum(f.P[k] * g.weight))
-            if self.extra_slope_x is not None and self.extra_slope_z is not None:
-                self.extra_theta += float(np.sum(f.P[k] * g.weight * self.extra_slope_x)) / self.pressure_scale
-                self.extra_z += float(np.sum(f.P[k] * g.weight * self.extra_slope_z)) / self.pressure_scale
-        self.total = self.integrals + f.integrals.sum(axis=0) / self.pressure_scale
 
     def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
@@ -428,7 +430,8 @@ class BearingModel:
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about O).
+            by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
+            of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex).
         """
         c = self.bearing.radial_clearance
         out = {
@@ -457,7 +460,11 @@ class BearingModel:
             "leakage_lower": flow_scale * lower,
             "leakage_upper": flow_scale * upper,
             "contact_load": math.hypot(load[0], load[1]),
-            "contact_torque": float(self.contact_wrench[5]),
+            "contact_torque": self._contact_torque(),
+            "contact_power_loss": -(self._contact_torque() * self.omega + float(self.contact_wrench[2]) * self.axial_speed),
+            "peak_contact_pressure": max((float(p.max()) for p in self.contact_fields.P), default=0.0)
+            if self.contact_fields is not None
+            else 0.0,
         }
         return out
 

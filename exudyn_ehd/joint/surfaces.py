@@ -1,0 +1,66 @@
+"""Effects of the surfaces, from a bearing's description: roughness and asperity contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.asperity import AsperityContact
+from exudyn_ehd.film.average_gap import AverageGap
+from exudyn_ehd.film.roughness import RoughFlow, RoughShear
+from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, ShearFactor
+from exudyn_ehd.status import InputError
+
+
+@dataclass(frozen=True)
+class SurfaceEffects:
+    """What the surfaces of a bearing contribute to its model; empty for smooth ones."""
+
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    shear_factor: ShearFactor | None = None
+
+
+def surface_effects(bearing: JournalBearing) -> SurfaceEffects:
+    """Scaled effects of roughness and asperities.
+
+    Raises
+    ------
+    InputError
+        For options that exclude or contradict each other.
+    """
+    if bearing.asperity is None and bearing.roughness is None:
+        return SurfaceEffects()
+    _check(bearing)
+    c = bearing.radial_clearance
+    contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
+    if bearing.roughness is None:
+        return SurfaceEffects(limiter=contact, contacts=() if contact is None else (contact,))
+    residual = 0.0 if contact is None else contact.residual
+    return SurfaceEffects(
+        limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
+        contacts=() if contact is None else (contact,),
+        flux=(RoughFlow(bearing.roughness, c, residual),),
+        shear_factor=RoughShear(bearing.roughness, c, residual),
+    )
+
+
+def _check(bearing: JournalBearing) -> None:
+    asperity, roughness = bearing.asperity, bearing.roughness
+    if bearing.contact is not None:
+        raise InputError(
+            "JournalBearing.contact=RegularisedWall(...) and the gap of rough surfaces (asperity, roughness) exclude each other: "
+            "both say which gap the film sees where surfaces touch; keep asperity=GreenwoodTripp(...) and leave out the wall."
+        )
+    if asperity is not None and roughness is not None and asperity.composite_roughness != roughness.composite_roughness:
+        raise InputError(
+            f"PatirCheng.composite_roughness ({roughness.composite_roughness:g} m) must equal "
+            f"GreenwoodTripp.composite_roughness ({asperity.composite_roughness:g} m); they describe the same surfaces."
+        )
+    sigma = (roughness if asperity is None else asperity).composite_roughness  # type: ignore[union-attr]
+    if not 4.0 * sigma < bearing.radial_clearance:
+        raise InputError(
+            f"JournalBearing: the composite roughness {sigma:g} m must be below a quarter of the radial clearance "
+            f"{bearing.radial_clearance:g} m; it is the standard deviation of the heights, in metres."
+        )
