@@ -9,14 +9,16 @@ from exudyn_ehd.joint.surfaces import surface_effects
 from exudyn_ehd.status import InputError
 
 
-def collect_effects(bearing: JournalBearing) -> Effects:
-    """The effects that a bearing names, in scaled form."""
+def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
+    """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
     c = bearing.radial_clearance
     wall = None if bearing.contact is None else WallContact(bearing.contact, c)
-    surfaces = surface_effects(bearing)
+    surfaces = surface_effects(bearing, start_angle)
     limiter = wall if wall is not None else surfaces.limiter
     return Effects(
         limiter=limiter,
+        gap_terms=surfaces.gap_terms,
+        wear=surfaces.wear,
         contacts=(() if wall is None else (wall,)) + surfaces.contacts,
         flux=surfaces.flux,
         shear_factor=surfaces.shear_factor,
@@ -25,7 +27,7 @@ def collect_effects(bearing: JournalBearing) -> Effects:
 
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
-    return BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing))
+    return BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing, start_angle))
 
 
 def build_model(bearing: JournalBearing) -> BearingModel:

@@ -13,7 +13,7 @@ import numpy as np
 
 from exudyn_ehd.film.flux import FluxEffect
 
-__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor"]
+__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor", "Wear"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +62,16 @@ class Contact(Protocol):
     @property
     def transition_speed(self) -> float:
         """Sliding speed over which Coulomb friction is regularised, m/s."""
+
+
+class Wear(Protocol):
+    """A depth that the contact pressure adds to the gap, step by accepted step."""
+
+    def depth(self, wear: np.ndarray | None) -> np.ndarray:
+        """Scaled depth (n, m) of a history; zero for None."""
+
+    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Scaled depth (n, m) after a step (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
 
 
 class PressureLaw(Protocol):

@@ -30,7 +30,7 @@ from exudyn_ehd.film.loads import (
     refined_peak,
 )
 from exudyn_ehd.film.solver import FilmSolver
-from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor
+from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, PressureLaw, ShearFactor, Wear
 from exudyn_ehd.joint.gradients import wrench_tangent
 from exudyn_ehd.status import Status
 
@@ -49,6 +49,8 @@ class Effects:
     flux : tuple of FluxEffect
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
+    wear : Wear or None
+        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -57,6 +59,7 @@ class Effects:
     flux: tuple[FluxEffect, ...] = ()
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
+    wear: Wear | None = None
 
 
 @dataclass(eq=False)
@@ -155,6 +158,7 @@ class BearingModel:
         self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
         self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
         self.extra: np.ndarray | None = None
+        self.extra_link: np.ndarray | None = None
         self.extra_slope_x: np.ndarray | None = None
         self.extra_slope_z: np.ndarray | None = None
         self.ratio: np.ndarray | None = None
@@ -163,7 +167,10 @@ class BearingModel:
         self.ratio_v: np.ndarray | None = None
         self.P_q: np.ndarray | None = None
         self.set_viscosity_ratio(1.0)
-        self.remembers = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers = self.remembers_mass or self.effects.wear is not None
+        self.start: tuple[History | None, float] = (None, 0.0)
+        self.gap_fields: list[np.ndarray] = []
         self.serial = 0
         self.status = Status.NOT_FINITE
         self.integrals = np.zeros(4)
@@ -188,7 +195,8 @@ class BearingModel:
             return None
         self._set_motion(motion)
         self._set_gap(None)
-        return History(mass=self.solver.H.copy())
+        wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
+        return History(mass=self.solver.H.copy() if self.remembers_mass else None, wear=wear)
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -204,7 +212,15 @@ class BearingModel:
             )
         if not self.remembers:
             return None
-        return History(mass=self.solver.fill * self.solver.H)
+        mass = self.solver.fill * self.solver.H if self.remembers_mass else None
+        return History(mass=mass, wear=None if self.effects.wear is None else self._worn(self.effects.wear))
+
+    def _worn(self, wear: Wear) -> np.ndarray:
+        """Scaled wear depth after the last evaluation."""
+        assert self.contact_fields is not None
+        history, step = self.start
+        speed = math.hypot(self.grid.reference_length * self.omega, self.axial_speed)
+        return wear.grown(None if history is None else history.wear, np.sum(self.contact_fields.P, axis=0), speed, step)
 
     def evaluate(self, motion: np.ndarray, history: History | None = None, step: float = 0.0) -> Evaluation:
         """Evaluate the film.
@@ -227,6 +243,7 @@ class BearingModel:
         self._set_motion(motion)
         self.wrench = np.full(6, np.nan)
         self.iterations = 0
+        self.start = (history, step)
         self.status = self._solve(history, step)
         if self.status is Status.CONVERGED:
             self.wrench = self._loads()
@@ -259,11 +276,16 @@ class BearingModel:
     def _add_gap_terms(self, history: History | None) -> None:
         """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
         s, g = self.solver, self.grid
-        self.extra = np.sum([term.field(history) for term in self.effects.gap_terms], axis=0)
-        self.extra_slope_x = (np.roll(self.extra, -1, axis=0) - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
-        self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
+        fields = [term.field(history) for term in self.effects.gap_terms]
+        if self.extra is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
+            self.gap_fields = fields
+            self.extra = np.sum(fields, axis=0)
+            nxt = np.roll(self.extra, -1, axis=0)
+            self.extra_link = 0.5 * (self.extra + nxt)
+            self.extra_slope_x = (nxt - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
+            self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
         s.H += self.extra
-        s.HF += 0.5 * (self.extra + np.roll(self.extra, -1, axis=0))
+        s.HF += self.extra_link
 
     def _limit_gap(self, limiter: GapLimiter) -> None:
         """The gap that the film sees, and its rate."""
@@ -288,7 +310,7 @@ class BearingModel:
             ends, cavity = known[:2], float(known[2])
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends
-        mass = history.mass if history is not None and self.remembers else None
+        mass = history.mass if history is not None and self.remembers_mass else None
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )

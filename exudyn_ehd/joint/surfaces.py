@@ -1,14 +1,19 @@
-"""Effects of the surfaces, from a bearing's description: roughness and asperity contact."""
+"""Effects of the surfaces, from a bearing's description: profile, wear, roughness and asperity contact."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.asperity import AsperityContact
 from exudyn_ehd.film.average_gap import AverageGap
+from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.profile import ProfileTerm
 from exudyn_ehd.film.roughness import RoughFlow, RoughShear
-from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, ShearFactor
+from exudyn_ehd.film.wear import WearDepth
+from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, ShearFactor, Wear
 from exudyn_ehd.status import InputError
 
 
@@ -16,22 +21,53 @@ from exudyn_ehd.status import InputError
 class SurfaceEffects:
     """What the surfaces of a bearing contribute to its model; empty for smooth ones."""
 
+    gap_terms: tuple[GapTerm, ...] = ()
+    wear: Wear | None = None
     limiter: GapLimiter | None = None
     contacts: tuple[Contact, ...] = ()
     flux: tuple[FluxEffect, ...] = ()
     shear_factor: ShearFactor | None = None
 
 
-def surface_effects(bearing: JournalBearing) -> SurfaceEffects:
-    """Scaled effects of roughness and asperities.
+def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffects:
+    """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``.
 
     Raises
     ------
     InputError
         For options that exclude or contradict each other.
     """
+    c = bearing.radial_clearance
+    gap_terms: list[GapTerm] = []
+    wear = None
+    if bearing.profiles or bearing.wear is not None:
+        film = bearing.film
+        grid = bearing_grid(
+            bearing.journal_radius, bearing.length, film.n_theta, film.n_z, stretch=film.stretch, start_angle=start_angle
+        )
+        if bearing.profiles:
+            gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
+        if bearing.wear is not None:
+            _check_wear(bearing)
+            wear = WearDepth(bearing.wear, grid.shape, c)
+            gap_terms.append(WearTerm(wear))
     if bearing.asperity is None and bearing.roughness is None:
-        return SurfaceEffects()
+        return SurfaceEffects(gap_terms=tuple(gap_terms))
+    return replace(_rough_effects(bearing), gap_terms=tuple(gap_terms), wear=wear)
+
+
+class WearTerm:
+    """The worn depth at the start of the step as a gap term."""
+
+    def __init__(self, wear: WearDepth) -> None:
+        self.wear = wear
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled depth (n, m)."""
+        return self.wear.depth(None if history is None else history.wear)
+
+
+def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
     _check(bearing)
     c = bearing.radial_clearance
     contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
@@ -44,6 +80,14 @@ def surface_effects(bearing: JournalBearing) -> SurfaceEffects:
         flux=(RoughFlow(bearing.roughness, c, residual),),
         shear_factor=RoughShear(bearing.roughness, c, residual),
     )
+
+
+def _check_wear(bearing: JournalBearing) -> None:
+    if bearing.asperity is None:
+        raise InputError(
+            "JournalBearing.wear=ArchardWear(...) needs a contact pressure to wear with; give the bearing "
+            "asperity=GreenwoodTripp(...), or leave wear out."
+        )
 
 
 def _check(bearing: JournalBearing) -> None:
