@@ -11,6 +11,7 @@ from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
 from exudyn_ehd.film.roughness import PatirCheng
@@ -65,6 +66,8 @@ class JournalBearing:
         False leaves the squeeze term out (quasi-static film: no damping).
     contact : RegularisedWall or None
         What takes over before the gap vanishes; None: a vanishing gap ends the run with an error.
+    bush : ElasticLiner or None
+        What gives way under the film's pressure; None: a rigid bore.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -90,6 +93,7 @@ class JournalBearing:
     end_pressures: tuple[float, float] = (0.0, 0.0)
     squeeze: bool = True
     contact: RegularisedWall | None = None
+    bush: ElasticLiner | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -109,6 +113,7 @@ class JournalBearing:
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
+        _require_type("bush", self.bush, (ElasticLiner, type(None)))
         _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
         _require_type("roughness", self.roughness, (PatirCheng, type(None)))
         _require_type("wear", self.wear, (ArchardWear, type(None)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.joint.model import BearingModel, Effects
-from exudyn_ehd.joint.surfaces import surface_effects
+from exudyn_ehd.joint.surfaces import liner_of, surface_effects
 from exudyn_ehd.status import InputError
 
 
@@ -19,6 +19,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         limiter=limiter,
         gap_terms=surfaces.gap_terms,
         wear=surfaces.wear,
+        liner=liner_of(bearing),
         contacts=(() if wall is None else (wall,)) + surfaces.contacts,
         flux=surfaces.flux,
         shear_factor=surfaces.shear_factor,

@@ -28,11 +28,14 @@ class History:
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
         Film temperature, K.
+    deflection : (n, m) array or None
+        Scaled deflection of an elastic liner.
     """
 
     mass: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
+    deflection: np.ndarray | None = None
 
 
 class GapTerm(Protocol):

@@ -76,7 +76,9 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
 
 
 def _shear_needs_adjoint(model: BearingModel) -> bool:
-    return model.solver.closure.conserves_mass or model.effects.pressure_law is not None
+    return (
+        model.solver.closure.conserves_mass or model.effects.pressure_law is not None or model.liner_solver is not None
+    )
 
 
 def _adjoint_rows(model: BearingModel) -> np.ndarray:
@@ -97,6 +99,8 @@ def _adjoint_rows(model: BearingModel) -> np.ndarray:
         ratio = 1.0 if model.ratio is None else model.ratio.ravel()[at]
         per_gap = weight / s.H.ravel()[at]
         by_pressure = 0.0 if model.ratio_q is None else per_gap * model.ratio_q.ravel()[at]
+        if model.liner_solver is not None:
+            by_pressure = -per_gap / s.H.ravel()[at] * model.liner_solver.gap_by_pressure.ravel()[at]
         rows[4] = np.where(full, by_pressure, per_gap * ratio if s.closure.conserves_mass else 0.0)
     if model.extra_slope_x is not None and model.extra_slope_z is not None:
         for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):

@@ -21,6 +21,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
@@ -51,6 +52,7 @@ class Effects:
     shear_factor : ShearFactor or None
     wear : Wear or None
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
+    liner : ElasticLiner or None
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -60,6 +62,7 @@ class Effects:
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
     wear: Wear | None = None
+    liner: ElasticLiner | None = None
 
 
 @dataclass(eq=False)
@@ -146,7 +149,10 @@ class BearingModel:
             R, bearing.length, bearing.film.n_theta, bearing.film.n_z, stretch=bearing.film.stretch,
             start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap),
         )  # fmt: skip
-        self.solver = FilmSolver(
+        self.liner_solver: LinerFilmSolver | None = None
+        if self.effects.liner is not None:
+            self.liner_solver = LinerFilmSolver(self.grid, bearing.cavitation, squeeze=bearing.squeeze)
+        self.solver = self.liner_solver or FilmSolver(
             self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
             circumferential_pressure_flow=bearing.film.circumferential_pressure_flow,
         )  # fmt: skip
@@ -168,7 +174,8 @@ class BearingModel:
         self.P_q: np.ndarray | None = None
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
-        self.remembers = self.remembers_mass or self.effects.wear is not None
+        self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
+        self.remembers = self.remembers_mass or self.effects.wear is not None or self.remembers_deflection
         self.start: tuple[History | None, float] = (None, 0.0)
         self.gap_fields: list[np.ndarray] = []
         self.serial = 0
@@ -184,6 +191,8 @@ class BearingModel:
         self.shear_scale = mu * R**2 / c
         self.end_pressures = np.array(b.end_pressures) / self.pressure_scale
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
+        if self.liner_solver is not None and self.effects.liner is not None:
+            self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -196,7 +205,14 @@ class BearingModel:
         self._set_motion(motion)
         self._set_gap(None)
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
-        return History(mass=self.solver.H.copy() if self.remembers_mass else None, wear=wear)
+        deflection = self._steady_deflection(motion) if self.remembers_deflection else None
+        return History(mass=self.solver.H.copy() if self.remembers_mass else None, wear=wear, deflection=deflection)
+
+    def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
+        """Scaled deflection of the steady film at this motion; None if there is no such film."""
+        if self.evaluate(motion).status is not Status.CONVERGED or self.liner_solver is None:
+            return None
+        return self.liner_solver.deflection
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -213,7 +229,11 @@ class BearingModel:
         if not self.remembers:
             return None
         mass = self.solver.fill * self.solver.H if self.remembers_mass else None
-        return History(mass=mass, wear=None if self.effects.wear is None else self._worn(self.effects.wear))
+        wear = None if self.effects.wear is None else self._worn(self.effects.wear)
+        deflection = None
+        if self.remembers_deflection and self.liner_solver is not None:
+            deflection = self.liner_solver.deflection
+        return History(mass=mass, wear=wear, deflection=deflection)
 
     def _worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""
@@ -301,7 +321,7 @@ class BearingModel:
         if not np.all(np.isfinite(self.motion)):
             return Status.NOT_FINITE
         self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
-        if self.minimum_gap <= 0.0 and not self.effects.contacts:
+        if self.minimum_gap <= 0.0 and not self.effects.contacts and self.liner_solver is None:
             return Status.NO_FILM
         ends, cavity = self.end_pressures, self.cavity_pressure
         law = self.effects.pressure_law
@@ -311,6 +331,8 @@ class BearingModel:
         P = self.solver.pressure
         P[:, 0], P[:, -1] = ends
         mass = history.mass if history is not None and self.remembers_mass else None
+        if self.liner_solver is not None:
+            self.liner_solver.delta_old = None if history is None else history.deflection
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )
@@ -318,6 +340,8 @@ class BearingModel:
             status = self._apply_rheology()
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
+        if status is Status.CONVERGED and self.liner_solver is not None:
+            self.minimum_gap = self.bearing.radial_clearance * min(float(self.solver.H.min()), float(self.solver.HF.min()))
         return status
 
     def _apply_rheology(self) -> Status:
@@ -368,6 +392,9 @@ class BearingModel:
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
             self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
             self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+        if self.liner_solver is not None:
+            # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
+            self.extra_z += math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
         if self.contact_fields is not None:
             self._contact_loads(self.contact_fields)
         self.couette, self.couette_unbroken = self._couette()

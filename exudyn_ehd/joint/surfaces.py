@@ -10,6 +10,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.asperity import AsperityContact
 from exudyn_ehd.film.average_gap import AverageGap
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.profile import ProfileTerm
 from exudyn_ehd.film.roughness import RoughFlow, RoughShear
 from exudyn_ehd.film.wear import WearDepth
@@ -80,6 +81,32 @@ def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
         flux=(RoughFlow(bearing.roughness, c, residual),),
         shear_factor=RoughShear(bearing.roughness, c, residual),
     )
+
+
+def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
+    """The bearing's elastic liner, if it can be solved with the other options.
+
+    Raises
+    ------
+    InputError
+        For options that a liner does not go with.
+    """
+    if bearing.bush is None:
+        return None
+    excluded = {
+        "cavitation=ElrodAdams()": bearing.cavitation.conserves_mass,
+        "film=ShortBearing()": not bearing.film.circumferential_pressure_flow,
+        "contact=RegularisedWall(...)": bearing.contact is not None,
+        "asperity=GreenwoodTripp(...)": bearing.asperity is not None,
+        "roughness=PatirCheng(...)": bearing.roughness is not None,
+    }
+    for option, present in excluded.items():
+        if present:
+            raise InputError(
+                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved for smooth surfaces in "
+                "two dimensions with FullSommerfeld, Gumbel or SwiftStieber; leave one of the two out."
+            )
+    return bearing.bush
 
 
 def _check_wear(bearing: JournalBearing) -> None:

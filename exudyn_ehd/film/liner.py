@@ -1,0 +1,446 @@
+"""Elastic liner: the bore gives way by a column of liner under every point, inside the film solve.
+
+A layer of thickness t on a stiff housing, pressed by p without sliding sideways (plane strain in both directions along the surface),
+gives way by
+
+    delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
+
+the column (Winkler) model: right for layers thinner than the contact is wide, and without meaning for incompressible ones.
+With P the scaled film pressure the gap is ``H = H_rigid + beta P``, on links with the mean of both ends, and the balance of every
+control volume becomes nonlinear in P. It is solved by Newton's method with the exact matrix,
+
+    d flux / dP_a = (v - 3 H^2 dP/ds) beta_a / 2 + H^3 / ds,
+
+on the vertices that carry pressure. `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity
+pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
+the liner answers to the clipped one. A step is shortened where it would use up more than 80 % of a gap, and halved while the
+residual does not fall. Should it not settle, the liner's own rate ``beta dP/dt`` carries the film through pseudo time to the
+steady state.
+
+In motion the liner's rate takes part in the squeeze, ``dH/dt = rigid rate + beta (P - P_old) / dt`` (backward Euler), with the deflection
+at the start of the step from the history: a soft liner feeds and drains the film as it gives way. Without a history (a prescribed
+position) the deflection is steady; damping coefficients of such a state are those of the film between surfaces at rest in
+their deformed shape.
+
+Symbols: H0, HF0, Ht0 gap, gap on links and rate of the undeformed surfaces; P pressure, pc cavity pressure, beta compliance
+over pressure, all scaled; inverse_step 1 / dt; delta_old deflection at the start of the step; a, b ends of a link.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.direct import PAD, number_cells
+from exudyn_ehd.film.elrod import _lu_buffers
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.reynolds import conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.film.solver import INSTANT, Closure, FilmSolver
+from exudyn_ehd.status import InputError, Status, require_number
+
+MAX_NEWTON_STEPS = 60
+MAX_PSEUDO_STEPS = 80
+# A full step below this share of the peak pressure leaves an error of about its square: 1e-16 times the film's nonlinearity.
+STEP_TOLERANCE = 1e-8
+FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticLiner:
+    """Bush with an elastic liner on a rigid housing, by columns.
+
+    Parameters
+    ----------
+    thickness : float
+        t, m.
+    youngs_modulus : float
+        E, Pa.
+    poisson_ratio : float
+        nu, 0 to 0.49; columns say nothing about incompressible liners.
+    """
+
+    thickness: float
+    youngs_modulus: float
+    poisson_ratio: float = 0.3
+
+    def __post_init__(self) -> None:
+        require_number("ElasticLiner.thickness", self.thickness, "m", above=0.0)
+        require_number("ElasticLiner.youngs_modulus", self.youngs_modulus, "Pa", above=0.0)
+        nu = require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0)
+        if nu > 0.49:
+            raise InputError(
+                f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does not give "
+                "way in columns, take a bush with a mesh."
+            )
+
+    @property
+    def compliance(self) -> float:
+        """Deflection per pressure K_nu t / E, m/Pa."""
+        nu = self.poisson_ratio
+        return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu) * self.thickness / self.youngs_modulus
+
+
+class LinerFilmSolver(FilmSolver):
+    """`FilmSolver` on an elastic liner; the caller writes the gaps of the undeformed surfaces, ``solve`` adds the deflection.
+
+    Parameters
+    ----------
+    grid, closure, squeeze
+        As for `FilmSolver`; the closure is `FullSommerfeld`, `Gumbel` or `SwiftStieber`.
+
+    Attributes
+    ----------
+    beta : float
+        Scaled compliance: deflection over clearance per scaled pressure.
+    delta_old : (n, m) array or None
+        Scaled deflection at the start of the step, set by the caller before ``solve``; None: steady.
+    """
+
+    def __init__(self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True) -> None:
+        super().__init__(grid, closure, squeeze=squeeze)
+        self.coarse = None
+        self.beta = 0.0
+        self.delta_old: np.ndarray | None = None
+        shape = grid.shape
+        self.rigid = np.ones((3, *shape))
+        self.residual = np.zeros(shape)
+        self.trial = np.zeros(shape)
+        self.best = np.zeros(shape)
+        self.links = np.outer(grid.link_x, np.ones(shape[1]))
+        if closure.clips:
+            self.kind = CLIPPED
+        else:
+            self.kind = COMPLEMENTARY if np.isfinite(closure.cavity_pressure) else FULL
+
+    @property
+    def deflection(self) -> np.ndarray:
+        """Scaled deflection of the last solution (n, m)."""
+        return self.beta * self.system.pressure
+
+    @property
+    def gap_by_pressure(self) -> np.ndarray:
+        """dH/dP at the vertices (n, m) of the last solution."""
+        return np.where(self.grid.fixed | ~self.work.active, 0.0, self.beta)
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """Solve for the undeformed gaps now stored; on return ``H``, ``HF`` and ``H_t`` are the deformed ones.
+
+        Parameters as for `FilmSolver.solve`; ``mass_old`` is not used.
+        """
+        s, g, r = self.system, self.grid, self.rigid
+        self.vx, self.vz = vx, vz
+        s.cavity_pressure = cavity_pressure
+        r[0], r[1] = self.H, self.HF
+        if self.squeeze:
+            r[2] = self.H_t
+        else:
+            r[2] = 0.0
+        inverse = 0.0
+        delta_old = s.mass_old
+        if self.delta_old is not None and self.squeeze:
+            inverse = 1.0 / step if step > 0.0 else 1.0 / INSTANT
+            delta_old = self.delta_old
+        else:
+            delta_old = np.zeros(g.shape)
+        s.linear_pressure[g.fixed] = s.pressure[g.fixed]
+        P = s.linear_pressure
+        if not self.work.warm:
+            self._dry_guess(P)
+        ok, steps = self._newton(P, inverse, delta_old)
+        if not ok:
+            self._dry_guess(P)
+            ok, more = self._pseudo_transient(P, inverse, delta_old)
+            steps += more
+        self.work.warm = ok
+        if not ok:
+            return Status.NOT_CONVERGED, steps
+        self._finish(P, inverse, delta_old)
+        return Status.CONVERGED, steps
+
+    def _dry_guess(self, P: np.ndarray) -> None:
+        """Pressure that would keep a thin film open: half the gap's mean where the undeformed surfaces come closer than that."""
+        H0 = self.rigid[0]
+        film = 0.1
+        guess = np.maximum((film - H0) / self.beta, 0.0) if H0.min() < film else np.zeros(H0.shape)
+        free = ~self.grid.fixed
+        lowest = self.system.cavity_pressure if self.kind != FULL else 0.0
+        P[free] = np.maximum(guess, lowest)[free]
+
+    def _newton(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
+        g, w, s = self.grid, self.work, self.system
+        lower, upper = _lu_buffers(w)
+        ok, steps, w.count, w.width = solve_liner(
+            self.rigid, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
+            self.kind, self.beta, inverse, delta_old, w.active, w.order, w.number, lower, upper, w.inv_diag, w.unknowns,
+            self.residual, self.trial, P,
+        )  # fmt: skip
+        return ok, steps
+
+    def _pseudo_transient(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
+        """Implicit steps of the liner's own rate towards the target, from short to long; the last one is the target itself."""
+        rate = abs(self.vx) + abs(self.vz) + float(np.max(np.abs(self.rigid[2]))) + inverse + 1e-300
+        extra, total = 100.0 * rate, 0
+        start = P.copy()
+        for _ in range(MAX_PSEUDO_STEPS):
+            deflection = self.beta * (np.maximum(start, self.system.cavity_pressure) if self.kind != FULL else start)
+            blend = (inverse * delta_old + extra * deflection) / (inverse + extra)
+            ok, steps = self._newton(P, inverse + extra, blend)
+            total += steps
+            if ok:
+                start[:] = P
+                extra *= 0.3
+                if extra < 1e-3 * rate:
+                    ok, steps = self._newton(P, inverse, delta_old)
+                    total += steps
+                    if ok:
+                        return True, total
+                    P[:] = start
+            else:
+                P[:] = start
+                extra *= 8.0
+        return False, total
+
+    def _finish(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> None:
+        """Deformed gaps, clipped pressure and the coefficients that flows and balances are taken from."""
+        g, s, w = self.grid, self.system, self.work
+        if self.kind == CLIPPED:
+            np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
+            np.logical_and(~g.fixed, P >= s.cavity_pressure, out=w.active)
+        deform(self.rigid[0], self.rigid[1], s.pressure, self.beta, self.H, self.HF)
+        if self.squeeze and inverse > 0.0:
+            self.H_t += (self.beta * s.pressure - delta_old) * inverse
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        right_hand_side(s.fx, s.fz, s.b)
+        if self.squeeze:
+            s.b -= self.H_t * self.area
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``J^T lam = rhs`` with the last Newton matrix; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w = self.work
+        lower, upper = _lu_buffers(w)
+        solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
+        fields = np.zeros((rhs.shape[0], self.H.size))
+        fields[:, w.order[: w.count]] = rhs
+        return fields.reshape(rhs.shape[0], *self.grid.shape)
+
+
+@njit(cache=True)
+def deform(H0, HF0, P, beta, H_out, HF_out):
+    """Gaps on a liner that gives way by ``beta P``."""
+    n, m = H0.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            H_out[i, j] = H0[i, j] + beta * P[i, j]
+            HF_out[i, j] = HF0[i, j] + 0.5 * beta * (P[i, j] + P[nxt, j])
+
+
+@njit(cache=True)
+def liner_residual(
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r_out
+):  # fmt: skip
+    """Balance of every vertex (outflow - inflow + squeeze); returns (norm of what is violated, smallest gap).
+
+    A vertex at the cavity pressure violates only by r < 0 if the closure is complementary.
+    """
+    n, m = P.shape
+    smallest = 1e300
+    r_out[:] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        v = vx if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            pa = P[i, j]
+            pb = P[nxt, j]
+            da = pa if (kind != 1 or fixed[i, j] or pa > pc) else pc
+            db = pb if (kind != 1 or fixed[nxt, j] or pb > pc) else pc
+            h = rigid[1, i, j] + 0.5 * beta * (da + db)
+            smallest = min(smallest, h)
+            q = width_z[j] * (v * h - h * h * h * link_x[i] * (pb - pa))
+            r_out[i, j] += q
+            r_out[nxt, j] -= q
+            own = rigid[0, i, j] + beta * da
+            smallest = min(smallest, own)
+            rate = rigid[2, i, j] + (beta * da - delta_old[i, j]) * inverse_step
+            r_out[i, j] += rate * width_x[i] * width_z[j]
+            if j + 1 < m:
+                pb = P[i, j + 1]
+                db = pb if (kind != 1 or fixed[i, j + 1] or pb > pc) else pc
+                h = 0.5 * (own + rigid[0, i, j + 1] + beta * db)
+                q = width_x[i] * (vz * h - h * h * h * link_z[j] * (pb - pa))
+                r_out[i, j] += q
+                r_out[i, j + 1] -= q
+    total = 0.0
+    for i in range(n):
+        for j in range(m):
+            if not fixed[i, j]:
+                r = r_out[i, j]
+                if kind == 2 and P[i, j] <= pc:
+                    r = min(r, 0.0)
+                total += r * r
+    return np.sqrt(total), smallest
+
+
+@njit(cache=True)
+def _add_entry(lower, upper, row, col, value):
+    if col >= row:
+        upper[row, col - row] += value
+    else:
+        lower[col, row - col] += value
+
+
+@njit(cache=True)
+def _add_link(a, b, by_a, by_b, lower, upper):
+    """Flux a -> b with the derivatives by_a, by_b: out of a, into b."""
+    if a >= 0:
+        upper[a, 0] += by_a
+        if b >= 0:
+            _add_entry(lower, upper, a, b, by_b)
+    if b >= 0:
+        upper[b, 0] -= by_b
+        if a >= 0:
+            _add_entry(lower, upper, b, a, -by_a)
+
+
+@njit(cache=True)
+def assemble_liner(
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width, lower, upper
+):  # fmt: skip
+    """d(balance)/dP of the numbered vertices into the two bands."""
+    n, m = P.shape
+    for k in range(count):
+        for d in range(width + 1 + PAD):
+            lower[k, d] = 0.0
+            upper[k, d] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        v = vx if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            a = number[i, j]
+            pa = P[i, j]
+            soft_a = kind != 1 or pa > pc
+            da = pa if (soft_a or fixed[i, j]) else pc
+            ba = beta if soft_a else 0.0
+            b = number[nxt, j]
+            if a >= 0 or b >= 0:
+                pb = P[nxt, j]
+                soft_b = kind != 1 or pb > pc
+                db = pb if (soft_b or fixed[nxt, j]) else pc
+                h = rigid[1, i, j] + 0.5 * beta * (da + db)
+                k = h * h * h * link_x[i]
+                by_h = 0.5 * (v - 3.0 * h * h * link_x[i] * (pb - pa))
+                w = width_z[j]
+                _add_link(a, b, w * (by_h * ba + k), w * (by_h * (beta if soft_b else 0.0) - k), lower, upper)
+            if j + 1 < m:
+                b = number[i, j + 1]
+                if a >= 0 or b >= 0:
+                    pb = P[i, j + 1]
+                    soft_b = kind != 1 or pb > pc
+                    db = pb if (soft_b or fixed[i, j + 1]) else pc
+                    h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+                    k = h * h * h * link_z[j]
+                    by_h = 0.5 * (vz - 3.0 * h * h * link_z[j] * (pb - pa))
+                    w = width_x[i]
+                    _add_link(a, b, w * (by_h * ba + k), w * (by_h * (beta if soft_b else 0.0) - k), lower, upper)
+            if a >= 0:
+                upper[a, 0] += ba * inverse_step * width_x[i] * width_z[j]
+
+
+@njit(cache=True)
+def _select(P, r, fixed, pc, kind, active):
+    """Vertices that carry pressure or are about to; returns the number of changes."""
+    n, m = P.shape
+    changes = 0
+    for i in range(n):
+        for j in range(m):
+            new = not fixed[i, j] and (kind != 2 or P[i, j] > pc or r[i, j] <= 0.0)
+            if new != active[i, j]:
+                active[i, j] = new
+                changes += 1
+    return changes
+
+
+@njit(cache=True)
+def _longest_step(rigid, P, order, count, x, beta, trial):
+    """Share of the step x that uses up at most 80 % of any vertex's gap."""
+    m = P.shape[1]
+    share = 1.0
+    for k in range(count):
+        i = order[k] // m
+        j = order[k] - i * m
+        change = beta * x[k]
+        gap = rigid[0, i, j] + beta * P[i, j]
+        if change < -0.8 * gap and gap > 0.0:
+            share = min(share, -0.8 * gap / change)
+    return share
+
+
+@njit(cache=True)
+def solve_liner(
+    rigid, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step, delta_old,
+    active, order, number, lower, upper, inv_diag, x, r, trial, P,
+):  # fmt: skip
+    """Newton from P; returns (ok, steps, count, width) with the factor of the last matrix; ``active`` is the result's set."""
+    n, m = P.shape
+    if kind == 2:
+        for i in range(n):
+            for j in range(m):
+                if not fixed[i, j] and P[i, j] < pc:
+                    P[i, j] = pc
+    norm, smallest = liner_residual(
+        rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
+    )
+    if not smallest > 0.0:
+        return False, 0, 0, 1
+    _select(P, r, fixed, pc, kind, active)
+    count, width = 0, 1
+    for step in range(MAX_NEWTON_STEPS):
+        count, width = number_cells(active, links, order, number)
+        assemble_liner(
+            rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width,
+            lower, upper,
+        )  # fmt: skip
+        if not factor_lu(lower, upper, count, width, inv_diag):
+            return False, step + 1, count, width
+        for k in range(count):
+            x[k] = -r[order[k] // m, order[k] % m]
+        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+        largest = 0.0
+        peak = 0.0
+        for k in range(count):
+            largest = max(largest, abs(x[k]))
+            peak = max(peak, abs(P[order[k] // m, order[k] % m] - (pc if kind != 0 else 0.0)))
+        if not largest < 1e300:
+            return False, step + 1, count, width
+        share = 1.0
+        if kind != 1:
+            share = _longest_step(rigid, P, order, count, x, beta, trial)
+        old = norm
+        for _ in range(12):
+            trial[:] = P
+            for k in range(count):
+                i = order[k] // m
+                j = order[k] - i * m
+                p = P[i, j] + share * x[k]
+                trial[i, j] = pc if (kind == 2 and p < pc) else p
+            norm, smallest = liner_residual(
+                rigid, trial, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
+            )
+            if smallest > 0.0 and (norm < old or largest <= STEP_TOLERANCE * peak):
+                break
+            share *= 0.5
+        if not smallest > 0.0:
+            return False, step + 1, count, width
+        P[:] = trial
+        changes = _select(P, r, fixed, pc, kind, active)
+        if changes == 0 and share == 1.0 and largest <= STEP_TOLERANCE * peak:
+            return True, step + 1, count, width
+        if count == 0 and changes == 0:
+            return True, step + 1, count, width
+    return False, MAX_NEWTON_STEPS, count, width
