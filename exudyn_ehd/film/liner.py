@@ -6,12 +6,14 @@ gives way by
     delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
 
 the column (Winkler) model: right for layers thinner than the contact is wide, and without meaning for incompressible ones.
-With P the scaled film pressure the gap is ``H = H_rigid + beta P``, on links with the mean of both ends, and the balance of every
-control volume becomes nonlinear in P. It is solved by Newton's method with the exact matrix,
+With P the scaled film pressure the gap is ``H = H_rigid + beta P``, on links with the mean of both ends. Where the pressure falls
+steeply, as at the ends, the gap falls with it; the conductance of a link is therefore the mean of H^3 over the linear course of
+the deflection between its ends a and b,
 
-    d flux / dP_a = (v - 3 H^2 dP/ds) beta_a / 2 + H^3 / ds,
+    g = H (H^2 + d^2),    d = beta (P_b - P_a) / 2,
 
-on the vertices that carry pressure. `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity
+which is exact for a rigid gap that is constant along the link, and that of the plain film for beta = 0. The balance of every control
+volume is solved by Newton's method with the exact matrix on the vertices that carry pressure. `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity
 pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
 the liner answers to the clipped one. A step is shortened where it would use up more than 80 % of a gap, and halved while the
 residual does not fall. Should it not settle, the liner's own rate ``beta dP/dt`` carries the film through pseudo time to the
@@ -36,8 +38,9 @@ from numba import njit
 from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.direct import PAD, number_cells
 from exudyn_ehd.film.elrod import _lu_buffers
+from exudyn_ehd.film.flux import LinkFlux, conductances_from, couette_fluxes_from, plain_flux
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.reynolds import conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.film.reynolds import right_hand_side
 from exudyn_ehd.film.solver import INSTANT, Closure, FilmSolver
 from exudyn_ehd.status import InputError, Status, require_number
 
@@ -102,6 +105,9 @@ class LinerFilmSolver(FilmSolver):
     def __init__(self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None
+        coarse = grid.coarser()
+        self.coarse_liner = None if coarse is None else LinerFilmSolver(coarse, closure, squeeze=squeeze)
+        self.flux = LinkFlux(grid.shape)
         self.beta = 0.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -141,7 +147,6 @@ class LinerFilmSolver(FilmSolver):
         else:
             r[2] = 0.0
         inverse = 0.0
-        delta_old = s.mass_old
         if self.delta_old is not None and self.squeeze:
             inverse = 1.0 / step if step > 0.0 else 1.0 / INSTANT
             delta_old = self.delta_old
@@ -149,10 +154,14 @@ class LinerFilmSolver(FilmSolver):
             delta_old = np.zeros(g.shape)
         s.linear_pressure[g.fixed] = s.pressure[g.fixed]
         P = s.linear_pressure
+        if not self._ends_open():
+            self.work.warm = False
+            return Status.NO_FILM, 0
         if not self.work.warm:
-            self._dry_guess(P)
+            self._guess(P, inverse, delta_old, step)
         ok, steps = self._newton(P, inverse, delta_old)
         if not ok:
+            self.work.warm = False
             self._dry_guess(P)
             ok, more = self._pseudo_transient(P, inverse, delta_old)
             steps += more
@@ -161,6 +170,34 @@ class LinerFilmSolver(FilmSolver):
             return Status.NOT_CONVERGED, steps
         self._finish(P, inverse, delta_old)
         return Status.CONVERGED, steps
+
+    def _ends_open(self) -> bool:
+        """Whether the gap is open where the pressure is prescribed, which is beyond the liner's reach."""
+        P, H0, HF0 = self.system.linear_pressure, self.rigid[0], self.rigid[1]
+        ends = [0, -1]
+        return bool(np.all((H0 + self.beta * P)[self.grid.fixed] > 0.0) and np.all((HF0 + self.beta * P)[:, ends] > 0.0))
+
+    def _guess(self, P: np.ndarray, inverse: float, delta_old: np.ndarray, step: float) -> None:
+        """Start from the film of every second vertex, or from a dry guess."""
+        coarse = self.coarse_liner
+        if coarse is None:
+            self._dry_guess(P)
+            return
+        coarse.beta = self.beta
+        coarse.H[:], coarse.HF[:], coarse.H_t[:] = self.rigid[0, ::2, ::2], self.rigid[0, 1::2, ::2], self.rigid[2, ::2, ::2]
+        coarse.pressure[:] = P[::2, ::2]
+        coarse.delta_old = delta_old[::2, ::2] if inverse > 0.0 else None
+        coarse.forget()
+        if coarse.solve(self.vx, self.vz, self.system.cavity_pressure, None, step)[0] is not Status.CONVERGED:
+            self._dry_guess(P)
+            return
+        fine = np.repeat(coarse.system.linear_pressure, 2, axis=0)
+        fine[1::2] = 0.5 * (fine[::2] + np.roll(fine[::2], -1, axis=0))
+        free = ~self.grid.fixed
+        between = np.empty(self.grid.shape)
+        between[:, ::2] = fine
+        between[:, 1::2] = 0.5 * (fine[:, :-1] + fine[:, 1:])
+        P[free] = between[free]
 
     def _dry_guess(self, P: np.ndarray) -> None:
         """Pressure that would keep a thin film open: half the gap's mean where the undeformed surfaces come closer than that."""
@@ -176,7 +213,7 @@ class LinerFilmSolver(FilmSolver):
         lower, upper = _lu_buffers(w)
         ok, steps, w.count, w.width = solve_liner(
             self.rigid, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
-            self.kind, self.beta, inverse, delta_old, w.active, w.order, w.number, lower, upper, w.inv_diag, w.unknowns,
+            self.kind, self.beta, inverse, delta_old, not w.warm, w.active, w.order, w.number, lower, upper, w.inv_diag, w.unknowns,
             self.residual, self.trial, P,
         )  # fmt: skip
         return ok, steps
@@ -214,8 +251,12 @@ class LinerFilmSolver(FilmSolver):
         deform(self.rigid[0], self.rigid[1], s.pressure, self.beta, self.H, self.HF)
         if self.squeeze and inverse > 0.0:
             self.H_t += (self.beta * s.pressure - delta_old) * inverse
-        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        f = self.flux
+        assert f is not None
+        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
+        add_bending(s.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
+        conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             s.b -= self.H_t * self.area
@@ -242,6 +283,22 @@ def deform(H0, HF0, P, beta, H_out, HF_out):
 
 
 @njit(cache=True)
+def add_bending(P, beta, HF, gap_z, gx, gx_h, gz, gz_h):
+    """Add ``H d^2`` to the links' conductances and ``d^2`` to their derivatives, in place."""
+    n, m = P.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            d = 0.5 * beta * (P[nxt, j] - P[i, j])
+            gx[i, j] += HF[i, j] * d * d
+            gx_h[i, j] += d * d
+            if j + 1 < m:
+                d = 0.5 * beta * (P[i, j + 1] - P[i, j])
+                gz[i, j] += gap_z[i, j] * d * d
+                gz_h[i, j] += d * d
+
+
+@njit(cache=True)
 def liner_residual(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r_out
 ):  # fmt: skip
@@ -262,7 +319,8 @@ def liner_residual(
             db = pb if (kind != 1 or fixed[nxt, j] or pb > pc) else pc
             h = rigid[1, i, j] + 0.5 * beta * (da + db)
             smallest = min(smallest, h)
-            q = width_z[j] * (v * h - h * h * h * link_x[i] * (pb - pa))
+            d = 0.5 * beta * (db - da)
+            q = width_z[j] * (v * h - h * (h * h + d * d) * link_x[i] * (pb - pa))
             r_out[i, j] += q
             r_out[nxt, j] -= q
             own = rigid[0, i, j] + beta * da
@@ -273,7 +331,8 @@ def liner_residual(
                 pb = P[i, j + 1]
                 db = pb if (kind != 1 or fixed[i, j + 1] or pb > pc) else pc
                 h = 0.5 * (own + rigid[0, i, j + 1] + beta * db)
-                q = width_x[i] * (vz * h - h * h * h * link_z[j] * (pb - pa))
+                d = 0.5 * beta * (db - da)
+                q = width_x[i] * (vz * h - h * (h * h + d * d) * link_z[j] * (pb - pa))
                 r_out[i, j] += q
                 r_out[i, j + 1] -= q
     total = 0.0
@@ -333,10 +392,14 @@ def assemble_liner(
                 soft_b = kind != 1 or pb > pc
                 db = pb if (soft_b or fixed[nxt, j]) else pc
                 h = rigid[1, i, j] + 0.5 * beta * (da + db)
-                k = h * h * h * link_x[i]
-                by_h = 0.5 * (v - 3.0 * h * h * link_x[i] * (pb - pa))
+                d = 0.5 * beta * (db - da)
+                drop = link_x[i] * (pb - pa)
+                k = h * (h * h + d * d) * link_x[i]
+                by_h = 0.5 * (v - (3.0 * h * h + d * d) * drop)
+                by_d = h * d * drop
+                bb = beta if soft_b else 0.0
                 w = width_z[j]
-                _add_link(a, b, w * (by_h * ba + k), w * (by_h * (beta if soft_b else 0.0) - k), lower, upper)
+                _add_link(a, b, w * ((by_h + by_d) * ba + k), w * ((by_h - by_d) * bb - k), lower, upper)
             if j + 1 < m:
                 b = number[i, j + 1]
                 if a >= 0 or b >= 0:
@@ -344,10 +407,14 @@ def assemble_liner(
                     soft_b = kind != 1 or pb > pc
                     db = pb if (soft_b or fixed[i, j + 1]) else pc
                     h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
-                    k = h * h * h * link_z[j]
-                    by_h = 0.5 * (vz - 3.0 * h * h * link_z[j] * (pb - pa))
+                    d = 0.5 * beta * (db - da)
+                    drop = link_z[j] * (pb - pa)
+                    k = h * (h * h + d * d) * link_z[j]
+                    by_h = 0.5 * (vz - (3.0 * h * h + d * d) * drop)
+                    by_d = h * d * drop
+                    bb = beta if soft_b else 0.0
                     w = width_x[i]
-                    _add_link(a, b, w * (by_h * ba + k), w * (by_h * (beta if soft_b else 0.0) - k), lower, upper)
+                    _add_link(a, b, w * ((by_h + by_d) * ba + k), w * ((by_h - by_d) * bb - k), lower, upper)
             if a >= 0:
                 upper[a, 0] += ba * inverse_step * width_x[i] * width_z[j]
 
@@ -384,9 +451,9 @@ def _longest_step(rigid, P, order, count, x, beta, trial):
 @njit(cache=True)
 def solve_liner(
     rigid, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step, delta_old,
-    active, order, number, lower, upper, inv_diag, x, r, trial, P,
+    cold, active, order, number, lower, upper, inv_diag, x, r, trial, P,
 ):  # fmt: skip
-    """Newton from P; returns (ok, steps, count, width) with the factor of the last matrix; ``active`` is the result's set."""
+    """Newton from P, ``cold`` from all free vertices; returns (ok, steps, count, width) with the factor of the last matrix; ``active`` is the result's set."""
     n, m = P.shape
     if kind == 2:
         for i in range(n):
@@ -398,7 +465,11 @@ def solve_liner(
     )
     if not smallest > 0.0:
         return False, 0, 0, 1
-    _select(P, r, fixed, pc, kind, active)
+    if cold:
+        # Vertices leave all at once but join one row per step: start from all of them.
+        active[:] = np.logical_not(fixed)
+    else:
+        _select(P, r, fixed, pc, kind, active)
     count, width = 0, 1
     for step in range(MAX_NEWTON_STEPS):
         count, width = number_cells(active, links, order, number)
