@@ -41,14 +41,17 @@ from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import LinkFlux, conductances_from, couette_fluxes_from, plain_flux
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds import right_hand_side
-from exudyn_ehd.film.solver import INSTANT, Closure, FilmSolver
+from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.status import InputError, Status, require_number
 
-MAX_NEWTON_STEPS = 60
+# Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
+LINER_INSTANT = 1e-6
+MAX_NEWTON_STEPS = 80
 MAX_PSEUDO_STEPS = 80
 # A full step below this share of the peak pressure leaves an error of about its square: 1e-16 times the film's nonlinearity.
 STEP_TOLERANCE = 1e-8
 FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,7 +117,9 @@ class LinerFilmSolver(FilmSolver):
         self.rigid = np.ones((3, *shape))
         self.residual = np.zeros(shape)
         self.trial = np.zeros(shape)
-        self.best = np.zeros(shape)
+        self.derivatives = np.zeros((4, *shape))
+        self.inverse = 0.0
+        self.exact = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -148,10 +153,11 @@ class LinerFilmSolver(FilmSolver):
             r[2] = 0.0
         inverse = 0.0
         if self.delta_old is not None and self.squeeze:
-            inverse = 1.0 / step if step > 0.0 else 1.0 / INSTANT
+            inverse = 1.0 / step if step > 0.0 else 1.0 / LINER_INSTANT
             delta_old = self.delta_old
         else:
             delta_old = np.zeros(g.shape)
+        self.inverse = inverse
         s.linear_pressure[g.fixed] = s.pressure[g.fixed]
         P = s.linear_pressure
         if not self._ends_open():
@@ -211,10 +217,10 @@ class LinerFilmSolver(FilmSolver):
     def _newton(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
         g, w, s = self.grid, self.work, self.system
         lower, upper = _lu_buffers(w)
-        ok, steps, w.count, w.width = solve_liner(
+        ok, steps, self.exact, w.count, w.width = solve_liner(
             self.rigid, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
-            self.kind, self.beta, inverse, delta_old, not w.warm, w.active, w.order, w.number, lower, upper, w.inv_diag, w.unknowns,
-            self.residual, self.trial, P,
+            self.kind, self.beta, inverse, delta_old, not w.warm, w.active, w.order, w.number, self.derivatives, lower,
+            upper, w.inv_diag, w.unknowns, self.residual, self.trial, P,
         )  # fmt: skip
         return ok, steps
 
@@ -262,9 +268,17 @@ class LinerFilmSolver(FilmSolver):
             s.b -= self.H_t * self.area
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``J^T lam = rhs`` with the last Newton matrix; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        w = self.work
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w, g, s = self.work, self.grid, self.system
         lower, upper = _lu_buffers(w)
+        if not self.exact:
+            active = ~g.fixed if self.kind == CLIPPED else w.active
+            factor_liner(
+                self.rigid, s.linear_pressure, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed,
+                s.cavity_pressure, self.kind, self.beta, self.inverse, active, w.order, w.number, self.derivatives, lower,
+                upper, w.inv_diag,
+            )  # fmt: skip
+            self.exact = True
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
         fields = np.zeros((rhs.shape[0], self.H.size))
         fields[:, w.order[: w.count]] = rhs
@@ -298,7 +312,7 @@ def add_bending(P, beta, HF, gap_z, gx, gx_h, gz, gz_h):
                 gz_h[i, j] += d * d
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=_FAST)
 def liner_residual(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r_out
 ):  # fmt: skip
@@ -311,112 +325,127 @@ def liner_residual(
     r_out[:] = 0.0
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
-        v = vx if link_x[i] != 0.0 else 0.0
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
         for j in range(m):
             pa = P[i, j]
             pb = P[nxt, j]
-            da = pa if (kind != 1 or fixed[i, j] or pa > pc) else pc
-            db = pb if (kind != 1 or fixed[nxt, j] or pb > pc) else pc
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
             h = rigid[1, i, j] + 0.5 * beta * (da + db)
             smallest = min(smallest, h)
             d = 0.5 * beta * (db - da)
-            q = width_z[j] * (v * h - h * (h * h + d * d) * link_x[i] * (pb - pa))
-            r_out[i, j] += q
+            q = width_z[j] * (v * h - h * (h * h + d * d) * lx * (pb - pa))
             r_out[nxt, j] -= q
             own = rigid[0, i, j] + beta * da
             smallest = min(smallest, own)
             rate = rigid[2, i, j] + (beta * da - delta_old[i, j]) * inverse_step
-            r_out[i, j] += rate * width_x[i] * width_z[j]
-            if j + 1 < m:
-                pb = P[i, j + 1]
-                db = pb if (kind != 1 or fixed[i, j + 1] or pb > pc) else pc
-                h = 0.5 * (own + rigid[0, i, j + 1] + beta * db)
-                d = 0.5 * beta * (db - da)
-                q = width_x[i] * (vz * h - h * (h * h + d * d) * link_z[j] * (pb - pa))
-                r_out[i, j] += q
-                r_out[i, j + 1] -= q
+            r_out[i, j] += q + rate * width_x[i] * width_z[j]
+        for j in range(m - 1):
+            pa = P[i, j]
+            pb = P[i, j + 1]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
+            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+            d = 0.5 * beta * (db - da)
+            q = width_x[i] * (vz * h - h * (h * h + d * d) * link_z[j] * (pb - pa))
+            r_out[i, j] += q
+            r_out[i, j + 1] -= q
     total = 0.0
     for i in range(n):
         for j in range(m):
             if not fixed[i, j]:
                 r = r_out[i, j]
-                if kind == 2 and P[i, j] <= pc:
+                if kind == COMPLEMENTARY and P[i, j] <= pc:
                     r = min(r, 0.0)
                 total += r * r
     return np.sqrt(total), smallest
 
 
-@njit(cache=True)
-def _add_entry(lower, upper, row, col, value):
-    if col >= row:
-        upper[row, col - row] += value
-    else:
-        lower[col, row - col] += value
-
-
-@njit(cache=True)
-def _add_link(a, b, by_a, by_b, lower, upper):
-    """Flux a -> b with the derivatives by_a, by_b: out of a, into b."""
-    if a >= 0:
-        upper[a, 0] += by_a
-        if b >= 0:
-            _add_entry(lower, upper, a, b, by_b)
-    if b >= 0:
-        upper[b, 0] -= by_b
-        if a >= 0:
-            _add_entry(lower, upper, b, a, -by_a)
+@njit(cache=True, fastmath=_FAST)
+def flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, out):
+    """Derivatives of the links' fluxes a -> b: out (4, n, m) = theta by P_a, theta by P_b, z by P_a, z by P_b."""
+    n, m = P.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
+        for j in range(m):
+            pa = P[i, j]
+            pb = P[nxt, j]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
+            h = rigid[1, i, j] + 0.5 * beta * (da + db)
+            d = 0.5 * beta * (db - da)
+            drop = lx * (pb - pa)
+            k = width_z[j] * h * (h * h + d * d) * lx
+            by_h = 0.5 * width_z[j] * beta * (v - (3.0 * h * h + d * d) * drop)
+            by_d = width_z[j] * beta * h * d * drop
+            out[0, i, j] = k + (by_h + by_d if da == pa else 0.0)
+            out[1, i, j] = -k + (by_h - by_d if db == pb else 0.0)
+        for j in range(m - 1):
+            pa = P[i, j]
+            pb = P[i, j + 1]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
+            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+            d = 0.5 * beta * (db - da)
+            drop = link_z[j] * (pb - pa)
+            k = width_x[i] * h * (h * h + d * d) * link_z[j]
+            by_h = 0.5 * width_x[i] * beta * (vz - (3.0 * h * h + d * d) * drop)
+            by_d = width_x[i] * beta * h * d * drop
+            out[2, i, j] = k + (by_h + by_d if da == pa else 0.0)
+            out[3, i, j] = -k + (by_h - by_d if db == pb else 0.0)
 
 
 @njit(cache=True)
 def assemble_liner(
-    rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width, lower, upper
+    derivatives, P, pc, kind, storage, width_x, width_z, number, order, count, width, lower, upper
 ):  # fmt: skip
-    """d(balance)/dP of the numbered vertices into the two bands."""
+    """d(balance)/dP of the numbered vertices into the two bands; ``storage`` = beta / dt."""
     n, m = P.shape
-    for k in range(count):
+    for r in range(count):
         for d in range(width + 1 + PAD):
-            lower[k, d] = 0.0
-            upper[k, d] = 0.0
-    for i in range(n):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
-        v = vx if link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            a = number[i, j]
-            pa = P[i, j]
-            soft_a = kind != 1 or pa > pc
-            da = pa if (soft_a or fixed[i, j]) else pc
-            ba = beta if soft_a else 0.0
-            b = number[nxt, j]
-            if a >= 0 or b >= 0:
-                pb = P[nxt, j]
-                soft_b = kind != 1 or pb > pc
-                db = pb if (soft_b or fixed[nxt, j]) else pc
-                h = rigid[1, i, j] + 0.5 * beta * (da + db)
-                d = 0.5 * beta * (db - da)
-                drop = link_x[i] * (pb - pa)
-                k = h * (h * h + d * d) * link_x[i]
-                by_h = 0.5 * (v - (3.0 * h * h + d * d) * drop)
-                by_d = h * d * drop
-                bb = beta if soft_b else 0.0
-                w = width_z[j]
-                _add_link(a, b, w * ((by_h + by_d) * ba + k), w * ((by_h - by_d) * bb - k), lower, upper)
-            if j + 1 < m:
-                b = number[i, j + 1]
-                if a >= 0 or b >= 0:
-                    pb = P[i, j + 1]
-                    soft_b = kind != 1 or pb > pc
-                    db = pb if (soft_b or fixed[i, j + 1]) else pc
-                    h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
-                    d = 0.5 * beta * (db - da)
-                    drop = link_z[j] * (pb - pa)
-                    k = h * (h * h + d * d) * link_z[j]
-                    by_h = 0.5 * (vz - (3.0 * h * h + d * d) * drop)
-                    by_d = h * d * drop
-                    bb = beta if soft_b else 0.0
-                    w = width_x[i]
-                    _add_link(a, b, w * ((by_h + by_d) * ba + k), w * ((by_h - by_d) * bb - k), lower, upper)
-            if a >= 0:
-                upper[a, 0] += ba * inverse_step * width_x[i] * width_z[j]
+        diagonal = derivatives[0, i, j] - derivatives[1, prv, j]
+        if storage != 0.0 and (kind != CLIPPED or P[i, j] > pc):
+            diagonal += storage * width_x[i] * width_z[j]
+        if j > 0:
+            diagonal -= derivatives[3, i, j - 1]
+        if j + 1 < m:
+            diagonal += derivatives[2, i, j]
+            b = number[i, j + 1]
+            if b >= 0:
+                upper[r, b - r] += derivatives[3, i, j]
+                lower[r, b - r] -= derivatives[2, i, j]
+        upper[r, 0] += diagonal
+        b = number[nxt, j]
+        if b > r:
+            upper[r, b - r] += derivatives[1, i, j]
+            lower[r, b - r] -= derivatives[0, i, j]
+        elif b >= 0:
+            lower[b, r - b] += derivatives[1, i, j]
+            upper[b, r - b] -= derivatives[0, i, j]
+
+
+@njit(cache=True)
+def factor_liner(
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
+    active, order, number, derivatives, lower, upper, inv_diag,
+):  # fmt: skip
+    """Newton's matrix at P, factored; returns (ok, count, width)."""
+    count, width = number_cells(active, links, order, number)
+    flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, derivatives)
+    assemble_liner(
+        derivatives, P, pc, kind, beta * inverse_step, width_x, width_z, number, order, count, width, lower, upper
+    )
+    return factor_lu(lower, upper, count, width, inv_diag), count, width
 
 
 @njit(cache=True)
@@ -426,7 +455,7 @@ def _select(P, r, fixed, pc, kind, active):
     changes = 0
     for i in range(n):
         for j in range(m):
-            new = not fixed[i, j] and (kind != 2 or P[i, j] > pc or r[i, j] <= 0.0)
+            new = not fixed[i, j] and (kind != COMPLEMENTARY or P[i, j] > pc or r[i, j] <= 0.0)
             if new != active[i, j]:
                 active[i, j] = new
                 changes += 1
@@ -434,7 +463,7 @@ def _select(P, r, fixed, pc, kind, active):
 
 
 @njit(cache=True)
-def _longest_step(rigid, P, order, count, x, beta, trial):
+def _longest_step(H0, P, order, count, x, beta):
     """Share of the step x that uses up at most 80 % of any vertex's gap."""
     m = P.shape[1]
     share = 1.0
@@ -442,20 +471,36 @@ def _longest_step(rigid, P, order, count, x, beta, trial):
         i = order[k] // m
         j = order[k] - i * m
         change = beta * x[k]
-        gap = rigid[0, i, j] + beta * P[i, j]
+        gap = H0[i, j] + beta * P[i, j]
         if change < -0.8 * gap and gap > 0.0:
             share = min(share, -0.8 * gap / change)
     return share
 
 
 @njit(cache=True)
+def _take(P, x, share, order, count, pc, kind, trial_out):
+    """Trial pressures P + share x, cut off at the cavity pressure."""
+    m = P.shape[1]
+    trial_out[:] = P
+    for k in range(count):
+        i = order[k] // m
+        j = order[k] - i * m
+        p = P[i, j] + share * x[k]
+        trial_out[i, j] = pc if (kind == COMPLEMENTARY and p < pc) else p
+
+
+@njit(cache=True)
 def solve_liner(
     rigid, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step, delta_old,
-    cold, active, order, number, lower, upper, inv_diag, x, r, trial, P,
+    cold, active, order, number, derivatives, lower, upper, inv_diag, x, r, trial, P,
 ):  # fmt: skip
-    """Newton from P, ``cold`` from all free vertices; returns (ok, steps, count, width) with the factor of the last matrix; ``active`` is the result's set."""
+    """Newton from P, ``cold`` from all free vertices; returns (ok, steps, exact, count, width).
+
+    A factor serves further steps as long as the set stays and each step is five times smaller than the last; ``exact`` says that
+    the last factor belongs to the solution.
+    """
     n, m = P.shape
-    if kind == 2:
+    if kind == COMPLEMENTARY:
         for i in range(n):
             for j in range(m):
                 if not fixed[i, j] and P[i, j] < pc:
@@ -464,54 +509,60 @@ def solve_liner(
         rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
     )
     if not smallest > 0.0:
-        return False, 0, 0, 1
+        return False, 0, False, 0, 1
     if cold:
         # Vertices leave all at once but join one row per step: start from all of them.
         active[:] = np.logical_not(fixed)
     else:
         _select(P, r, fixed, pc, kind, active)
+    reference = pc if kind != FULL else 0.0
     count, width = 0, 1
+    last = 0.0
+    factored = False
     for step in range(MAX_NEWTON_STEPS):
-        count, width = number_cells(active, links, order, number)
-        assemble_liner(
-            rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width,
-            lower, upper,
-        )  # fmt: skip
-        if not factor_lu(lower, upper, count, width, inv_diag):
-            return False, step + 1, count, width
-        for k in range(count):
-            x[k] = -r[order[k] // m, order[k] % m]
-        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
-        largest = 0.0
+        fresh = not factored
+        if fresh:
+            ok, count, width = factor_liner(
+                rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
+                active, order, number, derivatives, lower, upper, inv_diag,
+            )  # fmt: skip
+            if not ok:
+                return False, step + 1, False, count, width
+            if count == 0:
+                return True, step + 1, True, count, width
         peak = 0.0
         for k in range(count):
+            i = order[k] // m
+            j = order[k] - i * m
+            x[k] = -r[i, j]
+            peak = max(peak, abs(P[i, j] - reference))
+        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+        largest = 0.0
+        for k in range(count):
             largest = max(largest, abs(x[k]))
-            peak = max(peak, abs(P[order[k] // m, order[k] % m] - (pc if kind != 0 else 0.0)))
         if not largest < 1e300:
-            return False, step + 1, count, width
-        share = 1.0
-        if kind != 1:
-            share = _longest_step(rigid, P, order, count, x, beta, trial)
-        old = norm
+            return False, step + 1, False, count, width
+        if not fresh and largest > 0.2 * last:
+            factored = False
+            continue
+        share = _longest_step(rigid[0], P, order, count, x, beta) if kind != CLIPPED else 1.0
+        before = norm
         for _ in range(12):
-            trial[:] = P
-            for k in range(count):
-                i = order[k] // m
-                j = order[k] - i * m
-                p = P[i, j] + share * x[k]
-                trial[i, j] = pc if (kind == 2 and p < pc) else p
+            _take(P, x, share, order, count, pc, kind, trial)
             norm, smallest = liner_residual(
                 rigid, trial, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
             )
-            if smallest > 0.0 and (norm < old or largest <= STEP_TOLERANCE * peak):
+            if smallest > 0.0 and (norm < before or largest <= STEP_TOLERANCE * peak):
                 break
             share *= 0.5
         if not smallest > 0.0:
-            return False, step + 1, count, width
+            return False, step + 1, False, count, width
         P[:] = trial
         changes = _select(P, r, fixed, pc, kind, active)
-        if changes == 0 and share == 1.0 and largest <= STEP_TOLERANCE * peak:
-            return True, step + 1, count, width
-        if count == 0 and changes == 0:
-            return True, step + 1, count, width
-    return False, MAX_NEWTON_STEPS, count, width
+        factored = changes == 0 and share == 1.0
+        if factored:
+            rest = largest * largest if fresh else largest * largest / last * peak
+            if rest <= (STEP_TOLERANCE * peak) ** 2:
+                return True, step + 1, fresh, count, width
+        last = largest
+    return False, MAX_NEWTON_STEPS, False, count, width
