@@ -22,8 +22,8 @@ import numpy as np
 from numba import njit
 from scipy.special import ndtr
 
-# Beyond this many sigma the average gap equals the nominal one to rounding.
-SMOOTH_BEYOND = 9.0
+# Beyond this many sigma the average gap equals the nominal one (to 2e-13 sigma).
+SMOOTH_BEYOND = 7.0
 _INVERSE_ROOT_2 = 1.0 / math.sqrt(2.0)
 _INVERSE_ROOT_2_PI = 1.0 / math.sqrt(2.0 * math.pi)
 

@@ -185,7 +185,9 @@ class ProfileTerm:
         m.
     """
 
-    def __init__(self, profiles: tuple[Profile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float) -> None:
+    def __init__(
+        self, profiles: tuple[Profile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
+    ) -> None:
         self.values = np.sum([p.depth(theta, z, length) for p in profiles], axis=0) / clearance
         if not self.values.min() > -1.0:
             raise InputError(
@@ -212,5 +214,7 @@ def _finite(where: str, values: object) -> np.ndarray:
 def _increasing(where: str, values: object, at_least: int, unit: str) -> np.ndarray:
     array = _finite(where, values)
     if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) > 0.0):
-        raise InputError(f"{where} must be at least {at_least} increasing numbers in {unit}, got {values!r}; sort the points.")
+        raise InputError(
+            f"{where} must be at least {at_least} increasing numbers in {unit}, got {values!r}; sort the points."
+        )
     return array

@@ -33,7 +33,13 @@ class ArchardWear:
     acceleration: float = 1.0
 
     def __post_init__(self) -> None:
-        require_number("ArchardWear.wear_rate", self.wear_rate, "m2/N", at_least=0.0, hint="1e-16 is a start for a lubricated bush.")
+        require_number(
+            "ArchardWear.wear_rate",
+            self.wear_rate,
+            "m2/N",
+            at_least=0.0,
+            hint="1e-16 is a start for a lubricated bush.",
+        )
         require_number("ArchardWear.acceleration", self.acceleration, above=0.0)
 
 

@@ -7,15 +7,18 @@ two more for their slopes.
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.solver import Sensitivities
+    from exudyn_ehd.joint.effects import Contact
     from exudyn_ehd.joint.model import BearingModel, ContactFields
 
 SIZE = 10
@@ -35,7 +38,7 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
     out[2] = -c0 * (6.0 * R * ds_z + model.axial_speed * dc)
     out[5] = -c0 * R**2 * (6.0 * ds_theta + model.omega * dc)
-    if model.limiter_fields is not None:
+    if model.limiter_fields is not None and model.end_pressures.any():
         out[2, :4] += 6.0 * c0 * R * _end_gradient(model)
     out[:, :4] *= model.pose_scale
     out[:, 4:8] *= model.pose_scale
@@ -44,8 +47,7 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     out[2, 9] -= c0 * model.couette
     out[5, 8] -= c0 * R**2 * model.couette
     if model.contact_fields is not None:
-        _add_contact_normal(model, model.contact_fields, out)
-        _add_contact_friction(model, model.contact_fields, out)
+        _add_contacts(model, model.contact_fields, out)
     return out
 
 
@@ -133,28 +135,44 @@ def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
     f = model.limiter_fields
     assert f is not None
-    sens.face *= f.face_slope
-    sens.cell *= f.slope
-    if sens.rate is not None:
-        sens.cell += sens.rate * f.curvature
-        sens.rate *= f.slope
+    rate = sens.cell if sens.rate is None else sens.rate
+    chain_limiter(f.slope, f.curvature, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
 
 
-def _add_contact_normal(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
-    """Add the gradient of the contact pressures' wrench to ``out`` (6, 10), SI units."""
+def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
+    """Add the gradient of the contacts' wrench, pressures and friction, to ``out`` (6, 10), SI units."""
     g, R = model.grid, model.grid.reference_length
-    slope = np.sum(f.slope, axis=0) * g.weight * R**2
-    c_field, s_field = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-    grads = np.zeros((4, 4))
-    contract_pose(np.array([c_field, s_field, c_field * g.z, s_field * g.z]), model.cos_x, model.sin_x, g.z, grads)
-    gc, gs, gzc, gzs = grads * model.pose_scale
-    sc, ss, szc, szs = f.integrals.sum(axis=0) * R**2
-    x, y, bx, by = model.motion[:4]
+    if not f.integrals[:, 4].any():
+        return
+    grads = np.empty((5, 4))
+    total = np.zeros((5, 4))
+    for k, contact in enumerate(model.effects.contacts):
+        contact_gradients(f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, grads)
+        total += grads
+        if contact.friction_coefficient > 0.0:
+            _add_friction(model, contact, grads, f.integrals[k], out)
+    gc, gs, gzc, gzs, _ = total * (R**2 * model.pose_scale)
+    sc, ss, szc, szs, _ = f.integrals.sum(axis=0) * R**2
+    x, y, bx, by = model.motion[:4].tolist()
     out[0, :4] -= gc
     out[1, :4] -= gs
     out[3, :4] += R * gzs
     out[4, :4] -= R * gzc
     out[5, :4] += y * gc - x * gs + R * (by * gzc - bx * gzs) + (-ss, sc, -R * szs, R * szc)
+
+
+def _add_friction(
+    model: BearingModel, contact: Contact, grads: np.ndarray, integrals: np.ndarray, out: np.ndarray
+) -> None:
+    """Add the gradient of one contact's friction; ``grads`` (5, 4) of its ``integrals`` (5,), Pa, to the scaled pose."""
+    R = model.grid.reference_length
+    scale = contact.friction_coefficient * R**2
+    g_theta, g_z, dg = model.slip(contact)
+    theta, axial = _friction_rows(R)
+    out[:, :4] += (g_theta * theta + g_z * axial) @ (grads * (scale * model.pose_scale))
+    along, across = scale * (theta @ integrals), scale * (axial @ integrals)
+    out[:, 8] += along * dg[0, 0] + across * dg[1, 0]
+    out[:, 9] += along * dg[0, 1] + across * dg[1, 1]
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:
@@ -170,31 +188,10 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
     return out[0]
 
 
-def _add_contact_friction(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
-    """Add the gradient of the contacts' friction wrench to ``out`` (6, 10), SI units."""
-    g, R = model.grid, model.grid.reference_length
-    for k, contact in enumerate(model.effects.contacts):
-        if contact.friction_coefficient == 0.0:
-            continue
-        g_theta, g_z, dg = model.slip(contact)
-        slope = f.slope[k] * g.weight * contact.friction_coefficient * R**2
-        c_field, s_field = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-        grads = np.zeros((5, 4))
-        fields = np.array([c_field, s_field, c_field * g.z, s_field * g.z, slope])
-        contract_pose(fields, model.cos_x, model.sin_x, g.z, grads)
-        values = np.array([*f.integrals[k], f.normal[k]]) * contact.friction_coefficient * R**2
-        theta = _friction_row(R, 1.0, 0.0)
-        axial = _friction_row(R, 0.0, 1.0)
-        out[:, :4] += (g_theta * theta + g_z * axial) @ grads * model.pose_scale
-        out[:, 8] += (dg[0, 0] * theta + dg[1, 0] * axial) @ values
-        out[:, 9] += (dg[0, 1] * theta + dg[1, 1] * axial) @ values
-
-
-def _friction_row(R: float, theta: float, axial: float) -> np.ndarray:
-    """Map (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for a slip direction."""
-    out = np.zeros((6, 5))
-    out[0, 1], out[1, 0], out[2, 4] = theta, -theta, -axial
-    out[3, 2], out[3, 1] = R * theta, -R * axial
-    out[4, 3], out[4, 0] = R * theta, R * axial
-    out[5, 4] = -R * theta
-    return out
+@functools.cache
+def _friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
+    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
+    theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
+    theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
+    axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R
+    return theta, axial

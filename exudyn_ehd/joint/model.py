@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.contact_loads import contact_integrals, couette_integral_ratio
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
@@ -118,8 +119,7 @@ class ContactFields:
     def __init__(self, shape: tuple[int, int], contacts: tuple[Contact, ...]) -> None:
         self.P = [np.zeros(shape) for _ in contacts]
         self.slope = [np.zeros(shape) for _ in contacts]
-        self.integrals = np.zeros((len(contacts), 4))
-        self.normal = np.zeros(len(contacts))
+        self.integrals = np.zeros((len(contacts), 5))
 
 
 class LimiterFields:
@@ -297,7 +297,7 @@ class BearingModel:
         """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
-        if self.extra is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
+        if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
             self.gap_fields = fields
             self.extra = np.sum(fields, axis=0)
             nxt = np.roll(self.extra, -1, axis=0)
@@ -341,13 +341,20 @@ class BearingModel:
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
         if status is Status.CONVERGED and self.liner_solver is not None:
-            self.minimum_gap = self.bearing.radial_clearance * min(float(self.solver.H.min()), float(self.solver.HF.min()))
+            self.minimum_gap = self.bearing.radial_clearance * min(
+                float(self.solver.H.min()), float(self.solver.HF.min())
+            )
         return status
 
     def _apply_rheology(self) -> Status:
         """Pressure from the transformed one; viscosity ratio at the vertices with its derivatives to q, H and vx."""
         s, shape = self.solver, self.grid.shape
         self.P = s.pressure
+        if self.effects.pressure_law is None and self.effects.shear_factor is not None:
+            if self.ratio is None or self.ratio_h is None or self.ratio_v is None:
+                self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+            self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
+            return Status.CONVERGED
         ratio, ratio_q = np.ones(shape), np.zeros(shape)
         ratio_h, ratio_v = np.zeros(shape), np.zeros(shape)
         self.P_q = None
@@ -378,9 +385,10 @@ class BearingModel:
     def _couette(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
         if self.ratio is not None:
+            if not s.closure.conserves_mass:
+                return couette_integral_ratio(s.H, g.weight, self.ratio, s.work.active, g.fixed, s.closure.cavity_shear)
             density = g.weight * self.ratio / s.H
-            unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-            return float(np.sum(density * self.share())), float(np.sum(density[unbroken]))
+            return float(np.sum(density * s.fill)), float(np.sum(density[s.fill >= 1.0]))
         if s.closure.conserves_mass:
             return couette_integral_fill(s.H, g.weight, s.fill)
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
@@ -394,7 +402,9 @@ class BearingModel:
             self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
         if self.liner_solver is not None:
             # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
-            self.extra_z += math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
+            self.extra_z += (
+                math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
+            )
         if self.contact_fields is not None:
             self._contact_loads(self.contact_fields)
         self.couette, self.couette_unbroken = self._couette()
@@ -416,32 +426,37 @@ class BearingModel:
         )
         self.contact_wrench = np.zeros(6)
         if self.contact_fields is not None:
-            self._add_contact_friction(self.contact_fields)
-            wrench += self.contact_wrench + self._contact_normal_wrench(self.contact_fields)
+            self._add_contacts(self.contact_fields, wrench)
         return wrench
+
+    def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
+        """Add the contacts' pressures and friction to ``wrench`` (6,); their friction stays in ``contact_wrench``."""
+        if not f.integrals[:, 4].any():
+            return
+        self._add_contact_friction(f)
+        wrench += self.contact_wrench + self._contact_normal_wrench(f)
 
     def _contact_normal_wrench(self, f: ContactFields) -> np.ndarray:
         """Wrench (6,) of the contact pressures: they do no work on the journal's spin, so that their torque about O is e x F."""
         R = self.grid.reference_length
-        sc, ss, szc, szs = f.integrals.sum(axis=0) * R**2
-        x, y, bx, by = self.motion[:4]
+        sc, ss, szc, szs, _ = (f.integrals.sum(axis=0) * R**2).tolist()
+        x, y, bx, by = self.motion[:4].tolist()
         return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
 
     def _contact_loads(self, f: ContactFields) -> None:
         """Integrals of the contact pressures, in Pa."""
         g = self.grid
         for k in range(len(f.P)):
-            pressure_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
-            f.normal[k] = float(np.sum(f.P[k] * g.weight))
+            contact_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
 
     def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
         R = self.grid.reference_length
-        v = np.array([R * self.omega, self.axial_speed])
-        size = math.sqrt(float(v @ v) + contact.transition_speed**2)
-        slope = (np.eye(2) - np.outer(v, v) / size**2) / size
-        slope[:, 0] *= R
-        return v[0] / size, v[1] / size, slope
+        v, w = R * self.omega, self.axial_speed
+        size = math.sqrt(v * v + w * w + contact.transition_speed**2)
+        a, b = v / size, w / size
+        slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
+        return a, b, slope
 
     def _add_contact_friction(self, f: ContactFields) -> None:
         """Coulomb friction of the contacts at the bore's points: force against the slip, with its lever arms."""
@@ -450,8 +465,7 @@ class BearingModel:
             if contact.friction_coefficient == 0.0:
                 continue
             g_theta, g_z, _ = self.slip(contact)
-            c, s, zc, zs = f.integrals[k] * contact.friction_coefficient * R**2
-            n = f.normal[k] * contact.friction_coefficient * R**2
+            c, s, zc, zs, n = (f.integrals[k] * (contact.friction_coefficient * R**2)).tolist()
             self.contact_wrench += (
                 g_theta * s,
                 -g_theta * c,
@@ -498,7 +512,7 @@ class BearingModel:
         friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
         v, f = self.motion, self.wrench
         power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + f[2] * self.axial_speed
-        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
+        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
         out |= {
             "peak_pressure": peak_of(self.P)[0] * self.pressure_scale,
             "friction_torque": friction,
@@ -510,10 +524,12 @@ class BearingModel:
             "leakage_upper": flow_scale * upper,
             "contact_load": math.hypot(load[0], load[1]),
             "contact_torque": self._contact_torque(),
-            "contact_power_loss": -(self._contact_torque() * self.omega + float(self.contact_wrench[2]) * self.axial_speed),
-            "peak_contact_pressure": max((float(p.max()) for p in self.contact_fields.P), default=0.0)
-            if self.contact_fields is not None
-            else 0.0,
+            "contact_power_loss": 0.0
+            - self._contact_torque() * self.omega
+            - float(self.contact_wrench[2]) * self.axial_speed,
+            "peak_contact_pressure": 0.0
+            if self.contact_fields is None
+            else max(float(p.max()) for p in self.contact_fields.P),
         }
         return out
 

@@ -135,6 +135,9 @@ class SteadyResult:
         Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
     power_loss, leakage, contact_load : float
         W, m3/s out of both ends, N.
+    contact_torque, contact_power_loss, peak_contact_pressure : float
+        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the loss it
+        makes (W, part of ``power_loss``); Pa.
     sommerfeld_number, attitude_angle : float
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
@@ -157,6 +160,9 @@ class SteadyResult:
     power_loss: float
     leakage: float
     contact_load: float
+    contact_torque: float
+    contact_power_loss: float
+    peak_contact_pressure: float
     sommerfeld_number: float
     attitude_angle: float
     status: Status
@@ -250,6 +256,9 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
+        contact_torque=q["contact_torque"],
+        contact_power_loss=q["contact_power_loss"],
+        peak_contact_pressure=q["peak_contact_pressure"],
         sommerfeld_number=force / reference if reference > 0.0 else math.nan,
         attitude_angle=attitude,
         status=model.status,
@@ -387,7 +396,7 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
 
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.effects.limiter is not None:
+    if model.effects.contacts:
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

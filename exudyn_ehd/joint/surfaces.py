@@ -44,7 +44,12 @@ def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffec
     if bearing.profiles or bearing.wear is not None:
         film = bearing.film
         grid = bearing_grid(
-            bearing.journal_radius, bearing.length, film.n_theta, film.n_z, stretch=film.stretch, start_angle=start_angle
+            bearing.journal_radius,
+            bearing.length,
+            film.n_theta,
+            film.n_z,
+            stretch=film.stretch,
+            start_angle=start_angle,
         )
         if bearing.profiles:
             gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
