@@ -1,9 +1,10 @@
 """Surfaces that are not circular cylinders: what their shape adds to the gap.
 
 A profile is a depth d(theta, z) in m that adds to the gap of the circular cylinders: ``h = c - e . n + d``; d > 0 opens the gap, theta
-counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round bore, or a journal
-or bore whose radius varies along z. (An out-of-round journal carries its shape around with it and is not described here.)
-Several profiles add up.
+counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round bore, or a bore or
+journal whose radius varies along z. (An out-of-round journal carries its shape around with it and is not described here.)
+Several profiles add up. The pressure on their slopes acts on the bore; where a crown is on the journal instead, film, radial force
+and moments are the same and the axial force differs by the pressure on that slope, a share depth / length of the load.
 """
 
 from __future__ import annotations

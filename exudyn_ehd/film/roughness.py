@@ -13,7 +13,7 @@ open film is ``mu U E[1 / local gap]``, the Couette friction factor of the secon
 their cut-off at sigma / 100. Their factors phi_fs and phi_fp, which distribute shear between two surfaces of different roughness,
 are left out: the Poiseuille shear stays ``-+ h_T/2 dp/dx``, so that the forces on journal, film and bore balance.
 
-The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / sigma)``: the pressure flow as phi = phi_x h^3 /
+The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as phi = phi_x h^3 /
 h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as ``h_T E[1 / local gap]``. Below the smallest H that the fits are
 meant for (0.5 to 1) their logarithms run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
 """
@@ -45,7 +45,9 @@ PATTERNS = {
 SHEAR_CUTOFF = 0.01
 FLOW_BLEND = 0.5
 SHEAR_BLEND = 0.15
-TABLE_STEPS = 1024
+TABLE_STEPS = 2048
+# The gap, in sigma, at the middle of the tables: half of the knots lie above, where factors fall off slowly.
+TABLE_MIDDLE = 8.0
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -142,10 +144,10 @@ def _table(y: np.ndarray, values: np.ndarray) -> np.ndarray:
 
 @functools.cache
 def flow_tables(pattern: float, residual: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Tables (k, 4) of phi, psi and the friction factor over y = 1 / (1 + h_T / sigma) in [0, 1]."""
+    """Tables (k, 4) of phi, psi and the friction factor over y = 1 / (1 + h_T / (8 sigma)) in [0, 1]."""
     y = np.linspace(0.0, 1.0, TABLE_STEPS + 1)
     y_safe = np.clip(y, 1e-6, 1.0 - 1e-9)
-    t = (1.0 - y_safe) / y_safe
+    t = TABLE_MIDDLE * (1.0 - y_safe) / y_safe
     x = nominal_gap(t, residual)
     order = np.argsort(t)
     ts, xs = t[order], x[order]
@@ -218,12 +220,13 @@ class RoughShear:
 
 @njit(cache=True, fastmath=_FAST)
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
-    """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / sigma); in place."""
+    """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)); in place."""
     n, m = gap.shape
     steps = table.shape[0]
+    scale = inverse_sigma / TABLE_MIDDLE
     for i in range(n):
         for j in range(m):
-            y = 1.0 / (1.0 + gap[i, j] * inverse_sigma)
+            y = 1.0 / (1.0 + gap[i, j] * scale)
             u = y * steps
             k = min(int(u), steps - 1)
             u -= k
@@ -231,6 +234,6 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
             c2 = table[k, 2]
             c3 = table[k, 3]
             f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
-            f_h = share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * inverse_sigma)
+            f_h = share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
             value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
             value[i, j] *= f

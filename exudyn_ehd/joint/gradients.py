@@ -29,9 +29,9 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     ds, dc, extra = _integral_gradients(model)
     x, y, bx, by = model.pose
     sc, ss, szc, szs = model.integrals
-    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] + extra[0]
+    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] - extra[0]
     ds_theta[:4] += (ss, -sc, szs, -szc)
-    ds_z = -(bx * ds[0] + by * ds[1]) + extra[1]
+    ds_z = -(bx * ds[0] + by * ds[1]) - extra[1]
     ds_z[2:4] -= (sc, ss)
     R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
     out = np.empty((6, SIZE))

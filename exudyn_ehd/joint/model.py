@@ -412,16 +412,17 @@ class BearingModel:
         sc, ss, szc, szs = self.integrals
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
+        # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope.
         R, fs = g.reference_length, self.force_scale
         ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
         wrench = np.array(
             [
                 -fs * sc,
                 -fs * ss,
-                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - ends)),
+                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - 2.0 * self.extra_z - ends)),
                 fs * R * szs,
                 -fs * R * szc,
-                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * self.s_theta),
+                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * (self.s_theta - 2.0 * self.extra_theta)),
             ]
         )
         self.contact_wrench = np.zeros(6)
