@@ -1,4 +1,4 @@
-"""Integrals of contact pressures over the bearing and their gradients; chain rule through a gap limiter.
+"""Integrals of contact pressures and of shear between rough surfaces, with gradients; chain rule through a gap limiter.
 
 Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z (m,); basis e = (cos, sin, z cos, z sin, 1).
 """
@@ -98,3 +98,17 @@ def couette_integral_ratio(H, weight, ratio, active, fixed, cavity_share):
             else:
                 whole += s
     return unbroken + cavity_share * whole, unbroken
+
+
+@njit(cache=True, fastmath=_FAST)
+def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, cavity_share, out):
+    """dC/dH of `couette_integral_ratio` -> out (n, m); returns dC/dv."""
+    n, m = H.shape
+    speed = 0.0
+    for i in range(n):
+        for j in range(m):
+            share = 1.0 if (active[i, j] or fixed[i, j]) else cavity_share
+            density = share * weight[i, j] / H[i, j]
+            out[i, j] = density * (ratio_h[i, j] - ratio[i, j] / H[i, j])
+            speed += density * ratio_v[i, j]
+    return speed

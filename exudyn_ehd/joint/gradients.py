@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients
+from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 
@@ -117,6 +117,13 @@ def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
     s, g = model.solver, model.grid
     gradient = np.empty((1, *g.shape))
     if model.ratio is not None and model.ratio_h is not None and model.ratio_v is not None:
+        if not s.closure.conserves_mass:
+            dc[8] += couette_gradient_ratio(
+                s.H, g.weight, model.ratio, model.ratio_h, model.ratio_v, s.work.active, g.fixed, s.closure.cavity_shear,
+                gradient[0],
+            )  # fmt: skip
+            _contract_couette(model, gradient, dc)
+            return
         density = g.weight * model.share() / s.H
         gradient[0] = density * (model.ratio_h - model.ratio / s.H)
         dc[8] += float(np.sum(density * model.ratio_v))
@@ -124,10 +131,15 @@ def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
         gradient[0] = -g.weight * s.fill / s.H**2
     else:
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+    _contract_couette(model, gradient, dc)
+
+
+def _contract_couette(model: BearingModel, gradient: np.ndarray, dc: np.ndarray) -> None:
+    """Add dC/dH (1, n, m) to the gradient of C to the scaled pose."""
     if model.limiter_fields is not None:
         gradient[0] *= model.limiter_fields.slope
     out = np.zeros((1, 4))
-    contract_pose(gradient, model.cos_x, model.sin_x, g.z, out)
+    contract_pose(gradient, model.cos_x, model.sin_x, model.grid.z, out)
     dc[:4] += out[0]
 
 

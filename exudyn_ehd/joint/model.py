@@ -419,7 +419,8 @@ class BearingModel:
             [
                 -fs * sc,
                 -fs * ss,
-                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - 2.0 * self.extra_z - ends)),
+                -self.shear_scale
+                * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - 2.0 * self.extra_z - ends)),
                 fs * R * szs,
                 -fs * R * szc,
                 -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * (self.s_theta - 2.0 * self.extra_theta)),

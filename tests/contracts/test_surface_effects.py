@@ -15,7 +15,9 @@ ROUGHNESS = ehd.PatirCheng(composite_roughness=SIGMA, pattern=1 / 3, journal_sha
 PROFILE = (
     ehd.OutOfRound(order=3, amplitude=2e-6, phase=0.3),
     ehd.Crown(drop=2e-6),
-    ehd.ProfileTable(angles=np.arange(6) * 1.0, positions=[-0.01, 0.0, 0.01], depths=1e-6 * np.cos(np.arange(18.0).reshape(6, 3))),
+    ehd.ProfileTable(
+        angles=np.arange(6) * 1.0, positions=[-0.01, 0.0, 0.01], depths=1e-6 * np.cos(np.arange(18.0).reshape(6, 3))
+    ),
 )
 LINER = ehd.ElasticLiner(thickness=0.002, youngs_modulus=3e9)
 EFFECTS = {
@@ -46,7 +48,18 @@ def motion(eps, angle=0.7, speed=SPEED, tilt=0.02, rate=0.1):
     """Tilted, squeezing, sliding motion; tilt as share of the clearance at the ends."""
     e, b = eps * C, tilt * 2 * C / L
     return np.array(
-        [e * math.cos(angle), e * math.sin(angle), b, -0.5 * b, rate * C * 100, -2 * rate * C * 100, b * 20, b * 50, speed, 0.3]
+        [
+            e * math.cos(angle),
+            e * math.sin(angle),
+            b,
+            -0.5 * b,
+            rate * C * 100,
+            -2 * rate * C * 100,
+            b * 20,
+            b * 50,
+            speed,
+            0.3,
+        ]
     )
 
 
@@ -60,7 +73,9 @@ def worst_tangent_error(model, at, history, step):
     for k in range(10):
         d = np.zeros(10)
         d[k] = 1e-6 * SCALE[k]
-        difference[:, k] = (model.evaluate(at + d, history, step).wrench - model.evaluate(at - d, history, step).wrench) / 2e-6
+        difference[:, k] = (
+            model.evaluate(at + d, history, step).wrench - model.evaluate(at - d, history, step).wrench
+        ) / 2e-6
     return float((np.abs(tangent - difference) / np.abs(difference).max(axis=1, keepdims=True)).max())
 
 
@@ -143,7 +158,10 @@ def test_vanishing_amplitude_recovers_the_plain_film(effect, amplitudes, rate):
     """First order in the amplitude; order 1.5 by 1 + 0.87 H^-1.5 for surfaces with ridges along the motion. 0.06 for the next order."""
     at = motion(0.7)
     plain = build_model(bearing()).evaluate(at).wrench
-    errors = [np.linalg.norm(build_model(bearing(**vanishing(effect, a))).evaluate(at).wrench[:2] - plain[:2]) for a in amplitudes]
+    errors = [
+        np.linalg.norm(build_model(bearing(**vanishing(effect, a))).evaluate(at).wrench[:2] - plain[:2])
+        for a in amplitudes
+    ]
     rates = np.log2(np.array(errors[:-1]) / errors[1:])
     np.testing.assert_allclose(rates, rate, atol=0.06)
 

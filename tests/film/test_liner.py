@@ -11,12 +11,17 @@ from exudyn_ehd.film.solver import FilmSolver
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()]
-KINDS = {"FullSommerfeld": liner_newton.FULL, "Gumbel": liner_newton.CLIPPED, "SwiftStieber": liner_newton.COMPLEMENTARY}
+KINDS = {
+    "FullSommerfeld": liner_newton.FULL,
+    "Gumbel": liner_newton.CLIPPED,
+    "SwiftStieber": liner_newton.COMPLEMENTARY,
+}
 every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
 
 
 def gaps(eps, angle=0.3, rate=0.0):
     """Gap at vertices and links and the gap's rate of a parallel journal."""
+
     def row(x):
         return np.outer(1.0 - eps * np.cos(x - angle), np.ones(GRID.z.size))
 

@@ -100,7 +100,8 @@ def test_friction_factor_is_the_mean_inverse_gap():
     H = np.array([-1.0, 0.0, 0.3, 1.0, 2.0, 3.0, 5.0, 12.0, 40.0])
     t = average_gap_ratio(H, 0.02)
     exact = [
-        quad(lambda s, h=h: norm.pdf(s - h) / s, SHEAR_CUTOFF, max(h, 0) + 12, points=[max(h, 0.05)], limit=400)[0] for h in H
+        quad(lambda s, h=h: norm.pdf(s - h) / s, SHEAR_CUTOFF, max(h, 0) + 12, points=[max(h, 0.05)], limit=400)[0]
+        for h in H
     ]
     np.testing.assert_allclose(mean_inverse_gap(H), exact, rtol=1e-5)
     gap = (t * shear.sigma)[None]
@@ -124,7 +125,9 @@ def test_lay_decides_the_direction_of_easy_flow():
     assert 1 + 3 / H**2 > along > 1.0 > isotropic > across > 0.0
 
 
-@pytest.mark.parametrize(("option", "value"), [("pattern", 2.0), ("composite_roughness", -1e-6), ("journal_share", 1.5)])
+@pytest.mark.parametrize(
+    ("option", "value"), [("pattern", 2.0), ("composite_roughness", -1e-6), ("journal_share", 1.5)]
+)
 def test_refused_values(option, value):
     with pytest.raises(ehd.InputError, match=rf"PatirCheng\.{option}"):
         ehd.PatirCheng(**({"composite_roughness": 1e-6} | {option: value}))

@@ -7,7 +7,9 @@ import pytest
 
 import exudyn_ehd as ehd
 
-ASPERITY = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1e11, friction_coefficient=0.1, transition_speed=1e-4)
+ASPERITY = ehd.GreenwoodTripp(
+    composite_roughness=0.4e-6, composite_modulus=1e11, friction_coefficient=0.1, transition_speed=1e-4
+)
 
 
 def bearing(**options):
@@ -71,7 +73,12 @@ def test_wide_range_of_loads(load):
 
 @pytest.mark.parametrize(
     ("options", "message"),
-    [({"load": 0.0}, "load"), ({"speeds": [0.0, 1.0]}, "speeds"), ({"speeds": []}, "speeds"), ({"speeds": [np.nan]}, "speeds")],
+    [
+        ({"load": 0.0}, "load"),
+        ({"speeds": [0.0, 1.0]}, "speeds"),
+        ({"speeds": []}, "speeds"),
+        ({"speeds": [np.nan]}, "speeds"),
+    ],
 )
 def test_refused_values(options, message):
     with pytest.raises(ehd.InputError, match=message):

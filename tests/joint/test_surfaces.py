@@ -67,7 +67,9 @@ def test_contact_wrench_point_by_point(speed, tilt):
 def test_parts_of_contact_and_film_add_up():
     model = build_model(bearing(asperity=ASPERITY))
     frictionless = build_model(
-        bearing(asperity=ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=5e10, friction_coefficient=0.0))
+        bearing(
+            asperity=ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=5e10, friction_coefficient=0.0)
+        )
     )
     motion = at(0.97, 1.0)
     q, q0 = model.evaluate(motion).quantities(), frictionless.evaluate(motion).quantities()
@@ -200,7 +202,8 @@ def test_loss_of_a_lobed_film_is_that_of_viscous_flow():
     c, mu = C, 0.03
     shear = float(np.sum(mu * (R * SPEED) ** 2 / (s.H * c) * g.weight)) * R**2
     flow = (c**3 / (12 * mu)) * (
-        float(np.sum(s.system.kx * (np.roll(p, -1, axis=0) - p) ** 2)) + float(np.sum(s.system.kz[:, :-1] * np.diff(p, axis=1) ** 2))
+        float(np.sum(s.system.kx * (np.roll(p, -1, axis=0) - p) ** 2))
+        + float(np.sum(s.system.kz[:, :-1] * np.diff(p, axis=1) ** 2))
     )
     assert q["power_loss"] == pytest.approx(shear + flow, rel=1e-2)
 
@@ -222,13 +225,15 @@ def test_liner_history_relaxes():
 
 def test_liner_mass_balance():
     """Oil pressed out by a step = leakage: the film's content changes by inflow only; to 1e-10 of the flow through the gap."""
-    model = build_model(bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9), cavitation=ehd.FullSommerfeld()))
+    model = build_model(
+        bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9), cavitation=ehd.FullSommerfeld())
+    )
     motion = at(0.5)
     history = model.initial_history(at(0.4))
     evaluation = model.evaluate(motion, history, 1e-3)
     s = model.solver
     inflow = float(s.inflow().sum())
-    stored = float(np.sum((s.H_t * s.area)))
+    stored = float(np.sum(s.H_t * s.area))
     assert inflow == pytest.approx(stored, abs=1e-10 * 0.5 * SPEED)
     assert evaluation.status is ehd.Status.CONVERGED
 
