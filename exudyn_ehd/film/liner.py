@@ -13,16 +13,16 @@ the deflection between its ends a and b,
     g = H (H^2 + d^2),    d = beta (P_b - P_a) / 2,
 
 which is exact for a rigid gap that is constant along the link, and that of the plain film for beta = 0. The balance of every control
-volume is solved by Newton's method with the exact matrix on the vertices that carry pressure. `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity
-pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
-the liner answers to the clipped one. A step is shortened where it would use up more than 80 % of a gap, and halved while the
+volume is solved by Newton's method with the exact matrix on the vertices that carry pressure.
+
+`SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
+the liner answers to the clipped one. `FullSommerfeld` has no film where tension pulls the liner shut. A step is shortened where it would use up more than 80 % of a gap, and halved while the
 residual does not fall. Should it not settle, the liner's own rate ``beta dP/dt`` carries the film through pseudo time to the
 steady state.
 
 In motion the liner's rate takes part in the squeeze, ``dH/dt = rigid rate + beta (P - P_old) / dt`` (backward Euler), with the deflection
 at the start of the step from the history: a soft liner feeds and drains the film as it gives way. Without a history (a prescribed
-position) the deflection is steady; damping coefficients of such a state are those of the film between surfaces at rest in
-their deformed shape.
+position) the deflection is steady; the damping of an equilibrium lets it follow slow motions.
 """
 
 from __future__ import annotations
@@ -51,7 +51,8 @@ from exudyn_ehd.status import InputError, Status, require_number
 
 # Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
 LINER_INSTANT = 1e-6
-MAX_PSEUDO_STEPS = 80
+MAX_PSEUDO_STEPS = 40
+LARGEST_PSEUDO_RATE = 1e5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -174,7 +175,8 @@ class LinerFilmSolver(FilmSolver):
             steps += more
         self.work.warm = ok
         if not ok:
-            return Status.NOT_CONVERGED, steps
+            # Without cavitation nothing keeps tension from pulling a soft liner shut.
+            return (Status.NO_FILM if self.kind == FULL else Status.NOT_CONVERGED), steps
         self._finish(P, inverse, delta_old)
         return Status.CONVERGED, steps
 
@@ -245,6 +247,8 @@ class LinerFilmSolver(FilmSolver):
             else:
                 P[:] = start
                 extra *= 8.0
+                if extra > LARGEST_PSEUDO_RATE * rate:
+                    return False, total
         return False, total
 
     def _finish(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> None:

@@ -17,6 +17,7 @@ from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
 
 if TYPE_CHECKING:
+    from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
     from exudyn_ehd.joint.effects import Contact
     from exudyn_ehd.joint.model import BearingModel, ContactFields
@@ -24,9 +25,13 @@ if TYPE_CHECKING:
 SIZE = 10
 
 
-def wrench_tangent(model: BearingModel) -> np.ndarray:
-    """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``."""
-    ds, dc, extra = _integral_gradients(model)
+def wrench_tangent(model: BearingModel, slow_motion: bool = False) -> np.ndarray:
+    """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``.
+
+    With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it follows a slow motion,
+    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
+    """
+    ds, dc, extra = _integral_gradients(model, slow_motion)
     x, y, bx, by = model.pose
     sc, ss, szc, szs = model.integrals
     ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] - extra[0]
@@ -51,7 +56,7 @@ def wrench_tangent(model: BearingModel) -> np.ndarray:
     return out
 
 
-def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _integral_gradients(model: BearingModel, slow_motion: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     s, g = model.solver, model.grid
     rows = _adjoint_rows(model)
@@ -65,6 +70,8 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
     contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
     if sens.rate is not None:
         contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
+    if slow_motion and sens.rate is not None and model.liner_solver is not None:
+        rates += _following_deflection(model, model.liner_solver, sens.rate)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
     at = 4
@@ -75,6 +82,17 @@ def _integral_gradients(model: BearingModel) -> tuple[np.ndarray, np.ndarray, np
     if model.extra_slope_x is not None:
         extra = gradient[at : at + 2]
     return gradient[:4], dc, extra
+
+
+def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate: np.ndarray) -> np.ndarray:
+    """Gradient (k, 4) to the scaled rates through the deflection's rate: a second adjoint solve, of ``by_rate`` (k, n, m) times beta."""
+    w, z = solver.work, model.grid.z
+    rows = (by_rate * solver.gap_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
+    sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
+    out = np.zeros((by_rate.shape[0], 4))
+    contract_pose(sens.cell, model.cos_x, model.sin_x, z, out)
+    contract_pose(sens.face, model.cos_f, model.sin_f, z, out)
+    return out
 
 
 def _shear_needs_adjoint(model: BearingModel) -> bool:

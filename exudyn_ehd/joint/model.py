@@ -477,11 +477,14 @@ class BearingModel:
                 -g_theta * R * n,
             )
 
-    def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) of the last evaluation; nan without a film."""
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d wrench / d motion (6, 10) of the last evaluation; nan without a film.
+
+        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes nothing.
+        """
         if self.status is not Status.CONVERGED:
             return np.full((6, MOTION_SIZE), np.nan)
-        return wrench_tangent(self)
+        return wrench_tangent(self, slow_motion)
 
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation.

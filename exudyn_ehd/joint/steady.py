@@ -352,6 +352,7 @@ def equilibrium(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
             f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
+    tangent = model.tangent(slow_motion=True)
     K, C = -tangent[:2, :2], -tangent[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = _result(model, motion, "equilibrium")

@@ -231,3 +231,21 @@ def test_friction_takes_power(effect, closure):
         q = model.evaluate(at).quantities()
         assert q["power_loss"] > 0.0
         assert q["contact_power_loss"] >= 0.0
+
+
+@pytest.mark.parametrize("modulus", [1e9, 1e10, 1e12])
+@pytest.mark.parametrize("closure", ["gumbel", "swift"])
+def test_random_states_on_a_liner(closure, modulus):
+    """Transient steps from the steady film nearby: eccentricity to 0.99, tilt, squeeze up to the journal's own speed, reversed spin."""
+    rng = np.random.default_rng(23)
+    bush = ehd.ElasticLiner(thickness=0.002, youngs_modulus=modulus)
+    model = build_model(bearing(cavitation=CLOSURES[closure], n_theta=40, n_z=6, bush=bush))
+    for _ in range(60):
+        reach, share = 0.99 * rng.random() ** 0.3, rng.choice([0.0, rng.random()])
+        at = motion(reach * (1 - share), rng.uniform(0, 6.3), SPEED * rng.choice([-1, 0.1, 1, 5]), 0.9 * reach * share,
+                    rng.choice([0.0, 0.1, 1.0]))  # fmt: skip
+        history = model.initial_history(0.95 * at)
+        evaluation = model.evaluate(at, history, rng.choice([1e-5, 1e-4, 1e-3]))
+        assert evaluation.status is ehd.Status.CONVERGED, at
+        assert np.isfinite(evaluation.wrench).all() and np.isfinite(evaluation.tangent()).all()
+        assert evaluation.quantities()["minimum_gap"] > 0.0

@@ -239,6 +239,32 @@ def test_liner_mass_balance():
 
 
 @pytest.mark.parametrize(
+    "cavitation", [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()], ids=lambda c: type(c).__name__
+)
+def test_damping_on_a_liner_follows_slow_motions(cavitation):
+    """Force of a slowly moving journal minus the steady one, by a long step of the transient film, against the damping columns.
+
+    A step of 10 s at 1 nm/s moves by 5e-4 c; relaxation within 1 ms leaves 1e-4. The film alone, without the liner's rate, would
+    miss more than a tenth.
+    """
+    model = build_model(bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9), cavitation=cavitation))
+    steady, step = at(0.8, 0.3), 10.0
+    model.evaluate(steady)
+    damping, film_alone = model.tangent(slow_motion=True)[:, 4:8], model.tangent()[:, 4:8]
+    for k, v in ((0, 1e-9), (1, 1e-9), (2, 1e-7), (3, 1e-7)):
+        force = []
+        for sign in (1, -1):
+            before, now = steady.copy(), steady.copy()
+            before[k] -= sign * v * step
+            now[4 + k] = sign * v
+            force.append(model.evaluate(now, model.initial_history(before), step).wrench)
+        difference = (force[0] - force[1]) / (2 * v)
+        size = np.abs(damping[:5, k]).max()
+        np.testing.assert_allclose(difference[:5], damping[:5, k], atol=5e-3 * size)
+        assert np.abs(film_alone[:5, k] - damping[:5, k]).max() > 0.05 * size
+
+
+@pytest.mark.parametrize(
     ("options", "message"),
     [
         ({"wear": ehd.ArchardWear(wear_rate=1e-15)}, "needs a contact pressure"),
