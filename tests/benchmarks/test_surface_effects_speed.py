@@ -21,11 +21,11 @@ ASPERITY = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=2e10
 ROUGHNESS = ehd.PatirCheng(composite_roughness=0.4e-6)
 CASES = {
     "off": ({}, 1.1),
-    "roughness": ({"roughness": ROUGHNESS}, 1.5),
-    "asperity": ({"asperity": ASPERITY}, 1.6),
-    "roughness and asperity": ({"roughness": ROUGHNESS, "asperity": ASPERITY}, 1.8),
+    "roughness": ({"roughness": ROUGHNESS}, 1.4),
+    "asperity": ({"asperity": ASPERITY}, 1.5),
+    "roughness and asperity": ({"roughness": ROUGHNESS, "asperity": ASPERITY}, 1.6),
     "profile": ({"profile": ehd.Crown(drop=1e-6)}, 1.5),
-    "wear": ({"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}, 2.0),
+    "wear": ({"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}, 1.8),
     "liner": ({"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)}, 2.8),
 }
 
