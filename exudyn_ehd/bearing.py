@@ -6,6 +6,7 @@ import math
 import warnings
 from dataclasses import dataclass, fields
 
+from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.choice import Film, check_film
 from exudyn_ehd.film.classic import ClassicSOR
@@ -13,10 +14,14 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
+from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -70,6 +75,16 @@ class JournalBearing:
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
+    bush : ElasticLiner or None
+        What gives way under the film's pressure; None: a rigid bore.
+    asperity : GreenwoodTripp or None
+        Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
+    roughness : PatirCheng or None
+        Flow factors of rough surfaces.
+    profile : Profile, tuple of Profile or None
+        What the surfaces' shape adds to the gap: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
+    wear : ArchardWear or None
+        Wear of the bore by the asperity contact.
 
     Raises
     ------
@@ -89,6 +104,11 @@ class JournalBearing:
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
+    bush: ElasticLiner | None = None
+    asperity: GreenwoodTripp | None = None
+    roughness: PatirCheng | None = None
+    profile: Profile | tuple[Profile, ...] | None = None
+    wear: ArchardWear | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -105,6 +125,12 @@ class JournalBearing:
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
+        _require_type("bush", self.bush, (ElasticLiner, type(None)))
+        _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
+        _require_type("roughness", self.roughness, (PatirCheng, type(None)))
+        _require_type("wear", self.wear, (ArchardWear, type(None)))
+        for profile in self.profiles:
+            _require_type("profile", profile, PROFILE_TYPES)
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
@@ -174,6 +200,13 @@ class JournalBearing:
                 "and in metres.",
                 stacklevel=4,
             )
+
+    @property
+    def profiles(self) -> tuple[Profile, ...]:
+        """The profiles as a tuple; empty for circular cylinders."""
+        if self.profile is None:
+            return ()
+        return self.profile if isinstance(self.profile, tuple) else (self.profile,)
 
     @property
     def clearance_ratio(self) -> float:
