@@ -39,7 +39,7 @@ class BoundPressureLaw(Protocol):
         """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
 
 
-LARGEST_COEFFICIENT = 1e-6
+LARGEST_COEFFICIENT = 1e-4
 
 
 def _check_coefficient(where: str, value: float) -> None:
