@@ -21,21 +21,27 @@ import importlib
 from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
+from exudyn_ehd.film.asperity import GreenwoodTripp, composite_modulus
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.oils import oil
+from exudyn_ehd.film.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
+from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.film.shear import CarreauShear
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, WaltherTemperature
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
+from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
+from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
 __version__ = "0.1.0"
@@ -80,7 +86,9 @@ def __getattr__(name: str) -> Any:
 
 __all__ = [
     "ANCFBush",
+    "ArchardWear",
     "AxialGroove",
+    "AxialProfile",
     "BarusPressure",
     "BushMesh",
     "CarreauShear",
@@ -90,8 +98,11 @@ __all__ = [
     "ConfigureSolver",
     "CreateFlexibleBush",
     "CreateLubricatedJoint",
+    "Crown",
     "DeadPressure",
     "EHDError",
+    "EdgeRelief",
+    "ElasticLiner",
     "ElrodAdams",
     "EquilibriumResult",
     "FactorReuse",
@@ -105,6 +116,7 @@ __all__ = [
     "Free",
     "FreeOuter",
     "FullSommerfeld",
+    "GreenwoodTripp",
     "Gumbel",
     "Held",
     "Hole",
@@ -120,8 +132,11 @@ __all__ = [
     "LumpedThermal",
     "MaximumGap",
     "ModalBush",
+    "OutOfRound",
+    "PatirCheng",
     "Periodic",
     "Pocket",
+    "ProfileTable",
     "Quantity",
     "Rayleigh",
     "RegularisedWall",
@@ -132,12 +147,14 @@ __all__ = [
     "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "StribeckResult",
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
     "VogelTemperature",
     "WaltherTemperature",
     "bearing_grid",
+    "composite_modulus",
     "equilibrium",
     "mesh_from_arrays",
     "mesh_from_fem",
@@ -145,4 +162,5 @@ __all__ = [
     "slider_grid",
     "solve_film",
     "steady",
+    "stribeck",
 ]

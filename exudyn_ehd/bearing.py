@@ -7,6 +7,7 @@ import warnings
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
+from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.choice import Film, check_film
 from exudyn_ehd.film.classic import ClassicSOR
@@ -14,10 +15,14 @@ from exudyn_ehd.film.contact import RegularisedWall
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
+from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 if TYPE_CHECKING:
@@ -75,8 +80,16 @@ class JournalBearing:
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
-    bush : ModalBush, ANCFBush or None
-        Flexible bush, whose outer surface moves with the housing; None: a rigid bore.
+    bush : ElasticLiner, ModalBush, ANCFBush or None
+        What gives way under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
+    asperity : GreenwoodTripp or None
+        Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
+    roughness : PatirCheng or None
+        Flow factors of rough surfaces.
+    profile : Profile, tuple of Profile or None
+        What the surfaces' shape adds to the gap: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
+    wear : ArchardWear or None
+        Wear of the bore by the asperity contact.
 
     Raises
     ------
@@ -96,7 +109,11 @@ class JournalBearing:
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
-    bush: ModalBush | ANCFBush | None = None
+    bush: ElasticLiner | ModalBush | ANCFBush | None = None
+    asperity: GreenwoodTripp | None = None
+    roughness: PatirCheng | None = None
+    profile: Profile | tuple[Profile, ...] | None = None
+    wear: ArchardWear | None = None
 
     def __post_init__(self) -> None:
         require_number(
@@ -113,6 +130,11 @@ class JournalBearing:
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
+        _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
+        _require_type("roughness", self.roughness, (PatirCheng, type(None)))
+        _require_type("wear", self.wear, (ArchardWear, type(None)))
+        for profile in self.profiles:
+            _require_type("profile", profile, PROFILE_TYPES)
         require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
@@ -123,7 +145,7 @@ class JournalBearing:
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
-        if self.bush is not None:
+        if self.bush is not None and not isinstance(self.bush, ElasticLiner):
             _check_bush(self)
 
     def _check_plain(self) -> None:
@@ -186,6 +208,13 @@ class JournalBearing:
             )
 
     @property
+    def profiles(self) -> tuple[Profile, ...]:
+        """The profiles as a tuple; empty for circular cylinders."""
+        if self.profile is None:
+            return ()
+        return self.profile if isinstance(self.profile, tuple) else (self.profile,)
+
+    @property
     def clearance_ratio(self) -> float:
         """psi = c/R."""
         return self.radial_clearance / self.journal_radius
@@ -211,12 +240,12 @@ def _check_bush(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.mesh import HollowCylinder
     from exudyn_ehd.solid.reduce import ModalBush
 
-    _require_type("bush", bearing.bush, (ModalBush, ANCFBush, type(None)))
+    _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, type(None)))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
             f"JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got {type(bearing.film).__name__}(...)."
         )
-    mesh = bearing.bush.mesh if bearing.bush is not None else None
+    mesh = bearing.bush.mesh if isinstance(bearing.bush, ModalBush | ANCFBush) else None
     if not isinstance(mesh, HollowCylinder):
         return
     radius = bearing.journal_radius + bearing.radial_clearance

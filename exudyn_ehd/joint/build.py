@@ -5,30 +5,42 @@ from __future__ import annotations
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.joint.effects import ShearFactor, ShearProduct
 from exudyn_ehd.joint.impedance import ImpedanceModel
 from exudyn_ehd.joint.model import BearingModel, Effects
 from exudyn_ehd.joint.rheology import collect_rheology
+from exudyn_ehd.joint.surfaces import liner_of, surface_effects
 from exudyn_ehd.joint.warmup import compile_kernels
 from exudyn_ehd.status import InputError
 
 
-def collect_effects(bearing: JournalBearing) -> Effects:
-    """The effects that a bearing names, in scaled form."""
+def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effects:
+    """The effects that a bearing names, in scaled form, on the grid that starts at ``start_angle``."""
     wall = None if bearing.contact is None else WallContact(bearing.contact, bearing.radial_clearance)
     rheology = collect_rheology(bearing)
+    surfaces = surface_effects(bearing, start_angle)
     return Effects(
-        limiter=wall,
-        contacts=() if wall is None else (wall,),
-        flux=rheology.flux,
+        limiter=wall if wall is not None else surfaces.limiter,
+        gap_terms=surfaces.gap_terms,
+        wear=surfaces.wear,
+        liner=liner_of(bearing),
+        contacts=(() if wall is None else (wall,)) + surfaces.contacts,
+        flux=surfaces.flux + rheology.flux,
         pressure_law=rheology.pressure_law,
-        shear_factor=rheology.shear_factor,
+        shear_factor=_one_shear_factor(rheology.shear_factor, surfaces.shear_factor),
         thermal=rheology.thermal,
     )
 
 
+def _one_shear_factor(first: ShearFactor | None, second: ShearFactor | None) -> ShearFactor | None:
+    if first is not None and second is not None:
+        return ShearProduct(first, second)
+    return second if first is None else first
+
+
 def _model(bearing: JournalBearing, start_angle: float) -> BearingModel:
-    effects = collect_effects(bearing)
-    if bearing.bush is None:
+    effects = collect_effects(bearing, start_angle)
+    if bearing.bush is None or effects.liner is not None:
         return BearingModel(bearing, start_angle=start_angle, effects=effects)
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.joint.bush import elastic_model

@@ -16,7 +16,18 @@ from exudyn_ehd.film.flux import FluxEffect
 if TYPE_CHECKING:
     from exudyn_ehd.joint.model import BearingModel
 
-__all__ = ["Contact", "FluxEffect", "GapLimiter", "GapTerm", "History", "PressureLaw", "ShearFactor", "ThermalEffect"]
+__all__ = [
+    "Contact",
+    "FluxEffect",
+    "GapLimiter",
+    "GapTerm",
+    "History",
+    "PressureLaw",
+    "ShearFactor",
+    "ShearProduct",
+    "ThermalEffect",
+    "Wear",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,11 +42,14 @@ class History:
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
         Film temperature, K.
+    deflection : (n, m) array or None
+        Scaled deflection of an elastic liner.
     """
 
     mass: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
+    deflection: np.ndarray | None = None
 
 
 class GapTerm(Protocol):
@@ -65,6 +79,16 @@ class Contact(Protocol):
     @property
     def transition_speed(self) -> float:
         """Sliding speed over which Coulomb friction is regularised, m/s."""
+
+
+class Wear(Protocol):
+    """A depth that the contact pressure adds to the gap, step by accepted step."""
+
+    def depth(self, wear: np.ndarray | None) -> np.ndarray:
+        """Scaled depth (n, m) of a history; zero for None."""
+
+    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Scaled depth (n, m) after a step (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
 
 
 class PressureLaw(Protocol):
@@ -114,3 +138,23 @@ class ThermalEffect(Protocol):
 
     def quantities(self) -> dict[str, float]:
         """``film_temperature`` and ``peak_temperature`` of the film that was evaluated last, K."""
+
+
+class ShearProduct:
+    """Two shear factors that act together: their product, with the product rule for the derivatives."""
+
+    def __init__(self, first: ShearFactor, second: ShearFactor) -> None:
+        self.first, self.second = first, second
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """Product of both factors with its derivatives with respect to H and vx."""
+        other, other_h, other_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
+        self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
+        self.second.factor(H, vx, other, other_h, other_v)
+        ratio_h_out *= other
+        ratio_h_out += ratio_out * other_h
+        ratio_v_out *= other
+        ratio_v_out += ratio_out * other_v
+        ratio_out *= other

@@ -131,7 +131,7 @@ class ElasticBearingModel(BearingModel):
         """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0."""
         return settle(self, motion, history)
 
-    def tangent(self) -> np.ndarray:
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of the last evaluation; nan without a film."""
         if self.status is not Status.CONVERGED:
             k = self.bore.size

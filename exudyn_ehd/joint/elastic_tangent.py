@@ -14,9 +14,8 @@ import numpy as np
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
-    couette_field,
     field_gradient,
-    friction_row,
+    friction_rows,
     shear_needs_adjoint,
     wrench_tangent,
 )
@@ -40,7 +39,7 @@ def elastic_tangent(model: ElasticBearingModel) -> np.ndarray:
     by_q = bore.contract(sens.cell) / c
     by_rate = np.zeros_like(by_q) if sens.rate is None else bore.contract(sens.rate) / c
     out = np.empty((6 + k, SIZE + 2 * k))
-    out[:6, :SIZE] = wrench_tangent(model, gradient[:count])
+    out[:6, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
     out[:6, SIZE : SIZE + k] = _wrench_by_bore(model, by_q[:count], _Direct(model))
     out[:6, SIZE + k :] = _wrench_by_bore(model, by_rate[:count], None)
     out[6:, :SIZE] = _scaled(model, gradient[count:])
@@ -77,30 +76,23 @@ class _Direct:
     def __init__(self, model: ElasticBearingModel) -> None:
         g, c = model.grid, model.bearing.radial_clearance
         pressure = model.P * g.weight
-        slope = np.zeros(g.shape)
-        if model.contact_fields is not None:
-            pressure = pressure + np.sum(model.contact_fields.P, axis=0) * g.weight / model.pressure_scale
-            slope = np.sum(model.contact_fields.slope, axis=0) * g.weight / model.pressure_scale
-        assert model.extra_slope_x is not None and model.extra_slope_z is not None
         # transposed of the central differences that give the slopes of the gap terms
         along_x = (np.roll(pressure, 1, axis=0) - np.roll(pressure, -1, axis=0)) / (2.0 * g.width_x[0])
         along_z = pressure @ np.gradient(np.eye(g.z.size), g.z, axis=0)
-        cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-        fields = np.stack(
-            [
-                cos,
-                sin,
-                cos * g.z,
-                sin * g.z,
-                couette_field(model)[0],
-                along_x + slope * model.extra_slope_x,
-                along_z + slope * model.extra_slope_z,
-                _end_field(model),
-            ]
-        )
-        rows = model.bore.contract(fields) / c
-        self.contact, self.couette, self.slopes, self.ends = rows[:4], rows[4], rows[5:7], rows[7]
-        self.friction = _contact_friction(model)
+        rows = model.bore.contract(np.stack([_couette_field(model), along_x, along_z, _end_field(model)])) / c
+        self.couette, self.slopes, self.ends = rows[0], rows[1:3], rows[3]
+        self.contact = _contact_wrench(model)
+
+
+def _couette_field(model: ElasticBearingModel) -> np.ndarray:
+    """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
+    s, g = model.solver, model.grid
+    share = model.share()
+    if model.ratio is not None and model.ratio_h is not None:
+        field = g.weight * share / s.H * (model.ratio_h - model.ratio / s.H)
+    else:
+        field = -g.weight * share / s.H**2
+    return field if model.limiter_fields is None else field * model.limiter_fields.slope
 
 
 def _end_field(model: ElasticBearingModel) -> np.ndarray:
@@ -121,14 +113,13 @@ def _wrench_by_bore(model: ElasticBearingModel, gradient: np.ndarray, direct: _D
     if shear_needs_adjoint(model):
         dc, at = gradient[4], 5
     slopes = gradient[at : at + 2]
-    ends, friction = np.zeros_like(dc), np.zeros((6, dc.size))
+    ends, contact = np.zeros_like(dc), np.zeros((6, dc.size))
     if direct is not None:
-        ds, dc, slopes = ds + direct.contact, dc + direct.couette, slopes + direct.slopes
-        ends, friction = direct.ends, direct.friction
+        dc, slopes, ends, contact = dc + direct.couette, slopes + direct.slopes, direct.ends, direct.contact
     x, y, bx, by = model.pose
     R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
-    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] + slopes[0]
-    ds_z = -(bx * ds[0] + by * ds[1]) + slopes[1] - ends
+    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] - slopes[0]
+    ds_z = -(bx * ds[0] + by * ds[1]) - slopes[1] - ends
     out = np.stack(
         [
             -fs * ds[0],
@@ -139,22 +130,28 @@ def _wrench_by_bore(model: ElasticBearingModel, gradient: np.ndarray, direct: _D
             -c0 * R**2 * (6.0 * ds_theta + model.omega * dc),
         ]
     )
-    return out + friction
+    return out + contact
 
 
-def _contact_friction(model: ElasticBearingModel) -> np.ndarray:
-    """Gradient (6, k) of the contacts' friction wrench to q."""
+def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
+    """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
     g, R = model.grid, model.grid.reference_length
     out = np.zeros((6, model.bore.size))
     f = model.contact_fields
+    if f is None:
+        return out
+    x, y, bx, by = model.motion[:4].tolist()
+    theta, axial = friction_rows(R)
     for i, contact in enumerate(model.effects.contacts):
-        if f is None or contact.friction_coefficient == 0.0:
-            continue
-        g_theta, g_z, _ = model.slip(contact)
-        slope = f.slope[i] * g.weight * contact.friction_coefficient * R**2
+        slope = f.slope[i] * g.weight * R**2
         cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-        rows = model.bore.contract(np.stack([cos, sin, cos * g.z, sin * g.z, slope])) / model.bearing.radial_clearance
-        out += (g_theta * friction_row(R, 1.0, 0.0) + g_z * friction_row(R, 0.0, 1.0)) @ rows
+        fields = np.stack([cos, sin, cos * g.z, sin * g.z, slope])
+        rows = model.bore.contract(fields) / model.bearing.radial_clearance
+        c, s, zc, zs, _ = rows
+        out += np.stack([-c, -s, 0.0 * c, R * zs, -R * zc, y * c - x * s + R * (by * zc - bx * zs)])
+        if contact.friction_coefficient > 0.0:
+            g_theta, g_z, _ = model.slip(contact)
+            out += contact.friction_coefficient * (g_theta * theta + g_z * axial) @ rows
     return out
 
 

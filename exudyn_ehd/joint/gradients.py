@@ -7,72 +7,61 @@ two more for their slopes.
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.pose_gradient import plain_pose_gradient
+from exudyn_ehd.film.sweep import pose_gradient, wrench_gradient
 
 if TYPE_CHECKING:
+    from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
+    from exudyn_ehd.joint.effects import Contact
     from exudyn_ehd.joint.model import BearingModel, ContactFields
 
 SIZE = 10
 
 
-def wrench_tangent(model: BearingModel, gradient: np.ndarray | None = None) -> np.ndarray:
+def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.ndarray | None = None) -> np.ndarray:
     """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``.
 
-    ``gradient`` (k, 10) of the integrals of `adjoint_rows`, if they are known already.
+    With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it follows a slow motion,
+    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
+    `adjoint_rows`, if they are known already.
     """
-    film, contact, dc, extra = _integral_gradients(model, film_gradient(model) if gradient is None else gradient)
-    ds = film + contact
-    x, y, bx, by = model.pose
-    sc, ss, szc, szs = model.total
-    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] + extra[0]
-    ds_theta[:4] += (ss, -sc, szs, -szc)
-    ds_z = -(bx * ds[0] + by * ds[1]) + extra[1]
-    ds_z[2:4] -= (sc, ss)
-    R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
+    ds, dc, extra = _integral_gradients(model, film_gradient(model, slow_motion) if gradient is None else gradient)
+    ends = np.zeros(4)
+    if model.limiter_fields is not None and model.end_pressures.any():
+        ends = _end_gradient(model)
     out = np.empty((6, SIZE))
-    out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
-    out[2] = -c0 * (6.0 * R * ds_z + model.axial_speed * dc)
-    out[5] = -c0 * R**2 * (6.0 * ds_theta + model.omega * dc)
-    if model.limiter_fields is not None:
-        out[2, :4] += 6.0 * c0 * R * _end_gradient(model)
-    out[:, :4] *= model.pose_scale
-    out[:, 4:8] *= model.pose_scale
-    out[:, 8] *= 0.5
-    out[:, 9] *= 0.5 / R
-    out[2, 9] -= c0 * model.couette
-    out[5, 8] -= c0 * R**2 * model.couette
+    wrench_gradient(
+        ds, dc, extra, ends, model.pose, model.integrals, model.pose_scale, model.grid.reference_length, model.force_scale,
+        model.shear_scale, model.omega, model.axial_speed, model.couette, out,
+    )  # fmt: skip
     if model.contact_fields is not None:
-        _add_contact_friction(model, model.contact_fields, out)
+        _add_contacts(model, model.contact_fields, out)
     return out
 
 
-def film_gradient(model: BearingModel) -> np.ndarray:
+def film_gradient(model: BearingModel, slow_motion: bool) -> np.ndarray:
     """Gradients (k, 10) of the film's integrals to (scaled pose, scaled rates, vx, vz)."""
-    s, g = model.solver, model.grid
+    s = model.solver
     rows = adjoint_rows(model)
     lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], SIZE))
-    if is_plain(model):
-        plain_pose_gradient(
-            lam, s.system.linear_pressure, s.H, s.HF, model.cos_x, model.sin_x, model.cos_f, model.sin_f, g.z, s.vx, s.vz,
-            s.flow_x, float(s.squeeze), g.width_x, g.width_z, g.link_x, g.link_z, gradient,
-        )  # fmt: skip
+    if s.plain_links and not slow_motion:
+        swept_gradient(model, lam, gradient)
     else:
-        field_gradient(model, lam, gradient)
+        field_gradient(model, lam, gradient, slow_motion)
     return gradient
 
 
-def _integral_gradients(
-    model: BearingModel, gradient: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), the contacts' S, C (10,), slopes' S (2, 10)."""
+def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
     at = 4
     if shear_needs_adjoint(model):
@@ -81,36 +70,61 @@ def _integral_gradients(
     _add_couette_direct(model, dc)
     if model.extra_slope_x is not None:
         extra = gradient[at : at + 2]
-    contact = np.zeros((4, SIZE))
-    if model.contact_fields is not None:
-        _contact_gradients(model, model.contact_fields, contact, extra)
-    return gradient[:4], contact, dc, extra
+    return gradient[:4], dc, extra
 
 
-def is_plain(model: BearingModel) -> bool:
-    """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
+def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate: np.ndarray) -> np.ndarray:
+    """Gradient (k, 4) to the scaled rates through the deflection's rate: a second adjoint solve, of ``by_rate`` (k, n, m) times beta."""
+    w, z = solver.work, model.grid.z
+    rows = (by_rate * solver.gap_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
+    sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
+    out = np.zeros((by_rate.shape[0], 4))
+    contract_pose(sens.cell, model.cos_x, model.sin_x, z, out)
+    contract_pose(sens.face, model.cos_f, model.sin_f, z, out)
+    return out
+
+
+def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
     s = model.solver
-    return s.plain_links and model.limiter_fields is None and s.flux is None and not s.closure.conserves_mass
+    d = s.link_derivatives()
+    by_rate, by_gap = s.storage_weights()
+    slope, f = s.ones, model.limiter_fields
+    if f is not None:
+        d.DX *= f.face_slope
+        slope = f.slope
+        by_gap = by_gap * f.slope + by_rate * f.curvature
+        by_rate = by_rate * f.slope
+    pose_gradient(
+        lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, model.cos_x, model.sin_x, model.cos_f, model.sin_f,
+        model.grid.z, gradient,
+    )  # fmt: skip
 
 
-def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> Sensitivities:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, for any film."""
+def field_gradient(
+    model: BearingModel, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False
+) -> Sensitivities:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
     if model.limiter_fields is not None:
-        chain_limiter(model, sens)
+        _chain_limiter(model, sens)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
     contract_pose(sens.face, model.cos_f, model.sin_f, g.z, pose)
     if sens.rate is not None:
         contract_pose(sens.rate, model.cos_x, model.sin_x, g.z, rates)
+    if slow_motion and sens.rate is not None and model.liner_solver is not None:
+        rates += _following_deflection(model, model.liner_solver, sens.rate)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
     return sens
 
 
 def shear_needs_adjoint(model: BearingModel) -> bool:
     """Whether fill or pressure enter the Couette shear."""
-    return model.solver.closure.conserves_mass or model.effects.pressure_law is not None
+    return (
+        model.solver.closure.conserves_mass or model.effects.pressure_law is not None or model.liner_solver is not None
+    )
 
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
@@ -131,6 +145,8 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
         ratio = 1.0 if model.ratio is None else model.ratio.ravel()[at]
         per_gap = weight / s.H.ravel()[at]
         by_pressure = 0.0 if model.ratio_q is None else per_gap * model.ratio_q.ravel()[at]
+        if model.liner_solver is not None:
+            by_pressure = -per_gap / s.H.ravel()[at] * model.liner_solver.gap_by_pressure.ravel()[at]
         rows[4] = np.where(full, by_pressure, per_gap * ratio if s.closure.conserves_mass else 0.0)
     if model.extra_slope_x is not None and model.extra_slope_z is not None:
         for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
@@ -142,52 +158,77 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
     """Add the direct gradient of C to the scaled pose and speeds, at fixed pressure and fill."""
-    if model.ratio_v is not None:
-        dc[8] += float(np.sum(model.grid.weight * model.share() / model.solver.H * model.ratio_v))
-    out = np.zeros((1, 4))
-    contract_pose(couette_field(model), model.cos_x, model.sin_x, model.grid.z, out)
-    dc[:4] += out[0]
-
-
-def couette_field(model: BearingModel) -> np.ndarray:
-    """dC/dH (1, n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
     gradient = np.empty((1, *g.shape))
-    if model.ratio is not None and model.ratio_h is not None:
-        gradient[0] = g.weight * model.share() / s.H * (model.ratio_h - model.ratio / s.H)
+    if model.ratio is not None and model.ratio_h is not None and model.ratio_v is not None:
+        if not s.closure.conserves_mass:
+            dc[8] += couette_gradient_ratio(
+                s.H, g.weight, model.ratio, model.ratio_h, model.ratio_v, s.work.active, g.fixed, s.closure.cavity_shear,
+                gradient[0],
+            )  # fmt: skip
+            _contract_couette(model, gradient, dc)
+            return
+        density = g.weight * model.share() / s.H
+        gradient[0] = density * (model.ratio_h - model.ratio / s.H)
+        dc[8] += float(np.sum(density * model.ratio_v))
     elif s.closure.conserves_mass:
         gradient[0] = -g.weight * s.fill / s.H**2
     else:
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
+    _contract_couette(model, gradient, dc)
+
+
+def _contract_couette(model: BearingModel, gradient: np.ndarray, dc: np.ndarray) -> None:
+    """Add dC/dH (1, n, m) to the gradient of C to the scaled pose."""
     if model.limiter_fields is not None:
         gradient[0] *= model.limiter_fields.slope
-    return gradient
+    out = np.zeros((1, 4))
+    contract_pose(gradient, model.cos_x, model.sin_x, model.grid.z, out)
+    dc[:4] += out[0]
 
 
-def chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
+def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
     f = model.limiter_fields
     assert f is not None
-    sens.face *= f.face_slope
-    sens.cell *= f.slope
-    if sens.rate is not None:
-        sens.cell += sens.rate * f.curvature
-        sens.rate *= f.slope
+    rate = sens.cell if sens.rate is None else sens.rate
+    chain_limiter(f.slope, f.curvature, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
 
 
-def _contact_gradients(model: BearingModel, f: ContactFields, contact: np.ndarray, extra: np.ndarray) -> None:
-    """Add the contacts' gradients to the pose to ``contact`` (4, 10) and ``extra`` (2, 10), in the film's pressure unit."""
-    g = model.grid
-    slope = np.sum(f.slope, axis=0) * g.weight / model.pressure_scale
-    fields = [slope * model.cos_x[:, None], slope * model.sin_x[:, None]]
-    fields += [fields[0] * g.z, fields[1] * g.z]
-    if model.extra_slope_x is not None and model.extra_slope_z is not None:
-        fields += [slope * model.extra_slope_x, slope * model.extra_slope_z]
-    out = np.zeros((len(fields), 4))
-    contract_pose(np.array(fields), model.cos_x, model.sin_x, g.z, out)
-    contact[:, :4] += out[:4]
-    if len(fields) == 6:
-        extra[:, :4] += out[4:]
+def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
+    """Add the gradient of the contacts' wrench, pressures and friction, to ``out`` (6, 10), SI units."""
+    g, R = model.grid, model.grid.reference_length
+    if not f.integrals[:, 4].any():
+        return
+    grads = np.empty((5, 4))
+    total = np.zeros((5, 4))
+    for k, contact in enumerate(model.effects.contacts):
+        contact_gradients(f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, grads)
+        total += grads
+        if contact.friction_coefficient > 0.0:
+            _add_friction(model, contact, grads, f.integrals[k], out)
+    gc, gs, gzc, gzs, _ = total * (R**2 * model.pose_scale)
+    sc, ss, szc, szs, _ = f.integrals.sum(axis=0) * R**2
+    x, y, bx, by = model.motion[:4].tolist()
+    out[0, :4] -= gc
+    out[1, :4] -= gs
+    out[3, :4] += R * gzs
+    out[4, :4] -= R * gzc
+    out[5, :4] += y * gc - x * gs + R * (by * gzc - bx * gzs) + (-ss, sc, -R * szs, R * szc)
+
+
+def _add_friction(
+    model: BearingModel, contact: Contact, grads: np.ndarray, integrals: np.ndarray, out: np.ndarray
+) -> None:
+    """Add the gradient of one contact's friction; ``grads`` (5, 4) of its ``integrals`` (5,), Pa, to the scaled pose."""
+    R = model.grid.reference_length
+    scale = contact.friction_coefficient * R**2
+    g_theta, g_z, dg = model.slip(contact)
+    theta, axial = friction_rows(R)
+    out[:, :4] += (g_theta * theta + g_z * axial) @ (grads * (scale * model.pose_scale))
+    along, across = scale * (theta @ integrals), scale * (axial @ integrals)
+    out[:, 8] += along * dg[0, 0] + across * dg[1, 0]
+    out[:, 9] += along * dg[0, 1] + across * dg[1, 1]
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:
@@ -203,31 +244,10 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
     return out[0]
 
 
-def _add_contact_friction(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
-    """Add the gradient of the contacts' friction wrench to ``out`` (6, 10), SI units."""
-    g, R = model.grid, model.grid.reference_length
-    for k, contact in enumerate(model.effects.contacts):
-        if contact.friction_coefficient == 0.0:
-            continue
-        g_theta, g_z, dg = model.slip(contact)
-        slope = f.slope[k] * g.weight * contact.friction_coefficient * R**2
-        c_field, s_field = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-        grads = np.zeros((5, 4))
-        fields = np.array([c_field, s_field, c_field * g.z, s_field * g.z, slope])
-        contract_pose(fields, model.cos_x, model.sin_x, g.z, grads)
-        values = np.array([*f.integrals[k], f.normal[k]]) * contact.friction_coefficient * R**2
-        theta = friction_row(R, 1.0, 0.0)
-        axial = friction_row(R, 0.0, 1.0)
-        out[:, :4] += (g_theta * theta + g_z * axial) @ grads * model.pose_scale
-        out[:, 8] += (dg[0, 0] * theta + dg[1, 0] * axial) @ values
-        out[:, 9] += (dg[0, 1] * theta + dg[1, 1] * axial) @ values
-
-
-def friction_row(R: float, theta: float, axial: float) -> np.ndarray:
-    """Map (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for a slip direction."""
-    out = np.zeros((6, 5))
-    out[0, 1], out[1, 0], out[2, 4] = theta, -theta, -axial
-    out[3, 2], out[3, 1] = R * theta, -R * axial
-    out[4, 3], out[4, 0] = R * theta, R * axial
-    out[5, 4] = -R * theta
-    return out
+@functools.cache
+def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
+    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
+    theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
+    theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
+    axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R
+    return theta, axial

@@ -20,7 +20,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.choice import film_grid, film_solver
+from exudyn_ehd.film.contact_loads import contact_integrals
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
+from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
@@ -39,6 +41,7 @@ from exudyn_ehd.joint.effects import (
     PressureLaw,
     ShearFactor,
     ThermalEffect,
+    Wear,
 )
 from exudyn_ehd.joint.gradients import wrench_tangent
 from exudyn_ehd.status import Status
@@ -59,6 +62,9 @@ class Effects:
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
+    wear : Wear or None
+        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
+    liner : ElasticLiner or None
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -68,6 +74,8 @@ class Effects:
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
     thermal: ThermalEffect | None = None
+    wear: Wear | None = None
+    liner: ElasticLiner | None = None
 
 
 @dataclass(eq=False)
@@ -123,8 +131,7 @@ class ContactFields:
     def __init__(self, shape: tuple[int, int], contacts: tuple[Contact, ...]) -> None:
         self.P = [np.zeros(shape) for _ in contacts]
         self.slope = [np.zeros(shape) for _ in contacts]
-        self.integrals = np.zeros((len(contacts), 4))
-        self.normal = np.zeros(len(contacts))
+        self.integrals = np.zeros((len(contacts), 5))
 
 
 class LimiterFields:
@@ -155,7 +162,10 @@ class BearingModel:
         )
         self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
         self.needs_spin = self.supply is not None and self.supply.rotating
-        self.solver = film_solver(
+        self.liner_solver: LinerFilmSolver | None = None
+        if self.effects.liner is not None:
+            self.liner_solver = LinerFilmSolver(self.grid, bearing.cavitation, squeeze=bearing.squeeze)
+        self.solver = self.liner_solver or film_solver(
             bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux
         )
         self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
@@ -166,6 +176,7 @@ class BearingModel:
         self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
         self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
         self.extra: np.ndarray | None = None
+        self.extra_link: np.ndarray | None = None
         self.extra_slope_x: np.ndarray | None = None
         self.extra_slope_z: np.ndarray | None = None
         self.ratio: np.ndarray | None = None
@@ -180,8 +191,11 @@ class BearingModel:
             )
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
-        self.remembers = self.remembers_mass or self.effects.thermal is not None
+        self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
+        self.remembers = self.remembers_mass or self.remembers_deflection
+        self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
         self.start: tuple[History | None, float] = (None, 0.0)
+        self.gap_fields: list[np.ndarray] = []
         self.serial = 0
         self.status = Status.NOT_FINITE
         self.integrals = np.zeros(4)
@@ -195,6 +209,8 @@ class BearingModel:
         self.shear_scale = mu * R**2 / c
         self.end_pressures = np.array(b.end_pressures) / self.pressure_scale
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
+        if self.liner_solver is not None and self.effects.liner is not None:
+            self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -208,7 +224,16 @@ class BearingModel:
         temperature = None if thermal is None else thermal.initial_temperature(self)
         self._set_motion(motion)
         self._set_gap(None)
-        return History(mass=self.solver.H.copy() if self.remembers_mass else None, temperature=temperature)
+        mass = self.solver.H.copy() if self.remembers_mass else None
+        wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
+        deflection = self._steady_deflection(motion) if self.remembers_deflection else None
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+
+    def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
+        """Scaled deflection of the steady film at this motion; None if there is no such film."""
+        if self.evaluate(motion).status is not Status.CONVERGED or self.liner_solver is None:
+            return None
+        return self.liner_solver.deflection
 
     def history(self) -> History | None:
         """History after the last evaluation.
@@ -224,9 +249,21 @@ class BearingModel:
             )
         if not self.remembers:
             return None
+        mass = self.solver.fill * self.solver.H if self.remembers_mass else None
+        wear = None if self.effects.wear is None else self._worn(self.effects.wear)
+        deflection = None
+        if self.remembers_deflection and self.liner_solver is not None:
+            deflection = self.liner_solver.deflection
         thermal = self.effects.thermal
         temperature = None if thermal is None else thermal.advance(self)
-        return History(mass=self.solver.fill * self.solver.H if self.remembers_mass else None, temperature=temperature)
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+
+    def _worn(self, wear: Wear) -> np.ndarray:
+        """Scaled wear depth after the last evaluation."""
+        assert self.contact_fields is not None
+        history, step = self.start
+        speed = math.hypot(self.grid.reference_length * self.omega, self.axial_speed)
+        return wear.grown(None if history is None else history.wear, np.sum(self.contact_fields.P, axis=0), speed, step)
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -291,11 +328,16 @@ class BearingModel:
     def _add_gap_terms(self, history: History | None) -> None:
         """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
         s, g = self.solver, self.grid
-        self.extra = np.sum([term.field(history) for term in self.effects.gap_terms], axis=0)
-        self.extra_slope_x = (np.roll(self.extra, -1, axis=0) - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
-        self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
+        fields = [term.field(history) for term in self.effects.gap_terms]
+        if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
+            self.gap_fields = fields
+            self.extra = np.sum(fields, axis=0)
+            nxt = np.roll(self.extra, -1, axis=0)
+            self.extra_link = 0.5 * (self.extra + nxt)
+            self.extra_slope_x = (nxt - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
+            self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
         s.H += self.extra
-        s.HF += 0.5 * (self.extra + np.roll(self.extra, -1, axis=0))
+        s.HF += self.extra_link
 
     def _limit_gap(self, limiter: GapLimiter) -> None:
         """The gap that the film sees, and its rate."""
@@ -311,7 +353,7 @@ class BearingModel:
         if not np.all(np.isfinite(self.motion)):
             return Status.NOT_FINITE
         self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
-        if self.effects.limiter is None and self.minimum_gap <= 0.0:
+        if self.minimum_gap <= 0.0 and not self.effects.contacts and self.liner_solver is None:
             return Status.NO_FILM
         ends, cavity = self.end_pressures, self.cavity_pressure
         law = self.effects.pressure_law
@@ -324,6 +366,8 @@ class BearingModel:
             fed = self.supply.pressures()
             self.supply.prescribe((fed if law is None else law.transform(fed)) / self.pressure_scale, P)
         mass = history.mass if history is not None and self.remembers_mass else None
+        if self.liner_solver is not None:
+            self.liner_solver.delta_old = None if history is None else history.deflection
         status, self.iterations = self.solver.solve(
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )
@@ -331,12 +375,21 @@ class BearingModel:
             status = self._apply_rheology()
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
+        if status is Status.CONVERGED and self.liner_solver is not None:
+            self.minimum_gap = self.bearing.radial_clearance * min(
+                float(self.solver.H.min()), float(self.solver.HF.min())
+            )
         return status
 
     def _apply_rheology(self) -> Status:
         """Pressure from the transformed one; viscosity ratio at the vertices with its derivatives to q, H and vx."""
         s, shape = self.solver, self.grid.shape
         self.P = s.pressure
+        if self.effects.pressure_law is None and self.effects.shear_factor is not None:
+            if self.ratio is None or self.ratio_h is None or self.ratio_v is None:
+                self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+            self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
+            return Status.CONVERGED
         ratio, ratio_q = np.ones(shape), np.zeros(shape)
         ratio_h, ratio_v = np.zeros(shape), np.zeros(shape)
         self.P_q = None
@@ -378,55 +431,69 @@ class BearingModel:
     def _loads(self) -> np.ndarray:
         s, g = self.solver, self.grid
         pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
-        self.total = self.integrals
         self.extra_theta = self.extra_z = 0.0
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
             self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
             self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+        if self.liner_solver is not None:
+            # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
+            self.extra_z += (
+                math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
+            )
         if self.contact_fields is not None:
             self._contact_loads(self.contact_fields)
         self.couette, self.couette_unbroken = self._couette()
         x, y, bx, by = self.pose
-        sc, ss, szc, szs = self.total
+        sc, ss, szc, szs = self.integrals
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
+        # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope.
         R, fs = g.reference_length, self.force_scale
         ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
         wrench = np.array(
             [
                 -fs * sc,
                 -fs * ss,
-                -self.shear_scale * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - ends)),
+                -self.shear_scale
+                * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - 2.0 * self.extra_z - ends)),
                 fs * R * szs,
                 -fs * R * szc,
-                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * self.s_theta),
+                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * (self.s_theta - 2.0 * self.extra_theta)),
             ]
         )
         self.contact_wrench = np.zeros(6)
         if self.contact_fields is not None:
-            self._add_contact_friction(self.contact_fields)
-            wrench += self.contact_wrench
+            self._add_contacts(self.contact_fields, wrench)
         return wrench
 
+    def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
+        """Add the contacts' pressures and friction to ``wrench`` (6,); their friction stays in ``contact_wrench``."""
+        if not f.integrals[:, 4].any():
+            return
+        self._add_contact_friction(f)
+        wrench += self.contact_wrench + self._contact_normal_wrench(f)
+
+    def _contact_normal_wrench(self, f: ContactFields) -> np.ndarray:
+        """Wrench (6,) of the contact pressures: they do no work on the journal's spin, so that their torque about O is e x F."""
+        R = self.grid.reference_length
+        sc, ss, szc, szs, _ = (f.integrals.sum(axis=0) * R**2).tolist()
+        x, y, bx, by = self.motion[:4].tolist()
+        return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
+
     def _contact_loads(self, f: ContactFields) -> None:
-        """Integrals of the contact pressures, added to the film's in the unit of its pressures."""
+        """Integrals of the contact pressures, in Pa."""
         g = self.grid
         for k in range(len(f.P)):
-            pressure_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
-            f.normal[k] = float(np.sum(f.P[k] * g.weight))
-            if self.extra_slope_x is not None and self.extra_slope_z is not None:
-                self.extra_theta += float(np.sum(f.P[k] * g.weight * self.extra_slope_x)) / self.pressure_scale
-                self.extra_z += float(np.sum(f.P[k] * g.weight * self.extra_slope_z)) / self.pressure_scale
-        self.total = self.integrals + f.integrals.sum(axis=0) / self.pressure_scale
+            contact_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
 
     def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
         R = self.grid.reference_length
-        v = np.array([R * self.omega, self.axial_speed])
-        size = math.sqrt(float(v @ v) + contact.transition_speed**2)
-        slope = (np.eye(2) - np.outer(v, v) / size**2) / size
-        slope[:, 0] *= R
-        return v[0] / size, v[1] / size, slope
+        v, w = R * self.omega, self.axial_speed
+        size = math.sqrt(v * v + w * w + contact.transition_speed**2)
+        a, b = v / size, w / size
+        slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
+        return a, b, slope
 
     def _add_contact_friction(self, f: ContactFields) -> None:
         """Coulomb friction of the contacts at the bore's points: force against the slip, with its lever arms."""
@@ -435,8 +502,7 @@ class BearingModel:
             if contact.friction_coefficient == 0.0:
                 continue
             g_theta, g_z, _ = self.slip(contact)
-            c, s, zc, zs = f.integrals[k] * contact.friction_coefficient * R**2
-            n = f.normal[k] * contact.friction_coefficient * R**2
+            c, s, zc, zs, n = (f.integrals[k] * (contact.friction_coefficient * R**2)).tolist()
             self.contact_wrench += (
                 g_theta * s,
                 -g_theta * c,
@@ -446,11 +512,14 @@ class BearingModel:
                 -g_theta * R * n,
             )
 
-    def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) of the last evaluation; nan without a film."""
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d wrench / d motion (6, 10) of the last evaluation; nan without a film.
+
+        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes nothing.
+        """
         if self.status is not Status.CONVERGED:
             return np.full((6, MOTION_SIZE), np.nan)
-        return wrench_tangent(self)
+        return wrench_tangent(self, slow_motion)
 
     def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> Evaluation:
         """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
@@ -476,8 +545,9 @@ class BearingModel:
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
             (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about O); with supply areas also ``supply_flow``
-            (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K).
+            by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
+            of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
+            ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K).
         """
         out = {
             "minimum_gap": self.minimum_gap,
@@ -494,7 +564,7 @@ class BearingModel:
         v, f = self.motion, self.wrench
         along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
         power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
-        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(4)
+        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
         out |= {
             "peak_pressure": self.refined_peak()[0],
             "friction_torque": friction,
@@ -505,7 +575,13 @@ class BearingModel:
             "leakage_lower": self.flow_scale * lower,
             "leakage_upper": self.flow_scale * upper,
             "contact_load": math.hypot(load[0], load[1]),
-            "contact_torque": float(self.contact_wrench[5]),
+            "contact_torque": self._contact_torque(),
+            "contact_power_loss": 0.0
+            - self._contact_torque() * self.omega
+            - float(self.contact_wrench[2]) * self.axial_speed,
+            "peak_contact_pressure": 0.0
+            if self.contact_fields is None
+            else max(float(p.max()) for p in self.contact_fields.P),
         }
         if self.supply is not None:
             out["supply_flow"] = float(self.supply_flows().sum())

@@ -197,6 +197,9 @@ class SteadyResult:
         W, m3/s out of both ends, N.
     supply_flows : (k,) array
         m3/s out of every area of ``bearing.supply``.
+    contact_torque, contact_power_loss, peak_contact_pressure : float
+        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the loss it
+        makes (W, part of ``power_loss``); Pa.
     sommerfeld_number, attitude_angle : float
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
@@ -226,6 +229,9 @@ class SteadyResult:
     leakage: float
     contact_load: float
     supply_flows: np.ndarray
+    contact_torque: float
+    contact_power_loss: float
+    peak_contact_pressure: float
     sommerfeld_number: float
     attitude_angle: float
     status: Status
@@ -352,6 +358,9 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         leakage=q["leakage"],
         contact_load=q["contact_load"],
         supply_flows=model.supply_flows(),
+        contact_torque=q["contact_torque"],
+        contact_power_loss=q["contact_power_loss"],
+        peak_contact_pressure=q["peak_contact_pressure"],
         sommerfeld_number=force / reference if reference > 0.0 else math.nan,
         attitude_angle=attitude,
         status=model.status,
@@ -452,7 +461,7 @@ def equilibrium(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
             f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
-    K, C = -tangent[:2, :2], -_rate_tangent(model, motion, tangent)[:2, 4:6]
+    K, C = -tangent[:2, :2], -_rate_tangent(model, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = _result(model, motion, "equilibrium")
     return EquilibriumResult(
@@ -469,11 +478,14 @@ def equilibrium(
     )
 
 
-def _rate_tangent(model: BearingModel, motion: np.ndarray, tangent: np.ndarray) -> np.ndarray:
-    """Tangent whose rate columns hold for a sudden velocity in the steady film; see `equilibrium`."""
-    if not model.remembers:
+def _rate_tangent(model: BearingModel, tangent: np.ndarray) -> np.ndarray:
+    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner; see `equilibrium`."""
+    if model.liner_solver is not None:
+        return model.tangent(slow_motion=True)
+    if not model.remembers_mass:
         return tangent
-    return model.evaluate(motion, model.history()).tangent()
+    model.evaluate(model.motion, model.history())
+    return model.steady_tangent()
 
 
 def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
@@ -503,7 +515,7 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
 
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.effects.limiter is not None:
+    if model.effects.contacts:
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

@@ -1,0 +1,334 @@
+"""Kernels of the film on an elastic liner: balance, Newton's matrix and the step control; see `exudyn_ehd.film.liner`.
+
+Symbols: rigid (3, n, m) = gap, gap on links and rate of the undeformed surfaces; P pressure, pc cavity pressure, beta compliance
+over pressure, all scaled; inverse_step 1 / dt; delta_old deflection at the start of the step; kind of closure; a, b ends of a
+link.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.band_lu import factor_lu, solve_lu
+from exudyn_ehd.film.direct import PAD, number_cells
+
+MAX_NEWTON_STEPS = 80
+# Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
+ERROR_TOLERANCE = 1e-13
+STEP_TOLERANCE = 1e-8
+FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True)
+def ends_open(rigid, P, beta, fixed):
+    """Whether the gap is open where the pressure is prescribed, which is beyond the liner's reach."""
+    n, m = P.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            if fixed[i, j]:
+                if not rigid[0, i, j] + beta * P[i, j] > 0.0:
+                    return False
+                if fixed[nxt, j] and not rigid[1, i, j] + 0.5 * beta * (P[i, j] + P[nxt, j]) > 0.0:
+                    return False
+    return True
+
+
+@njit(cache=True)
+def deform(H0, HF0, P, beta, H_out, HF_out):
+    """Gaps on a liner that gives way by ``beta P``."""
+    n, m = H0.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            H_out[i, j] = H0[i, j] + beta * P[i, j]
+            HF_out[i, j] = HF0[i, j] + 0.5 * beta * (P[i, j] + P[nxt, j])
+
+
+@njit(cache=True)
+def add_bending(P, beta, HF, gap_z, gx, gx_h, gz, gz_h):
+    """Add ``H d^2`` to the links' conductances and ``d^2`` to their derivatives, in place."""
+    n, m = P.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            d = 0.5 * beta * (P[nxt, j] - P[i, j])
+            gx[i, j] += HF[i, j] * d * d
+            gx_h[i, j] += d * d
+            if j + 1 < m:
+                d = 0.5 * beta * (P[i, j + 1] - P[i, j])
+                gz[i, j] += gap_z[i, j] * d * d
+                gz_h[i, j] += d * d
+
+
+@njit(cache=True, fastmath=_FAST)
+def liner_residual(
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r_out
+):  # fmt: skip
+    """Balance of every vertex (outflow - inflow + squeeze); returns (norm of what is violated, smallest gap).
+
+    A vertex at the cavity pressure violates only by r < 0 if the closure is complementary.
+    """
+    n, m = P.shape
+    smallest = 1e300
+    r_out[:] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
+        for j in range(m):
+            pa = P[i, j]
+            pb = P[nxt, j]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
+            h = rigid[1, i, j] + 0.5 * beta * (da + db)
+            smallest = min(smallest, h)
+            d = 0.5 * beta * (db - da)
+            q = width_z[j] * (v * h - h * (h * h + d * d) * lx * (pb - pa))
+            r_out[nxt, j] -= q
+            own = rigid[0, i, j] + beta * da
+            smallest = min(smallest, own)
+            rate = rigid[2, i, j] + (beta * da - delta_old[i, j]) * inverse_step
+            r_out[i, j] += q + rate * width_x[i] * width_z[j]
+        for j in range(m - 1):
+            pa = P[i, j]
+            pb = P[i, j + 1]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
+            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+            d = 0.5 * beta * (db - da)
+            q = width_x[i] * (vz * h - h * (h * h + d * d) * link_z[j] * (pb - pa))
+            r_out[i, j] += q
+            r_out[i, j + 1] -= q
+    total = 0.0
+    for i in range(n):
+        for j in range(m):
+            if not fixed[i, j]:
+                r = r_out[i, j]
+                if kind == COMPLEMENTARY and P[i, j] <= pc:
+                    r = min(r, 0.0)
+                total += r * r
+    return np.sqrt(total), smallest
+
+
+@njit(cache=True, fastmath=_FAST)
+def flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, out):
+    """Derivatives of the links' fluxes a -> b: out (4, n, m) = theta by P_a, theta by P_b, z by P_a, z by P_b."""
+    n, m = P.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
+        for j in range(m):
+            pa = P[i, j]
+            pb = P[nxt, j]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
+            h = rigid[1, i, j] + 0.5 * beta * (da + db)
+            d = 0.5 * beta * (db - da)
+            drop = lx * (pb - pa)
+            k = width_z[j] * h * (h * h + d * d) * lx
+            by_h = 0.5 * width_z[j] * beta * (v - (3.0 * h * h + d * d) * drop)
+            by_d = width_z[j] * beta * h * d * drop
+            out[0, i, j] = k + (by_h + by_d if da == pa else 0.0)
+            out[1, i, j] = -k + (by_h - by_d if db == pb else 0.0)
+        for j in range(m - 1):
+            pa = P[i, j]
+            pb = P[i, j + 1]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
+            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+            d = 0.5 * beta * (db - da)
+            drop = link_z[j] * (pb - pa)
+            k = width_x[i] * h * (h * h + d * d) * link_z[j]
+            by_h = 0.5 * width_x[i] * beta * (vz - (3.0 * h * h + d * d) * drop)
+            by_d = width_x[i] * beta * h * d * drop
+            out[2, i, j] = k + (by_h + by_d if da == pa else 0.0)
+            out[3, i, j] = -k + (by_h - by_d if db == pb else 0.0)
+
+
+@njit(cache=True)
+def assemble_liner(
+    derivatives, P, pc, kind, storage, width_x, width_z, number, order, count, width, lower, upper
+):  # fmt: skip
+    """d(balance)/dP of the numbered vertices into the two bands; ``storage`` = beta / dt."""
+    n, m = P.shape
+    for r in range(count):
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        diagonal = derivatives[0, i, j] - derivatives[1, prv, j]
+        if storage != 0.0 and (kind != CLIPPED or P[i, j] > pc):
+            diagonal += storage * width_x[i] * width_z[j]
+        if j > 0:
+            diagonal -= derivatives[3, i, j - 1]
+        if j + 1 < m:
+            diagonal += derivatives[2, i, j]
+            b = number[i, j + 1]
+            if b >= 0:
+                upper[r, b - r] += derivatives[3, i, j]
+                lower[r, b - r] -= derivatives[2, i, j]
+        upper[r, 0] += diagonal
+        b = number[nxt, j]
+        if b > r:
+            upper[r, b - r] += derivatives[1, i, j]
+            lower[r, b - r] -= derivatives[0, i, j]
+        elif b >= 0:
+            lower[b, r - b] += derivatives[1, i, j]
+            upper[b, r - b] -= derivatives[0, i, j]
+
+
+@njit(cache=True)
+def factor_liner(
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
+    active, order, number, derivatives, lower, upper, inv_diag,
+):  # fmt: skip
+    """Newton's matrix at P, factored; returns (ok, count, width)."""
+    count, width = number_cells(active, links, order, number)
+    flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, derivatives)
+    assemble_liner(
+        derivatives, P, pc, kind, beta * inverse_step, width_x, width_z, number, order, count, width, lower, upper
+    )
+    return factor_lu(lower, upper, count, width, inv_diag), count, width
+
+
+@njit(cache=True)
+def _select(P, r, fixed, pc, kind, active):
+    """Vertices that carry pressure or are about to; returns the number of changes."""
+    n, m = P.shape
+    changes = 0
+    for i in range(n):
+        for j in range(m):
+            new = not fixed[i, j] and (kind != COMPLEMENTARY or P[i, j] > pc or r[i, j] <= 0.0)
+            if new != active[i, j]:
+                active[i, j] = new
+                changes += 1
+    return changes
+
+
+@njit(cache=True)
+def _longest_step(H0, P, order, count, x, beta):
+    """Share of the step x that uses up at most 80 % of any vertex's gap."""
+    m = P.shape[1]
+    share = 1.0
+    for k in range(count):
+        i = order[k] // m
+        j = order[k] - i * m
+        change = beta * x[k]
+        gap = H0[i, j] + beta * P[i, j]
+        if change < -0.8 * gap and gap > 0.0:
+            share = min(share, -0.8 * gap / change)
+    return share
+
+
+@njit(cache=True)
+def _take(P, x, share, order, count, pc, kind, trial_out):
+    """Trial pressures P + share x, cut off at the cavity pressure."""
+    m = P.shape[1]
+    trial_out[:] = P
+    for k in range(count):
+        i = order[k] // m
+        j = order[k] - i * m
+        p = P[i, j] + share * x[k]
+        trial_out[i, j] = pc if (kind == COMPLEMENTARY and p < pc) else p
+
+
+@njit(cache=True)
+def solve_liner(
+    rigid, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step, delta_old,
+    cold, active, order, number, derivatives, lower, upper, inv_diag, x, r, trial, P,
+):  # fmt: skip
+    """Newton from P, ``cold`` from all free vertices; returns (ok, steps, exact, count, width).
+
+    A factor serves further steps as long as the set stays and each step is five times smaller than the last; ``exact`` says that
+    the last factor belongs to the solution.
+    """
+    n, m = P.shape
+    if kind == COMPLEMENTARY:
+        for i in range(n):
+            for j in range(m):
+                if not fixed[i, j] and P[i, j] < pc:
+                    P[i, j] = pc
+    norm, smallest = liner_residual(
+        rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
+    )
+    if not smallest > 0.0:
+        return False, 0, False, 0, 1
+    if cold:
+        # Vertices leave all at once but join one row per step: start from all of them.
+        active[:] = np.logical_not(fixed)
+    else:
+        _select(P, r, fixed, pc, kind, active)
+    reference = pc if kind != FULL else 0.0
+    count, width = 0, 1
+    last = 0.0
+    factored = False
+    for step in range(MAX_NEWTON_STEPS):
+        fresh = not factored
+        if fresh:
+            ok, count, width = factor_liner(
+                rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
+                active, order, number, derivatives, lower, upper, inv_diag,
+            )  # fmt: skip
+            if not ok:
+                return False, step + 1, False, count, width
+            if count == 0 or norm == 0.0:
+                return True, step + 1, True, count, width
+        peak = 0.0
+        for k in range(count):
+            i = order[k] // m
+            j = order[k] - i * m
+            x[k] = -r[i, j]
+            peak = max(peak, abs(P[i, j] - reference))
+        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+        largest = 0.0
+        for k in range(count):
+            largest = max(largest, abs(x[k]))
+        if not largest < 1e300:
+            return False, step + 1, False, count, width
+        if not fresh and largest > 0.2 * last:
+            factored = False
+            continue
+        share = _longest_step(rigid[0], P, order, count, x, beta) if kind != CLIPPED else 1.0
+        before = norm
+        for _ in range(12):
+            _take(P, x, share, order, count, pc, kind, trial)
+            norm, smallest = liner_residual(
+                rigid,
+                trial,
+                vx,
+                vz,
+                width_x,
+                width_z,
+                link_x,
+                link_z,
+                fixed,
+                pc,
+                kind,
+                beta,
+                inverse_step,
+                delta_old,
+                r,
+            )
+            if smallest > 0.0 and (norm < before or largest <= STEP_TOLERANCE * peak):
+                break
+            share *= 0.5
+        if not smallest > 0.0:
+            return False, step + 1, False, count, width
+        P[:] = trial
+        changes = _select(P, r, fixed, pc, kind, active)
+        factored = changes == 0 and share == 1.0
+        if factored:
+            # What is left: about the square of a Newton step, or a step times its ratio to the last one.
+            rest, unit = (10.0 * largest * largest, peak) if fresh else (largest * largest, last)
+            if rest <= ERROR_TOLERANCE * peak * unit:
+                return True, step + 1, fresh, count, width
+        last = largest
+    return False, MAX_NEWTON_STEPS, False, count, width

@@ -1,0 +1,221 @@
+"""Surfaces that are not circular cylinders: what their shape adds to the gap.
+
+A profile is a depth d(theta, z) in m that adds to the gap of the circular cylinders: ``h = c - e . n + d``; d > 0 opens the gap, theta
+counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round bore, or a bore or
+journal whose radius varies along z. (An out-of-round journal carries its shape around with it and is not described here.)
+Several profiles add up. The pressure on their slopes acts on the bore; where a crown is on the journal instead, film, radial force
+and moments are the same and the axial force differs by the pressure on that slope, a share depth / length of the load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator, RectBivariateSpline
+
+from exudyn_ehd.status import InputError, require_integer, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutOfRound:
+    """Bore with lobes: ``d = amplitude cos(order (theta - phase))``.
+
+    Parameters
+    ----------
+    order : int
+        Lobes around the circumference, at least 2 (1 is an eccentricity); 2: oval, 3: three-lobe.
+    amplitude : float
+        m; half of the difference between largest and smallest radius.
+    phase : float
+        Angle of the first lobe's largest radius, rad.
+    """
+
+    order: int
+    amplitude: float
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        require_integer("OutOfRound.order", self.order, at_least=2, hint="order 1 is a shift of the whole bore.")
+        require_number("OutOfRound.amplitude", self.amplitude, "m")
+        require_number("OutOfRound.phase", self.phase, "rad")
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap (n, m) in m at the angles theta (n,) and the positions z (m,); ``length`` is the bearing's."""
+        return np.outer(self.amplitude * np.cos(self.order * (theta - self.phase)), np.ones(z.size))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Crown:
+    """Crowned (barrelled) journal or bore: ``d = drop |2 z / L|^exponent``.
+
+    Parameters
+    ----------
+    drop : float
+        Additional gap at the bearing's ends, m; negative: waisted.
+    exponent : float
+        At least 1; 2 is a parabola, larger ones leave a longer cylinder.
+    """
+
+    drop: float
+    exponent: float = 2.0
+
+    def __post_init__(self) -> None:
+        require_number("Crown.drop", self.drop, "m")
+        require_number("Crown.exponent", self.exponent, at_least=1.0)
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap; see `OutOfRound.depth`."""
+        return np.outer(np.ones(theta.size), self.drop * np.abs(2.0 * z / length) ** self.exponent)
+
+
+@dataclass(frozen=True, kw_only=True)
+class EdgeRelief:
+    """Relieved ends: a parabola over the last part of the length, ``d = drop (1 - (L/2 - |z|) / relief_length)^2``.
+
+    Parameters
+    ----------
+    drop : float
+        Additional gap at the bearing's ends, m.
+    relief_length : float
+        Axial length of the relief at each end, m.
+    """
+
+    drop: float
+    relief_length: float
+
+    def __post_init__(self) -> None:
+        require_number("EdgeRelief.drop", self.drop, "m")
+        require_number("EdgeRelief.relief_length", self.relief_length, "m", above=0.0)
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap; see `OutOfRound.depth`."""
+        inside = np.clip(1.0 - (0.5 * length - np.abs(z)) / self.relief_length, 0.0, None)
+        return np.outer(np.ones(theta.size), self.drop * inside**2)
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialProfile:
+    """Any profile along z, through given points by monotone cubics; constant beyond the first and the last one.
+
+    Parameters
+    ----------
+    positions : sequence of float
+        Increasing z, m, from the bearing's mid-plane; at least 2.
+    depths : sequence of float
+        Additional gap at these positions, m.
+    """
+
+    positions: Sequence[float]
+    depths: Sequence[float]
+
+    def __post_init__(self) -> None:
+        z = _increasing("AxialProfile.positions", self.positions, 2, "m")
+        d = _finite("AxialProfile.depths", self.depths)
+        if d.shape != z.shape:
+            raise InputError(
+                f"AxialProfile.depths must hold one depth per position ({z.size}), got {d.size}; check the lengths of both lists."
+            )
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap; see `OutOfRound.depth`."""
+        at = np.asarray(self.positions, dtype=float)
+        line = PchipInterpolator(at, np.asarray(self.depths, dtype=float))(np.clip(z, at[0], at[-1]))
+        return np.outer(np.ones(theta.size), line)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProfileTable:
+    """Any profile of the bore over (theta, z), for instance measured: cubic (bilinear below four points) splines, periodic in theta.
+
+    Parameters
+    ----------
+    angles : sequence of float
+        Increasing theta, rad, spanning less than 2 pi; at least 4.
+    positions : sequence of float
+        Increasing z, m; at least 2. Constant beyond.
+    depths : (angles, positions) array-like
+        Additional gap, m.
+    """
+
+    angles: Sequence[float]
+    positions: Sequence[float]
+    depths: Sequence[Sequence[float]] | np.ndarray = field(repr=False)
+
+    def __post_init__(self) -> None:
+        theta = _increasing("ProfileTable.angles", self.angles, 4, "rad")
+        z = _increasing("ProfileTable.positions", self.positions, 2, "m")
+        d = _finite("ProfileTable.depths", self.depths)
+        if theta[-1] - theta[0] >= 2.0 * math.pi:
+            raise InputError(
+                f"ProfileTable.angles must span less than 2 pi rad, got {theta[-1] - theta[0]:g}; leave out the repeated first "
+                "angle, and give radians."
+            )
+        if d.shape != (theta.size, z.size):
+            raise InputError(
+                f"ProfileTable.depths must have the shape (angles, positions) = ({theta.size}, {z.size}), got {d.shape}; "
+                "transpose it if the axes are swapped."
+            )
+
+    def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
+        """Addition to the gap; see `OutOfRound.depth`."""
+        at, d = np.asarray(self.angles, dtype=float), np.asarray(self.depths, dtype=float)
+        along = np.asarray(self.positions, dtype=float)
+        turn = 2.0 * math.pi
+        wide = np.concatenate((at - turn, at, at + turn))
+        spline = RectBivariateSpline(wide, along, np.vstack((d, d, d)), kx=3, ky=min(3, along.size - 1), s=0)
+        near = at[0] + np.mod(theta - at[0], turn)
+        return spline(near[:, None], np.clip(z, along[0], along[-1])[None, :], grid=False)
+
+
+Profile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable
+PROFILE_TYPES = (OutOfRound, Crown, EdgeRelief, AxialProfile, ProfileTable)
+
+
+class ProfileTerm:
+    """Profiles as a gap term of one bearing model.
+
+    Parameters
+    ----------
+    profiles : tuple of Profile
+    theta, z : (n,), (m,) arrays
+        Grid, rad and m.
+    length, clearance : float
+        m.
+    """
+
+    def __init__(
+        self, profiles: tuple[Profile, ...], theta: np.ndarray, z: np.ndarray, length: float, clearance: float
+    ) -> None:
+        self.values = np.sum([p.depth(theta, z, length) for p in profiles], axis=0) / clearance
+        if not self.values.min() > -1.0:
+            raise InputError(
+                f"JournalBearing.profile closes the gap of a concentric journal: its depth goes down to "
+                f"{self.values.min() * clearance:.3g} m at a radial clearance of {clearance:g} m; a depth is in metres and "
+                "positive where it opens the gap."
+            )
+
+    def field(self, history: object) -> np.ndarray:
+        """Scaled addition to the gap (n, m)."""
+        return self.values
+
+
+def _finite(where: str, values: object) -> np.ndarray:
+    try:
+        array = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise InputError(f"{where} must be finite numbers in rows of equal length, got {values!r}.") from None
+    if not np.all(np.isfinite(array)):
+        raise InputError(f"{where} must be finite, got {values!r}; fill the gaps of a measured table first.")
+    return array
+
+
+def _increasing(where: str, values: object, at_least: int, unit: str) -> np.ndarray:
+    array = _finite(where, values)
+    if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) > 0.0):
+        raise InputError(
+            f"{where} must be at least {at_least} increasing numbers in {unit}, got {values!r}; sort the points."
+        )
+    return array

@@ -1,0 +1,67 @@
+"""Wear of the bore after Archard: what asperities rub off deepens the gap.
+
+``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k = K / H with
+Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24 (1953) 981.
+
+The depth belongs to the accepted history: a step sees the depth at its start, and its own wear is added at its end with the
+pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the roughness).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.status import require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArchardWear:
+    """Wear of the bore by its asperity contact; needs ``asperity=GreenwoodTripp(...)``.
+
+    Parameters
+    ----------
+    wear_rate : float
+        Specific wear rate k, m2/N; 1e-18 to 1e-14 from well lubricated to dry.
+    acceleration : float
+        Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an estimate as long
+        as it changes by much less than the roughness per period of the load.
+    """
+
+    wear_rate: float
+    acceleration: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_number(
+            "ArchardWear.wear_rate",
+            self.wear_rate,
+            "m2/N",
+            at_least=0.0,
+            hint="1e-16 is a start for a lubricated bush.",
+        )
+        require_number("ArchardWear.acceleration", self.acceleration, above=0.0)
+
+
+class WearDepth:
+    """`ArchardWear` in scaled form: gap term and rule of growth of one bearing model.
+
+    Parameters
+    ----------
+    wear : ArchardWear
+    shape : (int, int)
+    clearance : float
+        Radial clearance, m.
+    """
+
+    def __init__(self, wear: ArchardWear, shape: tuple[int, int], clearance: float) -> None:
+        self.rate = wear.wear_rate * wear.acceleration / clearance
+        self.unworn = np.zeros(shape)
+
+    def depth(self, wear: np.ndarray | None) -> np.ndarray:
+        """Scaled depth (n, m) at the start of a step; zero without a history."""
+        return self.unworn if wear is None else wear
+
+    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Scaled depth (n, m) after ``step`` (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
+        return self.depth(wear) + self.rate * step * abs(speed) * contact_pressure

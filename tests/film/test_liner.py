@@ -1,0 +1,197 @@
+"""Elastic liner: kernels against readable twins, limits, independence of the start, refusals."""
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film import liner_newton
+from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.liner import LinerFilmSolver
+from exudyn_ehd.film.solver import FilmSolver
+
+GRID = bearing_grid(0.02, 0.03, 32, 6)
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()]
+KINDS = {
+    "FullSommerfeld": liner_newton.FULL,
+    "Gumbel": liner_newton.CLIPPED,
+    "SwiftStieber": liner_newton.COMPLEMENTARY,
+}
+every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+
+
+def gaps(eps, angle=0.3, rate=0.0):
+    """Gap at vertices and links and the gap's rate of a parallel journal."""
+
+    def row(x):
+        return np.outer(1.0 - eps * np.cos(x - angle), np.ones(GRID.z.size))
+
+    return row(GRID.x), row(GRID.x_face), -rate * np.outer(np.cos(GRID.x), np.ones(GRID.z.size))
+
+
+def solve(closure, beta, eps=0.6, rate=0.0, cold=True, solver=None, delta_old=None, step=0.0):
+    solver = solver or LinerFilmSolver(GRID, closure)
+    solver.beta = beta
+    solver.H[:], solver.HF[:], solver.H_t[:] = gaps(eps, rate=rate)
+    solver.delta_old = delta_old
+    if cold:
+        solver.forget()
+    status, _ = solver.solve(50.0, 3.0, closure.cavity_pressure, None, step)
+    assert status is ehd.Status.CONVERGED
+    return solver
+
+
+def balance(rigid, P, D, vx, vz, beta, inverse_step, delta_old):
+    """Outflow - inflow + squeeze of every vertex, link by link; D is the pressure that the liner feels."""
+    n, m = P.shape
+    r = np.zeros((n, m))
+    for i in range(n):
+        for j in range(m):
+            h = rigid[1, i, j] + beta * (D[i, j] + D[(i + 1) % n, j]) / 2
+            d = beta * (D[(i + 1) % n, j] - D[i, j]) / 2
+            mean_cube = ((h - d) ** 3 + (h - d) ** 2 * (h + d) + (h - d) * (h + d) ** 2 + (h + d) ** 3) / 4
+            q = GRID.width_z[j] * (vx * h - mean_cube * GRID.link_x[i] * (P[(i + 1) % n, j] - P[i, j]))
+            r[i, j] += q
+            r[(i + 1) % n, j] -= q
+            if j + 1 < m:
+                h = (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (D[i, j] + D[i, j + 1])) / 2
+                d = beta * (D[i, j + 1] - D[i, j]) / 2
+                mean_cube = ((h - d) ** 3 + (h - d) ** 2 * (h + d) + (h - d) * (h + d) ** 2 + (h + d) ** 3) / 4
+                q = GRID.width_x[i] * (vz * h - mean_cube * GRID.link_z[j] * (P[i, j + 1] - P[i, j]))
+                r[i, j] += q
+                r[i, j + 1] -= q
+            rate = rigid[2, i, j] + (beta * D[i, j] - delta_old[i, j]) * inverse_step
+            r[i, j] += rate * GRID.width_x[i] * GRID.width_z[j]
+    return r
+
+
+@every_closure
+def test_balance_and_matrix(closure):
+    """The kernels' balance against its twin, and the assembled matrix against central differences of the twin.
+
+    Differences with step 1e-6 of quartic polynomials around one: 1e-9 of the largest entry.
+    """
+    rng = np.random.default_rng(4)
+    kind, beta, inverse, pc = KINDS[type(closure).__name__], 0.02, 3.0, 0.1
+    rigid = np.array([0.3 + rng.random(GRID.shape), 0.3 + rng.random(GRID.shape), rng.normal(size=GRID.shape)])
+    P, old = 1.0 + rng.normal(size=GRID.shape), rng.random(GRID.shape)
+
+    def twin(P):
+        D = np.where(GRID.fixed | (kind != liner_newton.CLIPPED), P, np.maximum(P, pc))
+        return balance(rigid, P, D, 2.0, -1.0, beta, inverse, old)
+
+    g, r = GRID, np.empty(GRID.shape)
+    liner_newton.liner_residual(
+        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, inverse, old, r
+    )
+    np.testing.assert_allclose(r, twin(P), atol=1e-12)
+    solver = LinerFilmSolver(GRID, closure)
+    w, derivatives = solver.work, np.zeros((4, *GRID.shape))
+    lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
+    active = ~g.fixed
+    count, width = liner_newton.number_cells(active, solver.links, w.order, w.number)
+    liner_newton.flux_derivatives(
+        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, derivatives
+    )
+    liner_newton.assemble_liner(
+        derivatives, P, pc, kind, beta * inverse, g.width_x, g.width_z, w.number, w.order, count, width, lower, upper
+    )
+    A = np.zeros((count, count))
+    for k in range(count):
+        for d in range(min(width, count - 1 - k) + 1):
+            A[k, k + d] = upper[k, d]
+            if d:
+                A[k + d, k] = lower[k, d]
+    at = w.order[:count]
+    B = np.zeros((count, count))
+    for k in range(count):
+        step = np.zeros(P.size)
+        step[at[k]] = 1e-6
+        step = step.reshape(P.shape)
+        B[:, k] = (twin(P + step) - twin(P - step)).ravel()[at] / 2e-6
+    np.testing.assert_allclose(A, B, atol=1e-8 * np.abs(B).max())
+
+
+@every_closure
+def test_solution_keeps_its_conditions(closure):
+    """Balance at vertices under pressure, complementarity at the others; 1e-9 of the largest Couette flux."""
+    s = solve(closure, 0.002, rate=10.0)
+    rigid = np.array(gaps(0.6, rate=10.0))
+    P = s.system.linear_pressure
+    r = balance(rigid, P, s.pressure, 50.0, 3.0, 0.002, 0.0, np.zeros(GRID.shape))
+    scale = 50.0 * GRID.width_z.max()
+    free = ~GRID.fixed
+    if type(closure) is ehd.SwiftStieber:
+        assert s.pressure.min() >= 0.0
+        assert np.all(r[free & (P <= 0.0)] >= -1e-9 * scale)
+        free &= P > 0.0
+    assert np.abs(r[free]).max() < 1e-9 * scale
+    np.testing.assert_allclose(s.H, rigid[0] + 0.002 * s.pressure, atol=1e-15)
+
+
+@every_closure
+def test_stiff_liner_approaches_the_rigid_bore_at_first_order(closure):
+    plain = FilmSolver(GRID, closure)
+    plain.H[:], plain.HF[:], plain.H_t[:] = gaps(0.6)
+    plain.solve(50.0, 3.0, closure.cavity_pressure)
+    errors = [np.abs(solve(closure, beta).pressure - plain.pressure).max() for beta in (4e-6, 2e-6, 1e-6)]
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(rates, 1.0, atol=0.02)
+
+
+@every_closure
+def test_the_start_changes_no_result(closure):
+    """Cold, warm from afar and warm from nearby: 1e-12 of the peak, the error at which the iteration stands."""
+    cold = solve(closure, 0.003).pressure.copy()
+    for eps in (0.1, 0.85, 0.6):
+        warm = solve(closure, 0.003, eps=eps)
+        again = solve(closure, 0.003, cold=False, solver=warm).pressure
+        np.testing.assert_allclose(again, cold, atol=1e-12 * np.abs(cold).max())
+
+
+def test_heavy_and_soft_films_converge():
+    """Eccentricity to 0.995 and liners from stiff to soft, cold and warm; no more than 60 solves were seen, cold."""
+    for eps in (0.5, 0.9, 0.99, 0.995):
+        for beta in (1e-6, 1e-4, 1e-3, 1e-2, 0.1):
+            solver = solve(ehd.SwiftStieber(), beta, eps=eps)
+            assert solver.pressure.min() >= 0.0 and solver.H.min() > 0.0
+
+
+def test_a_bore_that_touches_at_its_ends_has_no_film():
+    """Where the pressure is prescribed a column can't give way."""
+    solver = LinerFilmSolver(GRID, ehd.SwiftStieber())
+    solver.beta = 0.01
+    solver.H[:], solver.HF[:], solver.H_t[:] = gaps(1.01)
+    assert solver.solve(50.0, 0.0, 0.0)[0] is ehd.Status.NO_FILM
+
+
+def test_rate_of_the_liner_is_backward_euler():
+    """A step from a relaxed liner feeds it: the balance of the twin with the deflection's rate, and the steady film in the end."""
+    closure, beta, step = ehd.SwiftStieber(), 0.01, 1e-3
+    old = np.zeros(GRID.shape)
+    s = solve(closure, beta, delta_old=old, step=step)
+    P = s.pressure
+    r = balance(np.array(gaps(0.6)), P, P, 50.0, 3.0, beta, 1.0 / step, old)
+    assert np.abs(r[~GRID.fixed & (P > 0.0)]).max() < 1e-9 * 50.0
+    for _ in range(300):
+        s = solve(closure, beta, solver=s, cold=False, delta_old=s.deflection.copy(), step=step)
+    np.testing.assert_allclose(s.pressure, solve(closure, beta).pressure, atol=1e-8 * P.max())
+
+
+def test_pressure_at_an_instant_is_that_of_the_deflection():
+    """A liner that has no time to give way keeps its pressure; 1e-6 s against a period of 0.1 s: below 1e-3."""
+    s = solve(ehd.SwiftStieber(), 0.01)
+    before = s.pressure.copy()
+    after = solve(ehd.SwiftStieber(), 0.01, eps=0.5, delta_old=s.deflection.copy(), solver=s).pressure
+    np.testing.assert_allclose(after, before, atol=1e-3 * before.max())
+
+
+def test_compliance():
+    """t / E for nu = 0; K_nu = 1.3 * 0.4 / 0.7 for nu = 0.3."""
+    assert ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9, poisson_ratio=0.0).compliance == pytest.approx(1e-12)
+    assert ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9).compliance == pytest.approx(1e-12 * 0.52 / 0.7)
+
+
+@pytest.mark.parametrize(("option", "value"), [("thickness", 0.0), ("youngs_modulus", -1.0), ("poisson_ratio", 0.5)])
+def test_refused_values(option, value):
+    with pytest.raises(ehd.InputError, match=rf"ElasticLiner\.{option}"):
+        ehd.ElasticLiner(**({"thickness": 1e-3, "youngs_modulus": 1e9} | {option: value}))

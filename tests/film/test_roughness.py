@@ -1,0 +1,137 @@
+"""Flow factors: tables against formulas, limits, derivatives, and the flow through a sinusoidal roughness by its exact solution."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.stats import norm
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.average_gap import average_gap_ratio
+from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.roughness import (
+    PATTERNS,
+    SHEAR_CUTOFF,
+    RoughFlow,
+    RoughShear,
+    mean_inverse_gap,
+    pressure_flow_factor,
+    shear_flow_factor,
+)
+
+CLEARANCE = 20e-6
+SIGMA = 0.5e-6
+
+
+def rough(pattern=1.0, share=0.5, residual=0.02):
+    spec = ehd.PatirCheng(composite_roughness=SIGMA, pattern=pattern, journal_share=share)
+    return RoughFlow(spec, CLEARANCE, residual), RoughShear(spec, CLEARANCE, residual)
+
+
+def factors(t, pattern=1.0, share=0.5, residual=0.02):
+    """phi_x, phi_z, shear carrier factors, each with its derivative by t, at average gaps t = h_T / sigma (k,)."""
+    flow, _ = rough(pattern, share, residual)
+    gap = np.atleast_2d(t) * flow.sigma
+    flux = LinkFlux(gap.shape)
+    for field in (flux.gx, flux.gz, flux.cx, flux.cz):
+        field[:] = 1.0
+    flow.apply(flux, gap, gap, 1.0, 1.0)
+    names = ("gx", "gz", "cx", "cz")
+    return {k: (getattr(flux, k)[0], getattr(flux, k + "_h")[0] * flow.sigma) for k in names}
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_pressure_flow_over_the_fits_range(pattern):
+    """phi h_T^3 = phi_x h^3; 2e-4 of the table's interpolation, next to a kink where the extrapolation starts."""
+    H = np.concatenate((np.linspace(PATTERNS[pattern][2] + 0.01, 12.0, 500), np.geomspace(12.0, 300.0, 50)))
+    t = average_gap_ratio(H, 0.02)
+    found = factors(t, pattern)
+    np.testing.assert_allclose(found["gx"][0], pressure_flow_factor(H, pattern) * H**3 / t**3, rtol=2e-4)
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_flow_across_is_flow_along_the_inverse_pattern(pattern):
+    t = np.geomspace(0.1, 100.0, 40)
+    np.testing.assert_array_equal(factors(t, pattern)["gz"][0], factors(t, 1.0 / pattern)["gx"][0])
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_shear_flow_over_the_fits_range(pattern, share):
+    """Carrier h_T + sigma phi_s; the fit itself jumps by 1e-4 at H = 5."""
+    H = np.linspace(PATTERNS[pattern][2] + 0.01, 30.0, 700)
+    t = average_gap_ratio(H, 0.02)
+    carrier = factors(t, pattern, share)["cx"][0] * t
+    np.testing.assert_allclose(carrier - t, (2 * share - 1) * shear_flow_factor(H, pattern), atol=2e-4)
+
+
+def test_equally_rough_surfaces_have_no_shear_flow():
+    for value, slope in (factors(np.geomspace(0.1, 50, 20))[k] for k in ("cx", "cz")):
+        assert np.all(value == 1.0) and not slope.any()
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize("share", [0.0, 1.0])
+def test_all_factors_stay_positive_and_smooth(pattern, share):
+    """From the residual film to films without roughness; derivatives against central differences.
+
+    Differences of step 1e-5 t of a cubic spline are good to 1e-6 of the slope's scale away from its knots.
+    """
+    t = np.geomspace(0.02, 1e3, 400)
+    found = factors(t, pattern, share)
+    step = 1e-5 * t
+    upper, lower = factors(t + step, pattern, share), factors(t - step, pattern, share)
+    for name, (value, slope) in found.items():
+        assert value.min() > 0.0, name
+        difference = (upper[name][0] - lower[name][0]) / (2 * step)
+        np.testing.assert_allclose(slope * t, difference * t, atol=2e-6 * max(1.0, np.abs(slope * t).max()))
+
+
+def test_smooth_surfaces_are_the_limit():
+    """Isotropic: 1 - 0.9 exp(-0.56 H), below 1e-9 at H = 40."""
+    found = factors(np.array([40.0, 100.0, 1e4]))
+    np.testing.assert_allclose(found["gx"][0], 1.0, atol=1e-8)
+
+
+def test_friction_factor_is_the_mean_inverse_gap():
+    """h_T E[1 / gap] over gaps above sigma / 100 by quadrature; 5e-5 of the table's interpolation."""
+    _, shear = rough()
+    H = np.array([-1.0, 0.0, 0.3, 1.0, 2.0, 3.0, 5.0, 12.0, 40.0])
+    t = average_gap_ratio(H, 0.02)
+    exact = [
+        quad(lambda s, h=h: norm.pdf(s - h) / s, SHEAR_CUTOFF, max(h, 0) + 12, points=[max(h, 0.05)], limit=400)[0]
+        for h in H
+    ]
+    np.testing.assert_allclose(mean_inverse_gap(H), exact, rtol=1e-5)
+    gap = (t * shear.sigma)[None]
+    ratio, ratio_h, ratio_v = (np.empty(gap.shape) for _ in range(3))
+    shear.factor(gap, 1.0, ratio, ratio_h, ratio_v)
+    np.testing.assert_allclose(ratio[0], t * np.array(exact), rtol=5e-5, atol=1e-4)
+    assert not ratio_v.any()
+
+
+def test_friction_factor_far_from_contact():
+    """1 + (sigma/h)^2 + 3 (sigma/h)^4 for a narrow distribution, whose first terms any symmetric one shares."""
+    H = 20.0
+    assert mean_inverse_gap(np.array([H]))[0] * H == pytest.approx(1 + H**-2 + 3 * H**-4, abs=3e-7)
+
+
+def test_lay_decides_the_direction_of_easy_flow():
+    """Ridges along the motion ease the flow along it, ridges across hinder it; for parallel ridges the exact limits are E[h^3] / h^3
+    and 1 / (h^3 E[h^-3])."""
+    H = 3.0
+    along, isotropic, across = (pressure_flow_factor(H, g) for g in (9.0, 1.0, 1 / 9))
+    assert 1 + 3 / H**2 > along > 1.0 > isotropic > across > 0.0
+
+
+@pytest.mark.parametrize(
+    ("option", "value"), [("pattern", 2.0), ("composite_roughness", -1e-6), ("journal_share", 1.5)]
+)
+def test_refused_values(option, value):
+    with pytest.raises(ehd.InputError, match=rf"PatirCheng\.{option}"):
+        ehd.PatirCheng(**({"composite_roughness": 1e-6} | {option: value}))
+
+
+def test_patterns_may_be_written_with_three_digits():
+    assert math.isclose(factors(np.array([3.0]), 0.3333)["gx"][0][0], factors(np.array([3.0]), 1 / 3)["gx"][0][0])
