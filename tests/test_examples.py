@@ -32,3 +32,13 @@ def test_rotating_journal(example, tmp_path):
             assert steel["minimum_gap_um"] > rigid["minimum_gap_um"]
     # Gumbel drops the linear film's suction: symmetric to rounding when aligned
     assert cases["Gumbel", "aligned", "steel, modal"]["asymmetry"] < 1e-6
+
+
+def test_elastic_big_end(example, tmp_path):
+    cases = example("elastic_big_end").main(quick=True, results=tmp_path)
+    assert cases.pop("picture").stat().st_size > 10_000
+    rigid, elastic = cases["rigid"], cases["elastic"]
+    # the mechanism sets the force; the elastic bore spreads its pressure
+    assert abs(elastic["largest_force_kN"] / rigid["largest_force_kN"] - 1) < 0.01
+    assert elastic["peak_MPa"] < 0.95 * rigid["peak_MPa"]
+    assert abs(elastic["iterations_per_step"] - rigid["iterations_per_step"]) < 2

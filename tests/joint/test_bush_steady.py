@@ -154,7 +154,7 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
 @pytest.mark.parametrize(
     ("bush", "message"),
     [
-        (3, "bush must be ModalBush"),
+        (3, "bush must be ElasticLiner"),
         (ehd.ANCFBush(mesh=dataclasses.replace(CYLINDER, inner_radius=0.04), material=material()), "bore radius"),
         (ehd.ANCFBush(mesh=dataclasses.replace(CYLINDER, length=0.03), material=material()), "as long as the film"),
     ],
