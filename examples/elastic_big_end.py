@@ -73,7 +73,7 @@ def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) 
 
     # the crank turns about the origin; its body's reference point is the axis of rotation
     crank_node, crank = body(3.0, 5e-3, 0.0, 0.0, SPEED)
-    rod_node, rod = body(ROD_MASS, ROD_INERTIA, CRANK + ROD / 2, SPEED * CRANK / 2, -SPEED * CRANK / ROD)
+    _, rod = body(ROD_MASS, ROD_INERTIA, CRANK + ROD / 2, SPEED * CRANK / 2, -SPEED * CRANK / ROD)
     piston_node, piston = body(PISTON_MASS, 1e-4, CRANK + ROD, 0.0, 0.0)
     for coordinate in (0, 1):
         prescribe(crank_node, coordinate)

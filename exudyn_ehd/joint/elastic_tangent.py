@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.gap_sweep import gap_gradient
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
     field_gradient,
     friction_rows,
     shear_needs_adjoint,
+    swept_gradient,
     wrench_tangent,
 )
 
@@ -32,12 +34,9 @@ def elastic_tangent(model: ElasticBearingModel) -> np.ndarray:
     count = len(integrals)
     lam = model.solver.adjoint(np.concatenate((integrals, _bore_rows(model))))
     gradient = np.empty((count + k, SIZE))
-    sens = field_gradient(model, lam, gradient)
-    sens.cell += 0.5 * sens.face
-    sens.cell[:, 1:] += 0.5 * sens.face[:, :-1]
-    sens.cell[:, 0] += 0.5 * sens.face[:, -1]
-    by_q = bore.contract(sens.cell) / c
-    by_rate = np.zeros_like(by_q) if sens.rate is None else bore.contract(sens.rate) / c
+    cell, rate = _gap_gradients(model, lam, gradient)
+    by_q = bore.contract(cell) / c
+    by_rate = np.zeros_like(by_q) if rate is None else bore.contract(rate) / c
     out = np.empty((6 + k, SIZE + 2 * k))
     out[:6, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
     out[:6, SIZE : SIZE + k] = _wrench_by_bore(model, by_q[:count], _Direct(model))
@@ -48,6 +47,21 @@ def elastic_tangent(model: ElasticBearingModel) -> np.ndarray:
     if model.contact_fields is not None:
         _add_contact_loads(model, out)
     return out
+
+
+def _gap_gradients(
+    model: ElasticBearingModel, lam: np.ndarray, gradient: np.ndarray
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """Gradients of adjoint functionals to the gap at the vertices and to its rate, (k, n, m); those to the motion in ``gradient``."""
+    if model.solver.plain_links:
+        cell, rate = np.empty_like(lam), np.empty_like(lam)
+        gap_gradient(lam, *swept_gradient(model, lam, gradient), cell, rate)
+        return cell, rate if model.solver.storage_weights()[0].any() else None
+    sens = field_gradient(model, lam, gradient)
+    sens.cell += 0.5 * sens.face
+    sens.cell[:, 1:] += 0.5 * sens.face[:, :-1]
+    sens.cell[:, 0] += 0.5 * sens.face[:, -1]
+    return sens.cell, sens.rate
 
 
 def _bore_rows(model: ElasticBearingModel) -> np.ndarray:

@@ -84,8 +84,16 @@ def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate:
     return out
 
 
-def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
+def swept_gradient(
+    model: BearingModel, lam: np.ndarray, gradient: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links.
+
+    Returns
+    -------
+    DX, DZ, slope, AR, AC : (n, m) arrays
+        Derivatives of links and storage, as `sweep.pose_gradient` takes them.
+    """
     s = model.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
@@ -99,6 +107,7 @@ def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -
         lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, model.cos_x, model.sin_x, model.cos_f, model.sin_f,
         model.grid.z, gradient,
     )  # fmt: skip
+    return d.DX, d.DZ, slope, by_rate, by_gap
 
 
 def field_gradient(
