@@ -40,6 +40,7 @@ from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, W
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
+from exudyn_ehd.joint.audit import Audit, Finding
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
@@ -86,6 +87,7 @@ def __getattr__(name: str) -> Any:
 __all__ = [
     "ANCFBush",
     "ArchardWear",
+    "Audit",
     "AxialGroove",
     "AxialProfile",
     "BarusPressure",
@@ -108,6 +110,7 @@ __all__ = [
     "FilmEnergy",
     "FilmError",
     "FilmResult",
+    "Finding",
     "FiniteLength",
     "FixedOuter",
     "FlexibleBush",

@@ -73,6 +73,40 @@ class LubricatedJoint:
         """
         return self.element.snapshot(self.mbs)
 
+    def audit(self, *, liner: Any = None, measure_time: bool = False) -> Any:
+        """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
+
+        The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,
+        on a model of their own: the joint is not touched.
+
+        Parameters
+        ----------
+        liner : ElasticLiner, optional
+            Of which to say whether its elasticity would matter; for bearings without one.
+        measure_time : bool
+            Measure the share of the time that every effect takes which is on.
+
+        Returns
+        -------
+        Audit
+            Print it for a table; ``neglected`` and ``in_vain`` hold what to change.
+
+        Raises
+        ------
+        InputError
+            Before anything was recorded.
+        """
+        history = self.history
+        if history.time.size == 0:
+            raise InputError(
+                f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
+            )
+        audit = importlib.import_module("exudyn_ehd.joint.audit")
+        states = importlib.import_module("exudyn_ehd.joint.audit_states")
+        names = [field.name for field in dataclasses.fields(states.RecordedSteps)]
+        record = states.RecordedSteps(**{name: getattr(history, name) for name in names})
+        return audit.audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
+
     def AddSensor(
         self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
     ) -> Any:

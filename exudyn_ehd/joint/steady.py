@@ -10,9 +10,12 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.steps import SteppedGap
+from exudyn_ehd.joint.audit import Audit, audit_states
+from exudyn_ehd.joint.audit_states import FilmState
 from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.model import BearingModel
@@ -206,6 +209,9 @@ class SteadyResult:
     status, iterations : Status, int
     temperature : (n, m) array, float or None
         Of the film, K; None for an isothermal bearing.
+    bearing : JournalBearing
+    motion : (10,) array
+        Of the journal, as in `exudyn_ehd.joint.model`.
     """
 
     theta: np.ndarray
@@ -233,6 +239,24 @@ class SteadyResult:
     status: Status
     iterations: int
     temperature: float | np.ndarray | None = None
+    bearing: JournalBearing = field(repr=False, kw_only=True)
+    motion: np.ndarray = field(repr=False, kw_only=True)
+
+    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
+        """Which effects matter at this position, which are left out, which are paid for in vain; print it for a table.
+
+        Parameters
+        ----------
+        liner : ElasticLiner, optional
+            Of which to say whether its elasticity would matter; for bearings without one.
+        measure_time : bool
+            Measure the share of the time that every effect takes which is on.
+        """
+        open_ring = isinstance(self.bearing.inlet, MaximumGap)
+        start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
+        model = build_study_model(self.bearing, start)
+        state = FilmState(self.motion, _history_at(model, self.motion, "audit"))
+        return audit_states(model, [state], liner=liner, measure_time=measure_time)
 
 
 def steady(
@@ -360,6 +384,8 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         status=model.status,
         iterations=model.iterations,
         temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
+        bearing=model.bearing,
+        motion=model.motion.copy(),
     )
 
 
