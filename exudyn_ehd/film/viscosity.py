@@ -39,6 +39,15 @@ class BoundPressureLaw(Protocol):
         """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
 
 
+LARGEST_COEFFICIENT = 1e-4
+
+
+def _check_coefficient(where: str, value: float) -> None:
+    hint = "mineral oils have 1e-8 to 2.5e-8 1/Pa."
+    if require_number(where, value, "1/Pa", above=0.0, hint=hint) > LARGEST_COEFFICIENT:
+        raise InputError(f"{where} must be at most {LARGEST_COEFFICIENT:g} 1/Pa, got {value!r}; {hint}")
+
+
 @dataclass(frozen=True, kw_only=True)
 class BarusPressure:
     """Barus' law ``mu = mu_0 exp(alpha p)``; good to some 100 MPa, too steep beyond.
@@ -52,13 +61,7 @@ class BarusPressure:
     coefficient: float
 
     def __post_init__(self) -> None:
-        require_number(
-            "BarusPressure.coefficient",
-            self.coefficient,
-            "1/Pa",
-            above=0.0,
-            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
-        )
+        _check_coefficient("BarusPressure.coefficient", self.coefficient)
 
     def check(self, viscosity: float) -> None:
         """Any reference viscosity will do."""
@@ -92,10 +95,7 @@ class RoelandsPressure:
     reference_pressure: float = 1.96e8
 
     def __post_init__(self) -> None:
-        require_number(
-            "RoelandsPressure.coefficient", self.coefficient, "1/Pa", above=0.0,
-            hint="mineral oils have 1e-8 to 2.5e-8 1/Pa.",
-        )  # fmt: skip
+        _check_coefficient("RoelandsPressure.coefficient", self.coefficient)
         require_number("RoelandsPressure.reference_pressure", self.reference_pressure, "Pa", above=0.0)
 
     def check(self, viscosity: float) -> None:

@@ -1,0 +1,114 @@
+"""Every pair of effects, with every closure: it is refused when described, or it is finite, balanced and differentiated exactly."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+
+CLEARANCE = 50e-6
+SCALE = np.array([CLEARANCE, CLEARANCE, 2e-3, 2e-3, 1e-2, 1e-2, 0.5, 0.5, 300.0, 1.0])
+MOTION = np.array([0.5, 0.45, 0.05, -0.1, 0.2, -0.1, 0.06, 0.02, 1.0, 0.5]) * SCALE
+
+# What each effect adds to the bearing; "lubricant" entries go to its lubricant.
+EFFECTS = {
+    "barus": {"lubricant": {"pressure_law": ehd.BarusPressure(coefficient=2e-8)}},
+    "roelands": {"lubricant": {"pressure_law": ehd.RoelandsPressure(coefficient=2e-8)}},
+    "carreau": {"lubricant": {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.8)}},
+    "groove": {"supply": (ehd.AxialGroove(angle=3.0, width_angle=0.4, length=0.02, pressure=2e5),)},
+    "wall": {"contact": ehd.RegularisedWall(onset=0.35 * CLEARANCE, pressure=1e7)},
+    "asperity": {"asperity": ehd.GreenwoodTripp(composite_roughness=5e-6, composite_modulus=1e9)},
+    "roughness": {"roughness": ehd.PatirCheng(composite_roughness=5e-6)},
+    "profile": {"profile": ehd.OutOfRound(order=2, amplitude=3e-6, phase=0.4)},
+    "liner": {"bush": ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)},
+    "lumped": {"thermal": ehd.LumpedThermal(supply_temperature=320.0)},
+    "energy": {"thermal": ehd.FilmEnergy(supply_temperature=320.0)},
+    "wear": {
+        "asperity": ehd.GreenwoodTripp(composite_roughness=5e-6, composite_modulus=1e9),
+        "wear": ehd.ArchardWear(wear_rate=1e-15),
+    },
+}
+CLOSURES = {
+    "gumbel": ehd.Gumbel(cavity_pressure=-5e4),
+    "swift": ehd.SwiftStieber(cavity_pressure=-5e4),
+    "elrod": ehd.ElrodAdams(cavity_pressure=-5e4),
+}
+
+
+def _bearing(names, closure):
+    options, lubricant = {}, {}
+    for name in names:
+        for key, value in EFFECTS[name].items():
+            if key == "lubricant":
+                lubricant |= value
+            else:
+                options[key] = value
+    if "thermal" in options:
+        lubricant |= {
+            "temperature_law": ehd.ReynoldsTemperature(point=(320.0, 0.02), coefficient=0.03),
+            "temperature": 320.0,
+        }
+    return ehd.JournalBearing(
+        journal_radius=0.025, length=0.04, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02, **lubricant),
+        film=ehd.FiniteLength(n_theta=40, n_z=6), cavitation=CLOSURES[closure], **options,
+    )  # fmt: skip
+
+
+def _differences(model, history, step, direction, h=1e-6):
+    plus = model.evaluate(MOTION + h * direction * SCALE, history, step).wrench
+    minus = model.evaluate(MOTION - h * direction * SCALE, history, step).wrench
+    return (plus - minus) / (2 * h)
+
+
+@pytest.mark.parametrize("closure", CLOSURES)
+@pytest.mark.parametrize("pair", list(itertools.combinations(EFFECTS, 2)), ids="-".join)
+def test_pair(pair, closure):
+    try:
+        model = build_model(_bearing(pair, closure))
+    except ehd.InputError as error:
+        # refused when described, with both options' names or a next step in the text
+        assert len(str(error)) > 60
+        return
+    start = MOTION - 0.002 * SCALE
+    start[4:8] = 0.0
+    history, step = model.initial_history(start), 2e-4
+    evaluation = model.evaluate(MOTION, history, step)
+    assert evaluation.status is ehd.Status.CONVERGED
+    tangent = evaluation.tangent()
+    values = evaluation.quantities()
+    assert np.all(np.isfinite(evaluation.wrench))
+    assert np.all(np.isfinite(tangent))
+    assert all(math.isfinite(v) for v in values.values())
+    if closure == "elrod" and "elrod" not in pair:
+        _check_mass(model, history, step)
+    rng = np.random.default_rng(3)
+    for _ in range(3):
+        direction = rng.normal(size=10)
+        expected = _differences(model, history, step, direction)
+        got = tangent @ (direction * SCALE)
+        scale = np.abs(tangent * SCALE).max(axis=1)
+        # central differences with h = 1e-6 of the scales: truncation 1e-9 and rounding 1e-9 of smooth states
+        assert np.all(np.abs(got - expected) < 1e-6 * scale)
+
+
+def _check_mass(model, history, step):
+    """What flows in at prescribed vertices is what the film's content gains, to rounding of the flows."""
+    after = model.history()
+    s = model.solver
+    inflow = s.inflow()
+    gain = np.sum((after.mass - history.mass) * s.area) / step
+    assert inflow.sum() == pytest.approx(gain, abs=1e-10 * np.abs(inflow).sum() + 1e-10 * abs(gain) + 1e-9)
+
+
+def test_most_pairs_are_allowed():
+    """The refusals are exceptions: same slot twice, and what the liner can't do yet."""
+    refused = []
+    for pair in itertools.combinations(EFFECTS, 2):
+        try:
+            build_model(_bearing(pair, "swift"))
+        except ehd.InputError:
+            refused.append(pair)
+    assert all("liner" in pair or "wall" in pair for pair in refused), refused
