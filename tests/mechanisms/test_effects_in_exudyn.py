@@ -16,6 +16,8 @@ SPEED, LOAD, STEPS, STEP = 200.0, 600.0, 120, 1e-4
 OIL = ehd.oil("ISO VG 46", temperature=323.15)
 ASPERITY = ehd.GreenwoodTripp(composite_roughness=0.8e-6, composite_modulus=2e10)
 ENDS = (2e4, 2e4)
+# Mixed friction: gaps of about the roughness.
+HEAVY, SLOW = 24000.0, 4.0
 
 
 def bearing(laws=None, **options):
@@ -34,10 +36,10 @@ def run(planar_rotor):
     """History and Newton iterations per step of a bearing under a load; each is run once."""
 
     @functools.cache
-    def run(made, load=LOAD):
-        rotor = planar_rotor(made, mass=2.0, speed=SPEED, load=(0.0, -load))
+    def run(made, load=LOAD, speed=SPEED):
+        rotor = planar_rotor(made, mass=2.0, speed=speed, load=(0.0, -load))
         history = rotor.run(STEPS * STEP, STEP)
-        return history, rotor.mbs.sys["dynamicSolver"].it.newtonStepsCount / STEPS
+        return history, rotor.mbs.sys["dynamicSolver"].it.newtonStepsCount / (history.time.size - 1)
 
     return run
 
@@ -46,10 +48,11 @@ def run(planar_rotor):
 def compare(run, measured, request):
     """Histories with and without an effect, once its iterations are those of the plain film."""
 
-    def compare(with_effect, without, load=LOAD):
-        (on, steps), (off, plain_steps) = run(with_effect, load), run(without, load)
+    def compare(with_effect, without, load=LOAD, speed=SPEED):
+        (on, steps), (off, plain_steps) = run(with_effect, load, speed), run(without, load, speed)
         for history in (on, off):
-            assert history.time.size == STEPS + 1
+            # under heavy loads the first steps may be halved
+            assert STEPS + 1 <= history.time.size <= 1.1 * STEPS
             for name in ("motion", "force", "moment", "minimum_gap", "peak_pressure", "friction_torque", "power_loss"):
                 assert np.all(np.isfinite(getattr(history, name))), name
         print(f"{request.node.name}: {steps:.2f} Newton iterations per step, plain film {plain_steps:.2f}")
@@ -64,14 +67,14 @@ def test_pressure_thickens_the_oil(compare):
     law = {"pressure_law": ehd.BarusPressure(coefficient=2e-8)}
     on, off = compare(bearing(law), bearing(), 4 * LOAD)
     # a thicker oil carries the same load in a wider gap
-    assert on.minimum_gap.min() > 1.01 * off.minimum_gap.min()
+    assert on.minimum_gap.min() > 1.02 * off.minimum_gap.min()
 
 
 def test_shear_thins_the_oil(compare):
-    law = {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.6, residual=0.2)}
+    law = {"shear_law": ehd.CarreauShear(relaxation_time=5e-6, exponent=0.5, residual=0.1)}
     on, off = compare(bearing(law), bearing())
     assert on.minimum_gap.min() < 0.98 * off.minimum_gap.min()
-    assert abs(on.friction_torque[-1]) < 0.95 * abs(off.friction_torque[-1])
+    assert abs(on.friction_torque[-1]) < 0.9 * abs(off.friction_torque[-1])
 
 
 @pytest.mark.parametrize(
@@ -109,25 +112,24 @@ def test_groove_in_the_loaded_part_costs_film(compare):
     assert on.minimum_gap.min() < 0.9 * off.minimum_gap.min()
 
 
-def test_roughness_across_the_motion_carries(compare):
-    rough = ehd.PatirCheng(composite_roughness=1.5e-6, pattern=1.0 / 9.0)
+def test_roughness_along_the_motion_seals_a_narrow_bearing(compare):
+    rough = ehd.PatirCheng(composite_roughness=1.5e-6, pattern=9.0)
     on, off = compare(bearing(roughness=rough), bearing(), 2 * LOAD)
-    # ridges across the motion hold the oil back
-    assert on.minimum_gap.min() > 1.005 * off.minimum_gap.min()
+    # ridges along the motion hold back the oil that leaves at the ends
+    assert on.minimum_gap.min() > 1.01 * off.minimum_gap.min()
 
 
-def test_asperities_take_a_share_of_a_heavy_load(compare):
-    heavy = 20 * LOAD
-    on, off = compare(bearing(asperity=ASPERITY), bearing(contact=ehd.RegularisedWall(onset=0.4e-6)), heavy)
-    assert on.contact_load.max() > 0.02 * heavy
-    # boundary friction brakes, on top of the film's
-    assert on.contact_torque.min() < 0.0
-    assert np.all(off.contact_torque == 0.0)
+def test_asperities_brake_a_slow_journal(compare):
+    on, off = compare(bearing(asperity=ASPERITY), bearing(), HEAVY, SLOW)
+    assert on.contact_load.max() > 0.005 * HEAVY
+    # boundary friction: most of the friction, at a share of the load below a hundredth
+    assert on.contact_torque[-1] < 0.8 * on.friction_torque[-1] < 0.0
+    assert np.all(off.contact_torque == 0.0) and np.all(off.contact_load == 0.0)
 
 
 def test_wear_deepens_the_bore(compare):
     worn = ehd.ArchardWear(wear_rate=1e-15, acceleration=1e6)
-    on, off = compare(bearing(asperity=ASPERITY, wear=worn), bearing(asperity=ASPERITY), 20 * LOAD)
+    on, off = compare(bearing(asperity=ASPERITY, wear=worn), bearing(asperity=ASPERITY), HEAVY, SLOW)
     # the journal sinks into the worn bore, and asperities carry less
     assert on.eccentricity_ratio[-1] > off.eccentricity_ratio[-1]
     assert on.contact_load[-1] < off.contact_load[-1]
@@ -147,13 +149,14 @@ def test_liner_lowers_the_peak(compare):
 
 
 def test_wall_carries_where_the_film_ends(compare):
-    on, _ = compare(bearing(contact=ehd.RegularisedWall(onset=1.5e-6)), bearing(), 10 * LOAD)
-    assert on.contact_load.max() > 0.0
+    on, _ = compare(bearing(contact=ehd.RegularisedWall(onset=2e-6)), bearing(), 20 * LOAD, SLOW)
     acting = on.contact_load > 0.0
-    assert np.all(on.minimum_gap[acting] < 1.5e-6)
+    assert acting[-1] and not acting[0]
+    assert np.all(on.minimum_gap[acting] < 2e-6) and np.all(on.minimum_gap[~acting] >= 2e-6)
 
 
 def test_squeeze_is_the_damping(run):
-    (with_it, _), (without, _) = run(bearing()), run(bearing(squeeze=False))
-    # without the film's damping the journal passes its equilibrium by far
-    assert without.eccentricity_ratio.max() > 1.05 * with_it.eccentricity_ratio.max()
+    wall = ehd.RegularisedWall(onset=2e-6)
+    (with_it, _), (without, _) = (run(bearing(contact=wall, squeeze=s), 200.0) for s in (True, False))
+    # without the film's damping the journal passes its equilibrium, as far as the wall
+    assert with_it.contact_load.max() == 0.0 < without.contact_load.max()
