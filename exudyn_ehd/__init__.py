@@ -4,7 +4,7 @@ Module map
 ----------
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
-joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`
+joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
 reference closed forms to compare with

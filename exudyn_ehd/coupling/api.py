@@ -6,7 +6,7 @@ import dataclasses
 import importlib
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import exudyn.itemInterface as eii
 import numpy as np
@@ -19,6 +19,10 @@ from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import NodeSide
 from exudyn_ehd.status import InputError, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.liner import ElasticLiner
+    from exudyn_ehd.joint.audit import Audit
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -73,7 +77,7 @@ class LubricatedJoint:
         """
         return self.element.snapshot(self.mbs)
 
-    def audit(self, *, liner: Any = None, measure_time: bool = False) -> Any:
+    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
 
         The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,

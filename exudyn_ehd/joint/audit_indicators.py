@@ -11,7 +11,7 @@ ratio 0.8, L/D = 0.75, with Swift-Stieber, the thresholds stand for:
 * 4 columns and 3 rows across the peak at half its height: 1 % of the load, 3 to 6 % of the peak pressure.
 
 Viscosities count as changed at 10 %. Taylor vortices: Ta = (rho U c / mu) sqrt(c / R) = 41.2 for a concentric journal (G. I. Taylor,
-Phil. Trans. R. Soc. A 223 (1923) 289), a lower bound for an eccentric one. Turbulence of Couette flow: rho U c / mu = 2000. Fluid
+Phil. Trans. R. Soc. A 223 (1923) 289). Turbulence of Couette flow: rho U c / mu = 2000. Fluid
 inertia: reduced Reynolds number rho U c^2 / (mu R) = 1, where inertia and viscous forces are of one size.
 """
 
@@ -33,7 +33,7 @@ from exudyn_ehd.joint.audit_states import RecordedSteps, Sample
 
 # Mineral oils, where a bearing names nothing: pressure and temperature coefficients of the viscosity, onset of shear thinning.
 TYPICAL_PRESSURE_COEFFICIENT = 2e-8  # 1/Pa
-TYPICAL_TEMPERATURE_COEFFICIENT = 0.03  # 1/K, ISO VG 46 at 60 degrees Celsius
+TYPICAL_TEMPERATURE_COEFFICIENT = 0.03  # 1/K, ISO VG 46 near 70 degrees Celsius
 TYPICAL_SHEAR_ONSET = 1e6  # 1/s, multigrade oils
 TYPICAL_ROUGHNESS = 0.5e-6  # m, ground journal in a finely turned bore
 
@@ -340,7 +340,8 @@ def _grid(case: Case, name: str, field: str, effect: str, needed: float) -> Find
     finding = _finding(
         effect, f"intervals across the peak at half its height, {name} = {size}", value, needed, None, below=True
     )
-    wanted = math.ceil(1.5 * size * needed / max(value, 0.25))
+    unit = 8 if name == "n_theta" else 2
+    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))
     if finding.matters:
         return replace(finding, advice=f"the pressure peak is too narrow for the grid: {name}={wanted}.")
     wanted = max(wanted, 48 if name == "n_theta" else 6)

@@ -107,3 +107,28 @@ def test_a_liner_can_be_asked_about():
     _run(mbs)
     soft = joint.audit(liner=ehd.ElasticLiner(thickness=0.002, youngs_modulus=5e8))
     assert soft["elasticity"] in soft.neglected
+
+
+def test_an_audit_says_the_same_again():
+    mbs, joint = _joint(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    _run(mbs)
+    assert str(joint.audit()) == str(joint.audit())
+
+
+def test_heat_is_averaged_over_the_run():
+    mbs, joint = _joint()
+    _run(mbs)
+    h, oil = joint.history, joint.bearing.lubricant
+    rise = np.mean(h.power_loss) / (oil.density * oil.specific_heat * np.mean(h.leakage))
+    assert joint.audit()["heating"].value == pytest.approx(0.03 * rise, rel=1e-12)
+    lumped = {
+        "thermal": ehd.LumpedThermal(supply_temperature=320.0),
+        "lubricant": ehd.oil("ISO VG 46", temperature=320.0),
+    }
+    mbs, joint = _joint(**lumped)
+    _run(mbs)
+    finding, law = joint.audit()["heating"], joint.bearing.lubricant.temperature_law
+    rise = np.max(joint.history.film_temperature) - 320.0
+    slope = math.log(law.viscosity(319.0, 879.0) / law.viscosity(321.0, 879.0)) / 2.0
+    # the film of a step has the temperature of its start, and so has the audited one
+    assert finding.on and finding.value == pytest.approx(slope * rise, rel=0.1)
