@@ -289,3 +289,36 @@ def test_intervals_at_half_height():
     assert intervals_at_half(np.maximum(0.0, 1.0 - np.abs(x)), 20) == pytest.approx(20.0)
     assert intervals_at_half(np.zeros(8), 3) == 8.0
     assert intervals_at_half(np.ones(8), 3) == 7.0
+
+
+def load(made, eps):
+    return float(np.hypot(*ehd.steady(made, speed=SPEED, eccentricity_ratio=eps).force[:2]))
+
+
+@pytest.mark.parametrize(("n_theta", "eps"), [(48, 0.95), (64, 0.98), (48, 0.98), (192, 0.1), (256, 0.4)])
+def test_advised_grids_carry_the_load(n_theta, eps, measured):
+    """Both "too coarse" and "finer than needed" name a grid that is neither."""
+    made = bearing(film=ehd.FiniteLength(n_theta=n_theta, n_z=12))
+    advised = int(audit(made, eps=eps)["grid around"].advice.split("n_theta=")[1].split(" ")[0].rstrip("."))
+    followed = bearing(film=ehd.FiniteLength(n_theta=advised, n_z=12))
+    finding = audit(followed, eps=eps)["grid around"]
+    assert not finding.matters and not finding.in_vain
+    fine = load(bearing(film=ehd.FiniteLength(n_theta=512, n_z=12)), eps)
+    # the threshold stands for 1 % of the load
+    measured("load against 512 columns", abs(load(followed, eps) / fine - 1.0), 0.01)
+
+
+@pytest.mark.parametrize("eps", [0.6, 0.8])
+def test_thresholds_stand_for_a_few_per_cent(eps, measured):
+    plain = ehd.steady(bearing(), speed=SPEED, eccentricity_ratio=eps)
+    at_threshold = 0.1 / plain.peak_pressure
+    thick = bearing(pressure_law=ehd.BarusPressure(coefficient=at_threshold))
+    compliance = 0.1 * plain.minimum_gap / plain.peak_pressure
+    unit = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10).compliance
+    soft = bearing(bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10 * unit / compliance))
+    rough = bearing(roughness=ehd.PatirCheng(composite_roughness=plain.minimum_gap / 3.0))
+    for made in (thick, soft, rough):
+        film = ehd.steady(made, speed=SPEED, eccentricity_ratio=eps)
+        change = abs(film.peak_pressure / plain.peak_pressure - 1.0)
+        # between "nobody would see it" and "a wrong film"
+        assert 0.02 < change < 0.12, (made, change)
