@@ -64,15 +64,12 @@ def film_solver(
 ) -> FilmSolver:
     """Solver of a film model on its grid; ``density``: of a compressible film."""
     if density is not None:
-        if not isinstance(film, (FiniteLength, ShortBearing)):
+        if not isinstance(film, FiniteLength):
             raise InputError(
                 f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as incompressible; use "
                 "film=FiniteLength(...)."
             )
-        return CompressibleFilmSolver(
-            grid, closure, density, squeeze=squeeze, flux_effects=flux_effects,
-            circumferential_pressure_flow=film.circumferential_pressure_flow,
-        )  # fmt: skip
+        return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
         if flux_effects:
             raise InputError(

@@ -44,7 +44,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
 
-SMALLEST_SHARE = 1.0 / 256.0
+SMALLEST_SHARE = 1.0 / 64.0
 
 
 class CompressibleFilmSolver(FilmSolver):
@@ -52,7 +52,7 @@ class CompressibleFilmSolver(FilmSolver):
 
     Parameters
     ----------
-    grid, closure, circumferential_pressure_flow, squeeze, flux_effects
+    grid, closure, squeeze, flux_effects
         As for `FilmSolver`.
     law : CompressibleLaw
 
@@ -72,21 +72,16 @@ class CompressibleFilmSolver(FilmSolver):
         closure: Closure,
         law: CompressibleLaw,
         *,
-        circumferential_pressure_flow: bool = True,
         squeeze: bool = True,
         flux_effects: tuple[FluxEffect, ...] = (),
     ) -> None:
-        super().__init__(
-            grid, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze,
-            flux_effects=flux_effects,
-        )  # fmt: skip
+        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         shape = grid.shape
         self.flux = LinkFlux(shape)
         self.law, self.pressure_scale = law, 1.0
         w, s = self.work, self.system
-        self.links = np.outer(grid.link_x, np.ones(shape[1]))
         self.film = Balance(
-            s.kx, s.kz, s.fx, s.fz, np.zeros(shape), np.zeros(shape), np.zeros(shape), self.area, grid.fixed, self.links
+            s.kx, s.kz, s.fx, s.fz, np.zeros(shape), np.zeros(shape), np.zeros(shape), self.area, grid.fixed
         )
         lower, upper = _lu_buffers(w)
         self.buffers = Buffers(
@@ -137,11 +132,11 @@ class CompressibleFilmSolver(FilmSolver):
         if status is not Status.CONVERGED:
             return status, steps
         self._set_store()
-        ok, count = self._switch_on()
+        # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
+        out = bool(np.any(s.linear_pressure * self.pressure_scale >= self.law.kernel_table.highest))
+        ok, count = self._newton(1.0) if out else self._switch_on()
         steps += count
         if not ok:
-            # An incompressible film beyond the law's range, where the density stays what it is at its end.
-            out = bool(np.any(s.linear_pressure * self.pressure_scale >= self.law.kernel_table.highest))
             return (Status.NO_PRESSURE if out else Status.NOT_CONVERGED), steps
         return self._finish(steps)
 

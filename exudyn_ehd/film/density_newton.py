@@ -40,7 +40,6 @@ class Balance(NamedTuple):
     kept: np.ndarray
     area: np.ndarray
     fixed: np.ndarray
-    links: np.ndarray
 
 
 class Buffers(NamedTuple):
@@ -131,7 +130,7 @@ def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, wi
         for j in range(m):
             a = number[i, j]
             b = number[nxt, j]
-            if (a >= 0 or b >= 0) and film.links[i, j] != 0.0:
+            if (a >= 0 or b >= 0) and film.kx[i, j] != 0.0:
                 _add_link(
                     a, b, full[i, j], full[nxt, j], film.kx[i, j], film.fx[i, j], fill[i, j], fill[nxt, j], rho[i, j],
                     rho[nxt, j], rho_P[i, j], rho_P[nxt, j], lower, upper,
@@ -155,9 +154,9 @@ def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, wi
 def factor_compressible(fill, film, kind, full, b):
     """Newton's matrix at the density in ``b.fields``, factored; returns (ok, count, width)."""
     if kind == COMPLEMENTARY:
-        count, width = number_cells(full, film.links, b.order, b.number)
+        count, width = number_cells(full, film.kx, b.order, b.number)
     else:
-        count, width = number_cells(np.logical_not(film.fixed), film.links, b.order, b.number)
+        count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
     assemble_compressible(fill, b.fields[4], b.fields[5], film, full, b.number, b.order, count, width, b.lower, b.upper)
     return factor_lu(b.lower, b.upper, count, width, b.inv_diag), count, width
 

@@ -100,7 +100,7 @@ def test_balance_equals_its_twin():
     P, fill, rho = rng.random((3, n, m))
     fields = rng.normal(size=(8, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
-    film = Balance(*fields, np.zeros((n, m), dtype=bool), np.ones((n, m)))
+    film = Balance(*fields, np.zeros((n, m), dtype=bool))
     out = np.empty((n, m))
     compressible_balance(P, fill, rho, film, out)
     expected = film.area * (rho * (film.grow * fill + film.known) + film.kept)
