@@ -30,6 +30,12 @@ from exudyn_ehd.film.reynolds import (
     speed_sensitivity,
     vertex_balance,
 )
+from exudyn_ehd.film.sweep import (
+    LinkDerivatives,
+    flux_link_derivatives,
+    plain_link_derivatives,
+    take_upstream_fill,
+)
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, s.
@@ -124,6 +130,8 @@ class FilmSolver:
         self.flux_effects = flux_effects
         self.flux = LinkFlux(shape) if flux_effects else None
         self.ones = np.ones(shape)
+        self.nothing = np.zeros(shape)
+        self.link_fields = LinkDerivatives(shape)
         self.vx = 0.0
         self.vz = 0.0
         self.instant = False
@@ -280,6 +288,41 @@ class FilmSolver:
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
         return self.system.fx, self.system.fz, self.H_t
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' flows with respect to their gaps and the speeds, for the last solution."""
+        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
+        if f is None:
+            plain_link_derivatives(
+                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+        else:
+            flux_link_derivatives(
+                s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz, self.flow_x,
+                g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
+            )  # fmt: skip
+        if self.closure.conserves_mass:
+            if f is None:
+                mean = self.H.copy()
+                mean[:, :-1] = 0.5 * (self.H[:, :-1] + self.H[:, 1:])
+                carriers = (self.ones, self.HF, self.ones, mean)
+            else:
+                carriers = (f.cx_h, f.cx, f.cz_h, f.cz)
+            take_upstream_fill(
+                s.fill, s.fx, s.fz, *carriers, self.vx, self.vz, g.width_x, g.width_z, g.link_x, d.DX, d.DZ, d.SX, d.SZ
+            )
+        return d
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s = self.system
+        if not self.closure.conserves_mass:
+            return (self.area if self.squeeze else self.nothing), self.nothing
+        content = self.area * s.fill
+        if s.inverse_step == 0.0 or self.instant:
+            return (content if self.squeeze else self.nothing), self.nothing
+        return self.nothing, content * s.inverse_step
 
     def inflow(self) -> np.ndarray:
         """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""

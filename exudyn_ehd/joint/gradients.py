@@ -15,7 +15,7 @@ import numpy as np
 from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
-from exudyn_ehd.film.pose_gradient import plain_pose_gradient
+from exudyn_ehd.film.sweep import pose_gradient, wrench_gradient
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import LinerFilmSolver
@@ -33,25 +33,14 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False) -> np.ndarray
     ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
     """
     ds, dc, extra = _integral_gradients(model, slow_motion)
-    x, y, bx, by = model.pose
-    sc, ss, szc, szs = model.integrals
-    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] - extra[0]
-    ds_theta[:4] += (ss, -sc, szs, -szc)
-    ds_z = -(bx * ds[0] + by * ds[1]) - extra[1]
-    ds_z[2:4] -= (sc, ss)
-    R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
-    out = np.empty((6, SIZE))
-    out[0], out[1], out[3], out[4] = -fs * ds[0], -fs * ds[1], fs * R * ds[3], -fs * R * ds[2]
-    out[2] = -c0 * (6.0 * R * ds_z + model.axial_speed * dc)
-    out[5] = -c0 * R**2 * (6.0 * ds_theta + model.omega * dc)
+    ends = np.zeros(4)
     if model.limiter_fields is not None and model.end_pressures.any():
-        out[2, :4] += 6.0 * c0 * R * _end_gradient(model)
-    out[:, :4] *= model.pose_scale
-    out[:, 4:8] *= model.pose_scale
-    out[:, 8] *= 0.5
-    out[:, 9] *= 0.5 / R
-    out[2, 9] -= c0 * model.couette
-    out[5, 8] -= c0 * R**2 * model.couette
+        ends = _end_gradient(model)
+    out = np.empty((6, SIZE))
+    wrench_gradient(
+        ds, dc, extra, ends, model.pose, model.integrals, model.pose_scale, model.grid.reference_length, model.force_scale,
+        model.shear_scale, model.omega, model.axial_speed, model.couette, out,
+    )  # fmt: skip
     if model.contact_fields is not None:
         _add_contacts(model, model.contact_fields, out)
     return out
@@ -59,16 +48,13 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False) -> np.ndarray
 
 def _integral_gradients(model: BearingModel, slow_motion: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
-    s, g = model.solver, model.grid
+    s = model.solver
     rows = _adjoint_rows(model)
     k = rows.shape[0]
     lam = s.adjoint(rows)
     gradient = np.zeros((k, SIZE))
-    if is_plain(model):
-        plain_pose_gradient(
-            lam, s.system.linear_pressure, s.H, s.HF, model.cos_x, model.sin_x, model.cos_f, model.sin_f, g.z, s.vx, s.vz,
-            s.flow_x, float(s.squeeze), g.width_x, g.width_z, g.link_x, g.link_z, gradient,
-        )  # fmt: skip
+    if s.plain_links and not slow_motion:
+        swept_gradient(model, lam, gradient)
     else:
         field_gradient(model, lam, gradient, slow_motion)
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
@@ -93,10 +79,21 @@ def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate:
     return out
 
 
-def is_plain(model: BearingModel) -> bool:
-    """True if the film's gap and fluxes are those of rigid smooth surfaces and a full film."""
+def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
     s = model.solver
-    return s.plain_links and model.limiter_fields is None and s.flux is None and not s.closure.conserves_mass
+    d = s.link_derivatives()
+    by_rate, by_gap = s.storage_weights()
+    slope, f = s.ones, model.limiter_fields
+    if f is not None:
+        d.DX *= f.face_slope
+        slope = f.slope
+        by_gap = by_gap * f.slope + by_rate * f.curvature
+        by_rate = by_rate * f.slope
+    pose_gradient(
+        lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, model.cos_x, model.sin_x, model.cos_f, model.sin_f,
+        model.grid.z, gradient,
+    )  # fmt: skip
 
 
 def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False) -> None:
