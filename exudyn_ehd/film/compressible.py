@@ -32,8 +32,8 @@ from exudyn_ehd.film.density_newton import (
     FULL,
     Balance,
     Buffers,
+    carry_density,
     compressible_balance,
-    compressible_sensitivity,
     factor_compressible,
     link_factors,
     solve_compressible,
@@ -42,6 +42,7 @@ from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -63,8 +64,6 @@ class CompressibleFilmSolver(FilmSolver):
     rho : (n, m) array
         Density over that at ambient pressure, of the last solution.
     """
-
-    plain_links = False
 
     def __init__(
         self,
@@ -241,16 +240,34 @@ class CompressibleFilmSolver(FilmSolver):
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
-        g, s, f = self.grid, self.system, self.flux
+        d = self.link_derivatives()
+        by_rate, by_gap = self.storage_weights()
+        along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
+        half = -0.5 * across * d.DZ[:, :-1]
+        cell = -lam * by_gap
+        cell[:, :, :-1] += half
+        cell[:, :, 1:] += half
+        turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
+        sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
+        return Sensitivities(cell, -along * d.DX, -lam * by_rate, -np.stack([turning, sliding], axis=1))
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
+        g, d, f = self.grid, self.link_fields, self.flux
         assert f is not None
-        cell, face = np.empty_like(lam), np.empty_like(lam)
-        speed = np.empty((lam.shape[0], 2))
-        compressible_sensitivity(
-            lam, s.linear_pressure, self.sigma_x, self.sigma_z, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h,
-            self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, cell, face, speed,
+        flux_link_derivatives(
+            self.system.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
+            self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
         )  # fmt: skip
-        storage = lam * (-self.area * self.rho * self._fill)
+        carry_density(
+            self.sigma_x, self.sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+            d.DX, d.DZ, d.SX, d.SZ,
+        )  # fmt: skip
+        return d
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s, content = self.system, self.area * self.rho * self._fill
         if s.inverse_step > 0.0 and not self.instant:
-            cell += storage * s.inverse_step
-            return Sensitivities(cell, face, None, speed)
-        return Sensitivities(cell, face, storage if self.squeeze else None, speed)
+            return self.nothing, content * s.inverse_step
+        return (content if self.squeeze else self.nothing), self.nothing

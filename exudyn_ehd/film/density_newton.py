@@ -59,22 +59,24 @@ class Buffers(NamedTuple):
 def compressible_balance(P, fill, rho, film, out):
     """Mass that leaves every vertex (n, m) less what it holds in store: 0 where the film is solved."""
     n, m = P.shape
+    kx, kz, fx, fz, area = film.kx, film.kz, film.fx, film.fz, film.area
+    grow, known, kept = film.grow, film.known, film.kept
     for i in range(n):
         for j in range(m):
-            store = rho[i, j] * (film.grow[i, j] * fill[i, j] + film.known[i, j]) + film.kept[i, j]
-            out[i, j] = film.area[i, j] * store
+            store = rho[i, j] * (grow[i, j] * fill[i, j] + known[i, j]) + kept[i, j]
+            out[i, j] = area[i, j] * store
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            f = film.fx[i, j]
+            f = fx[i, j]
             up = fill[i, j] if f >= 0.0 else fill[nxt, j]
-            q = film.kx[i, j] * (P[i, j] - P[nxt, j]) + 0.5 * f * up * (rho[i, j] + rho[nxt, j])
+            q = kx[i, j] * (P[i, j] - P[nxt, j]) + 0.5 * f * up * (rho[i, j] + rho[nxt, j])
             out[i, j] += q
             out[nxt, j] -= q
         for j in range(m - 1):
-            f = film.fz[i, j]
+            f = fz[i, j]
             up = fill[i, j] if f >= 0.0 else fill[i, j + 1]
-            q = film.kz[i, j] * (P[i, j] - P[i, j + 1]) + 0.5 * f * up * (rho[i, j] + rho[i, j + 1])
+            q = kz[i, j] * (P[i, j] - P[i, j + 1]) + 0.5 * f * up * (rho[i, j] + rho[i, j + 1])
             out[i, j] += q
             out[i, j + 1] -= q
 
@@ -121,6 +123,8 @@ def _add_link(a, b, full_a, full_b, k, f, fill_a, fill_b, rho_a, rho_b, by_a, by
 def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, width, lower, upper):
     """Newton's matrix of the numbered vertices into the two bands."""
     n, m = rho.shape
+    kx, kz, fx, fz, area = film.kx, film.kz, film.fx, film.fz, film.area
+    grow, known = film.grow, film.known
     for r in range(count):
         for d in range(width + 1 + PAD):
             lower[r, d] = 0.0
@@ -130,24 +134,24 @@ def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, wi
         for j in range(m):
             a = number[i, j]
             b = number[nxt, j]
-            if (a >= 0 or b >= 0) and film.kx[i, j] != 0.0:
+            if (a >= 0 or b >= 0) and kx[i, j] != 0.0:
                 _add_link(
-                    a, b, full[i, j], full[nxt, j], film.kx[i, j], film.fx[i, j], fill[i, j], fill[nxt, j], rho[i, j],
+                    a, b, full[i, j], full[nxt, j], kx[i, j], fx[i, j], fill[i, j], fill[nxt, j], rho[i, j],
                     rho[nxt, j], rho_P[i, j], rho_P[nxt, j], lower, upper,
                 )  # fmt: skip
             if j + 1 < m:
                 b = number[i, j + 1]
                 if a >= 0 or b >= 0:
                     _add_link(
-                        a, b, full[i, j], full[i, j + 1], film.kz[i, j], film.fz[i, j], fill[i, j], fill[i, j + 1],
+                        a, b, full[i, j], full[i, j + 1], kz[i, j], fz[i, j], fill[i, j], fill[i, j + 1],
                         rho[i, j], rho[i, j + 1], rho_P[i, j], rho_P[i, j + 1], lower, upper,
                     )  # fmt: skip
             if a >= 0:
                 if full[i, j]:
-                    store = rho_P[i, j] * (film.grow[i, j] * fill[i, j] + film.known[i, j])
+                    store = rho_P[i, j] * (grow[i, j] * fill[i, j] + known[i, j])
                 else:
-                    store = rho[i, j] * film.grow[i, j]
-                upper[a, 0] += film.area[i, j] * store
+                    store = rho[i, j] * grow[i, j]
+                upper[a, 0] += area[i, j] * store
 
 
 @njit(cache=True)
@@ -278,33 +282,16 @@ def solve_compressible(film, scale, pc, kind, law, share, full, b, P, fill):
 
 
 @njit(cache=True, fastmath=_FAST)
-def compressible_sensitivity(
-    lam, P, sigma_x, sigma_z, gx_h, gx_v, gz_h, gz_v, cx, cx_h, cz, cz_h, vx, vz, flow_x, width_x, width_z, link_x,
-    link_z, cell_out, face_out, speed_out,
-):  # fmt: skip
-    """Gradient of ``-lam . r`` without the storage, as `exudyn_ehd.film.flux.flux_sensitivity` with sigma on the links."""
-    count, n, m = lam.shape
-    for k in range(count):
-        sx = 0.0
-        sz = 0.0
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            linked = 1.0 if link_x[i] != 0.0 else 0.0
-            lx = link_x[i] * flow_x
-            for j in range(m):
-                d = (lam[k, i, j] - lam[k, nxt, j]) * width_z[j]
-                drop = lx * (P[nxt, j] - P[i, j])
-                carried = linked * sigma_x[i, j]
-                face_out[k, i, j] = -d * (carried * vx * cx_h[i, j] - gx_h[i, j] * drop)
-                sx -= d * (carried * cx[i, j] - gx_v[i, j] * drop)
-                cell_out[k, i, j] = 0.0
-            for j in range(m - 1):
-                d = (lam[k, i, j] - lam[k, i, j + 1]) * width_x[i]
-                drop = link_z[j] * (P[i, j + 1] - P[i, j])
-                g = -0.5 * d * (vz * sigma_z[i, j] * cz_h[i, j] - gz_h[i, j] * drop)
-                cell_out[k, i, j] += g
-                cell_out[k, i, j + 1] += g
-                sz -= d * sigma_z[i, j] * cz[i, j]
-                sx += d * gz_v[i, j] * drop
-        speed_out[k, 0] = sx
-        speed_out[k, 1] = sz
+def carry_density(sigma_x, sigma_z, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z, link_x, DX, DZ, SX, SZ):
+    """Correct the Couette parts of a full film's link derivatives (see `exudyn_ehd.film.sweep`) for sigma on the links."""
+    n, m = sigma_x.shape
+    for i in range(n):
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            more = linked * width_z[j] * (sigma_x[i, j] - 1.0)
+            DX[i, j] += more * vx * cx_h[i, j]
+            SX[i, j] += more * cx[i, j]
+        for j in range(m - 1):
+            more = width_x[i] * (sigma_z[i, j] - 1.0)
+            DZ[i, j] += more * vz * cz_h[i, j]
+            SZ[i, j] += more * cz[i, j]
