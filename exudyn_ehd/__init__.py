@@ -25,6 +25,7 @@ from exudyn_ehd.film.asperity import GreenwoodTripp, composite_modulus
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
+from exudyn_ehd.film.density import DowsonHigginson
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.impedance import ImpedanceMap
@@ -101,6 +102,7 @@ __all__ = [
     "CreateLubricatedJoint",
     "Crown",
     "DeadPressure",
+    "DowsonHigginson",
     "EHDError",
     "EdgeRelief",
     "ElasticLiner",

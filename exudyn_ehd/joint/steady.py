@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation import SwiftStieber
+from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.lubricant import Lubricant
@@ -19,7 +20,7 @@ from exudyn_ehd.joint.audit_states import FilmState
 from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.model import BearingModel
-from exudyn_ehd.joint.rheology import known_pressures, true_pressure
+from exudyn_ehd.joint.rheology import compressible_law, known_pressures, true_pressure
 from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
@@ -51,7 +52,8 @@ class FilmResult:
     fill : (n, m) array
         Film fraction; ones for closures that do not conserve mass.
     content : (n, m) array
-        fill times gap, m: the ``history`` of the next step.
+        fill times gap, m, and times the density over that at ambient pressure if the lubricant has a density law: the
+        ``history`` of the next step.
     """
 
     status: Status
@@ -87,7 +89,7 @@ def solve_film(
     gap : (n, m) array
         Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
-        Its pressure law takes part; a shear law needs a bearing.
+        Its pressure and density laws take part; a shear law needs a bearing.
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
     gap_rate : (n, m) array, optional
@@ -123,7 +125,7 @@ def solve_film(
     if history is not None:
         mass = np.asarray(history) / c
         rate = (H - mass) / step
-    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=(SteppedGap(H),) if stepped_gap else ())
+    solver = _any_gap_solver(grid, closure, lubricant, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
@@ -147,8 +149,20 @@ def solve_film(
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(pressure * grid.weight)) * scale * R**2,
         fill=fill,
-        content=fill * gap,
+        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
     )
+
+
+def _any_gap_solver(
+    grid: FilmGrid, closure: Closure, lubricant: Lubricant, squeeze: bool, steps: SteppedGap | None, scale: float
+) -> FilmSolver:
+    effects = () if steps is None else (steps,)
+    law = compressible_law(lubricant)
+    if law is None:
+        return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
+    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+    solver.pressure_scale = scale
+    return solver
 
 
 def _check_film(
