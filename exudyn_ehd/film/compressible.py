@@ -13,7 +13,8 @@ answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history there is no rate
 of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as the strain of the oil, dp / K
 with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H: 1 % for 10 MPa during which the gap
-changes by half. The rates at an instant (a history without a time step) leave it out likewise.
+changes by half. The rates at an instant (a history without a time step) leave it out likewise. A flooded start
+holds oil of ambient density, so that its film builds up the pressure over some steps.
 
 Newton's method with the exact non-symmetric matrix starts from the last film, else from the incompressible one. Should it fail, the
 density's departure from a constant is switched on in steps. Oil that no pressure of the law's range carries has no film.

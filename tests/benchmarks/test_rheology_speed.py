@@ -25,7 +25,7 @@ CASES = {
     "density and barus": (
         {"density_law": ehd.DowsonHigginson(), "pressure_law": ehd.BarusPressure(coefficient=1e-8)},
         None,
-        2.25,
+        2.35,
     ),
     "lumped": ({}, ehd.LumpedThermal(supply_temperature=320.0), 1.05),
     "field": ({}, ehd.FilmEnergy(supply_temperature=320.0), 2.5),
