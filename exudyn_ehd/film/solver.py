@@ -203,10 +203,14 @@ class FilmSolver:
             np.copyto(s.linear_pressure, s.pressure)
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
-        steps = 0
-        if self.coarse is not None and not self.work.warm:
-            steps = self._guess_from_coarse(mass_old, step)
+        was_warm = self.work.warm
+        steps = self._guess_from_coarse(mass_old, step) if self.coarse is not None and not was_warm else 0
         status, fine_steps = self.closure.solve(s, self.work)
+        if status is Status.NOT_CONVERGED and was_warm and self.coarse is not None:
+            # a start from another state can mislead where the film itself is benign
+            self.forget()
+            steps += fine_steps + self._guess_from_coarse(mass_old, step)
+            status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
