@@ -4,7 +4,7 @@ Module map
 ----------
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
-joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`
+joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
 reference closed forms to compare with
@@ -25,6 +25,7 @@ from exudyn_ehd.film.asperity import GreenwoodTripp, composite_modulus
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.classic import ClassicSOR
 from exudyn_ehd.film.contact import RegularisedWall
+from exudyn_ehd.film.density import DowsonHigginson
 from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
 from exudyn_ehd.film.impedance import ImpedanceMap
@@ -40,6 +41,7 @@ from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, W
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
+from exudyn_ehd.joint.audit import Audit, Finding
 from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
@@ -87,6 +89,7 @@ def __getattr__(name: str) -> Any:
 __all__ = [
     "ANCFBush",
     "ArchardWear",
+    "Audit",
     "AxialGroove",
     "AxialProfile",
     "BarusPressure",
@@ -100,6 +103,7 @@ __all__ = [
     "CreateLubricatedJoint",
     "Crown",
     "DeadPressure",
+    "DowsonHigginson",
     "EHDError",
     "EdgeRelief",
     "ElasticLiner",
@@ -109,6 +113,7 @@ __all__ = [
     "FilmEnergy",
     "FilmError",
     "FilmResult",
+    "Finding",
     "FiniteLength",
     "FixedOuter",
     "FlexibleBush",

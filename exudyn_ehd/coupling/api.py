@@ -6,7 +6,7 @@ import dataclasses
 import importlib
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import exudyn.itemInterface as eii
 import numpy as np
@@ -19,6 +19,10 @@ from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import NodeSide
 from exudyn_ehd.status import InputError, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.liner import ElasticLiner
+    from exudyn_ehd.joint.audit import Audit
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -75,6 +79,40 @@ class LubricatedJoint:
         starts a new one.
         """
         return self.element.snapshot(self.mbs)
+
+    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
+        """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
+
+        The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,
+        on a model of their own: the joint is not touched.
+
+        Parameters
+        ----------
+        liner : ElasticLiner, optional
+            Of which to say whether its elasticity would matter; for bearings without one.
+        measure_time : bool
+            Measure the share of the time that every effect takes which is on.
+
+        Returns
+        -------
+        Audit
+            Print it for a table; ``neglected`` and ``in_vain`` hold what to change.
+
+        Raises
+        ------
+        InputError
+            Before anything was recorded.
+        """
+        history = self.history
+        if history.time.size == 0:
+            raise InputError(
+                f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
+            )
+        audit = importlib.import_module("exudyn_ehd.joint.audit")
+        states = importlib.import_module("exudyn_ehd.joint.audit_states")
+        names = [field.name for field in dataclasses.fields(states.RecordedSteps)]
+        record = states.RecordedSteps(**{name: getattr(history, name) for name in names})
+        return audit.audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
 
     def AddSensor(
         self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from exudyn_ehd.film.cavitation import Gumbel
 from exudyn_ehd.film.classic import ClassicSolver, ClassicSOR
+from exudyn_ehd.film.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.flux import FluxEffect
 from exudyn_ehd.film.grid import FilmGrid, FiniteLength, ShortBearing, bearing_grid
 from exudyn_ehd.film.impedance import ImpedanceMap
@@ -52,9 +54,22 @@ def film_grid(film: Film, radius: float, length: float, *, start_angle: float, o
 
 
 def film_solver(
-    film: Film, grid: FilmGrid, closure: Closure, *, squeeze: bool, flux_effects: tuple[FluxEffect, ...]
+    film: Film,
+    grid: FilmGrid,
+    closure: Closure,
+    *,
+    squeeze: bool,
+    flux_effects: tuple[FluxEffect, ...],
+    density: CompressibleLaw | None = None,
 ) -> FilmSolver:
-    """Solver of a film model on its grid."""
+    """Solver of a film model on its grid; ``density``: of a compressible film."""
+    if density is not None:
+        if not isinstance(film, FiniteLength):
+            raise InputError(
+                f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as incompressible; use "
+                "film=FiniteLength(...)."
+            )
+        return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
         if flux_effects:
             raise InputError(

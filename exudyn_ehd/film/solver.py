@@ -152,6 +152,11 @@ class FilmSolver:
         """Film fraction of the last solution (n, m); empty if the closure does not conserve mass."""
         return self.system.fill
 
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled oil content fill H of the last solution (n, m), for closures that conserve mass."""
+        return self.system.fill * self.H
+
     def forget(self) -> None:
         """Drop the warm start; the next solution starts from a coarser grid."""
         self.work.warm = False
@@ -198,10 +203,14 @@ class FilmSolver:
             np.copyto(s.linear_pressure, s.pressure)
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
-        steps = 0
-        if self.coarse is not None and not self.work.warm:
-            steps = self._guess_from_coarse(mass_old, step)
+        was_warm = self.work.warm
+        steps = self._guess_from_coarse(mass_old, step) if self.coarse is not None and not was_warm else 0
         status, fine_steps = self.closure.solve(s, self.work)
+        if status is Status.NOT_CONVERGED and was_warm and self.coarse is not None:
+            # a start from another state can mislead where the film itself is benign
+            self.forget()
+            steps += fine_steps + self._guess_from_coarse(mass_old, step)
+            status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
@@ -279,6 +288,10 @@ class FilmSolver:
             return Sensitivities(cell, face, storage if self.squeeze else None, speed)
         cell += storage * s.inverse_step
         return Sensitivities(cell, face, None, speed)
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
+        return self.system.fx, self.system.fz, self.H_t
 
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' flows with respect to their gaps and the speeds, for the last solution."""

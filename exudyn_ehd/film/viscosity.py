@@ -12,6 +12,7 @@ it is continued by Barus' law with the same slope.
 
 from __future__ import annotations
 
+import abc
 import math
 from dataclasses import dataclass
 from typing import Protocol
@@ -37,6 +38,20 @@ class BoundPressureLaw(Protocol):
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
         """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p) for p >= 0."""
+
+    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
+        """dr/dp for p >= 0, 1/Pa."""
+
+    @property
+    def coefficient(self) -> float:
+        """dr/dp at ambient pressure, 1/Pa; below, the law is Barus' with this coefficient."""
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
 
 
 LARGEST_COEFFICIENT = 1e-4
@@ -69,6 +84,19 @@ class BarusPressure:
     def bound(self, viscosity: float) -> BoundPressureLaw:
         """The law for a reference viscosity in Pa s (which does not matter here)."""
         return self
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
+        return min(math.log(LARGEST_RATIO) / self.coefficient, LARGEST_PRESSURE)
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p)."""
+        return np.exp(self.coefficient * p)
+
+    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
+        """dr/dp, 1/Pa."""
+        return self.coefficient * self.ratio(p)
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
@@ -111,27 +139,25 @@ class RoelandsPressure:
         return RoelandsTable(math.log(viscosity) + ROELANDS_SHIFT, self.coefficient, self.reference_pressure)
 
 
-class RoelandsTable:
-    """Roelands' law for one reference viscosity, with the inverse transform p(q) as a quintic Hermite spline.
+class HermiteTable(abc.ABC):
+    """A transform whose inverse p(q) is a quintic Hermite spline; Barus' law for p <= 0.
 
-    q comes from Gauss quadrature over each of 4096 intervals of p; p, dp/dq = r and d2p/dq2 = r dr/dp are exact at the nodes. The
-    spline's error in p is about (alpha dp)^6 / (400 alpha), below 1e-13 of p, and its derivatives are those of the pressures that it gives,
-    so that a tangent built with them is exact.
+    q comes from Gauss quadrature of ``dq/dp`` over each of 4096 intervals of p; p, ``s = dp/dq`` and ``s ds/dp = d2p/dq2`` are exact at the
+    nodes. The spline's error in p is about (alpha dp)^6 / (400 alpha), below 1e-13 of p, and its derivatives are those of the
+    pressures that it gives, so that a tangent built with them is exact.
 
     Parameters
     ----------
-    a : float
-        ln(mu_0) + 9.67.
-    coefficient, reference_pressure : float
-        alpha, 1/Pa, and p_0, Pa.
+    largest_pressure : float
+        End of the table, Pa.
+    alpha : float
+        ds/dp at p = 0, 1/Pa; not 0.
     """
 
-    def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
-        self.a, self.alpha, self.p0 = a, coefficient, reference_pressure
-        self.Z = coefficient * reference_pressure / a
-        # ln(1 + p / p_0) where the ratio is reached; bounded, because nearly constant viscosities reach it nowhere.
-        top = reference_pressure * math.expm1(min(math.log1p(math.log(LARGEST_RATIO) / a) / self.Z, 100.0))
-        self.p = np.linspace(0.0, min(top, LARGEST_PRESSURE), TABLE_INTERVALS + 1)
+    def __init__(self, largest_pressure: float, alpha: float) -> None:
+        self.alpha = alpha
+        self.largest_pressure = largest_pressure
+        self.p = np.linspace(0.0, largest_pressure, TABLE_INTERVALS + 1)
         widths = self._quadrature(self.p[:-1], self.p[1:])
         self.q = np.concatenate(([0.0], np.cumsum(widths)))
         self.table = self._coefficients(widths)
@@ -139,14 +165,17 @@ class RoelandsTable:
         self.bucket = np.clip(np.searchsorted(self.q, edges, side="right") - 1, 0, TABLE_INTERVALS - 1)
         self.bucket_scale = TABLE_INTERVALS / self.q[-1]
 
-    def ratio(self, p: np.ndarray) -> np.ndarray:
-        """r(p) for p >= 0."""
-        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+    @abc.abstractmethod
+    def slope(self, p: np.ndarray) -> np.ndarray:
+        """s(p) = dp/dq for p >= 0."""
+
+    @abc.abstractmethod
+    def curvature(self, p: np.ndarray) -> np.ndarray:
+        """d2p/dq2 for p >= 0, 1/Pa."""
 
     def _coefficients(self, h: np.ndarray) -> np.ndarray:
         """1 / width and the coefficients of p in t = (q - q_k) / width, (intervals, 7)."""
-        r = self.ratio(self.p)
-        r_q = r**2 * self.alpha * (1.0 + self.p / self.p0) ** (self.Z - 1.0)
+        r, r_q = self.slope(self.p), self.curvature(self.p)
         d0, d1, e0, e1 = r[:-1] * h, r[1:] * h, 0.5 * r_q[:-1] * h**2, 0.5 * r_q[1:] * h**2
         f, g, w = np.diff(self.p) - d0 - e0, d1 - d0 - 2.0 * e0, e1 - e0
         c3, c4, c5 = 10.0 * f - 4.0 * g + w, -15.0 * f + 7.0 * g - 2.0 * w, 6.0 * f - 3.0 * g + w
@@ -155,7 +184,7 @@ class RoelandsTable:
     def _quadrature(self, lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
         lower, half = np.asarray(lower), np.asarray(0.5 * (upper - lower))
         points = lower[..., None] + half[..., None] * (1.0 + _GAUSS_X)
-        return half * np.sum(_GAUSS_W / self.ratio(points), axis=-1)
+        return half * np.sum(_GAUSS_W / self.slope(points), axis=-1)
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
@@ -166,12 +195,48 @@ class RoelandsTable:
         return np.where(p > 0.0, positive, negative)
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
+        """p(q), s = dp/dq and ds/dq (1/Pa) for fields (n, m); False where q has no p in the table."""
         return bool(
             hermite_inverse(
                 q, self.alpha, self.q, self.table, self.bucket, self.bucket_scale, p_out, ratio_out, ratio_q_out
             )
         )
+
+
+class RoelandsTable(HermiteTable):
+    """Roelands' law for one reference viscosity.
+
+    Parameters
+    ----------
+    a : float
+        ln(mu_0) + 9.67.
+    coefficient, reference_pressure : float
+        alpha, 1/Pa, and p_0, Pa.
+    """
+
+    def __init__(self, a: float, coefficient: float, reference_pressure: float) -> None:
+        self.a, self.p0 = a, reference_pressure
+        self.coefficient = coefficient
+        self.Z = coefficient * reference_pressure / a
+        # ln(1 + p / p_0) where the ratio is reached; bounded, because nearly constant viscosities reach it nowhere.
+        top = reference_pressure * math.expm1(min(math.log1p(math.log(LARGEST_RATIO) / a) / self.Z, 100.0))
+        super().__init__(min(top, LARGEST_PRESSURE), coefficient)
+
+    def ratio(self, p: np.ndarray) -> np.ndarray:
+        """r(p) for p >= 0."""
+        return np.exp(self.a * np.expm1(self.Z * np.log1p(p / self.p0)))
+
+    def ratio_slope(self, p: np.ndarray) -> np.ndarray:
+        """dr/dp for p >= 0, 1/Pa."""
+        return self.ratio(p) * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
+
+    def slope(self, p: np.ndarray) -> np.ndarray:
+        """dp/dq is the viscosity's ratio."""
+        return self.ratio(p)
+
+    def curvature(self, p: np.ndarray) -> np.ndarray:
+        """d2p/dq2 = r dr/dp, 1/Pa."""
+        return self.ratio(p) ** 2 * self.coefficient * (1.0 + p / self.p0) ** (self.Z - 1.0)
 
 
 @njit(cache=True)

@@ -29,6 +29,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         pressure_law=rheology.pressure_law,
         shear_factor=_one_shear_factor(rheology.shear_factor, surfaces.shear_factor),
         thermal=rheology.thermal,
+        density=rheology.density,
     )
 
 

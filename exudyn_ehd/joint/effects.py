@@ -102,7 +102,7 @@ class PressureLaw(Protocol):
         """q(p), Pa."""
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), mu(p)/mu_0 = dp/dq and its derivative with respect to q (1/Pa); False where q has no p."""
+        """p(q), mu(p)/mu_0 (= dp/dq but for a compressible film) and its derivative to q (1/Pa); False where q has no p."""
 
 
 class ShearFactor(Protocol):

@@ -20,7 +20,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.choice import film_grid, film_solver
+from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.contact_loads import contact_integrals
+from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
 from exudyn_ehd.film.loads import (
@@ -62,6 +64,8 @@ class Effects:
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
+    density : CompressibleLaw or None
+        Of a compressible film; then also the ``pressure_law``.
     wear : Wear or None
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None
@@ -74,6 +78,7 @@ class Effects:
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
     thermal: ThermalEffect | None = None
+    density: CompressibleLaw | None = None
     wear: Wear | None = None
     liner: ElasticLiner | None = None
 
@@ -166,8 +171,10 @@ class BearingModel:
         if self.effects.liner is not None:
             self.liner_solver = LinerFilmSolver(self.grid, bearing.cavitation, squeeze=bearing.squeeze)
         self.solver = self.liner_solver or film_solver(
-            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux
-        )
+            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
+            density=self.effects.density,
+        )  # fmt: skip
+        self.compressible = self.solver if isinstance(self.solver, CompressibleFilmSolver) else None
         self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
         self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
         self.half_length = 0.5 * bearing.length / R
@@ -211,6 +218,8 @@ class BearingModel:
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
         if self.liner_solver is not None and self.effects.liner is not None:
             self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
+        if self.compressible is not None:
+            self.compressible.pressure_scale = self.pressure_scale
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -249,7 +258,7 @@ class BearingModel:
             )
         if not self.remembers:
             return None
-        mass = self.solver.fill * self.solver.H if self.remembers_mass else None
+        mass = self.solver.content if self.remembers_mass else None
         wear = None if self.effects.wear is None else self._worn(self.effects.wear)
         deflection = None
         if self.remembers_deflection and self.liner_solver is not None:
@@ -399,7 +408,7 @@ class BearingModel:
                 return Status.NO_PRESSURE
             self.P /= self.pressure_scale
             ratio_q *= self.pressure_scale
-            self.P_q = ratio.copy()
+            self.P_q = ratio.copy() if self.compressible is None else ratio / self.compressible.rho
         if self.effects.shear_factor is not None:
             factor = np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
@@ -607,8 +616,8 @@ class BearingModel:
         if s.closure.conserves_mass:
             inflow = s.inflow()
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
-        y = s.system
-        return end_flows(s.pressure, y.kz, y.fz, y.fx, s.H_t, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed)
+        fx, fz, rate = s.couette_flows()
+        return end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed)
 
     def refined_peak(self) -> tuple[float, float, float]:
         """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.shear import ShearThinning
 from exudyn_ehd.film.thermal import LumpedThermal
@@ -25,12 +26,15 @@ class Rheology:
     pressure_law : PressureLaw or None
     shear_factor : ShearFactor or None
     thermal : ThermalEffect or None
+    density : CompressibleLaw or None
+        Of a compressible film; the same object as ``pressure_law``.
     """
 
     flux: tuple[FluxEffect, ...] = ()
     pressure_law: PressureLaw | None = None
     shear_factor: ShearFactor | None = None
     thermal: ThermalEffect | None = None
+    density: CompressibleLaw | None = None
 
 
 class ProductFactor:
@@ -59,19 +63,23 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     Raises
     ------
     InputError
-        For a thermal effect whose lubricant has no temperature law.
+        For a thermal effect whose lubricant has no temperature law, and for options that a density law does not go with.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
-    if oil.pressure_law is None and oil.shear_law is None and thermal is None:
+    if oil.pressure_law is None and oil.shear_law is None and oil.density_law is None and thermal is None:
         return Rheology()
-    law = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
+    law: PressureLaw | None = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
+    density = compressible_law(oil)
+    if density is not None:
+        _check_density(bearing)
+        law = density
     flux: tuple[FluxEffect, ...] = ()
     factor: ShearFactor | None = None
     if oil.shear_law is not None:
         thinning = ShearThinning(oil.shear_law, bearing.journal_radius, bearing.radial_clearance)
         flux, factor = (thinning,), thinning
     if thermal is None:
-        return Rheology(flux, law, factor)
+        return Rheology(flux, law, factor, None, density)
     if oil.temperature_law is None:
         raise InputError(
             f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on temperature, "
@@ -82,6 +90,29 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     field = ViscosityField()
     product = field if factor is None else ProductFactor(field, factor)
     return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field))
+
+
+def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
+    """The lubricant's density law with its viscosity's pressure law; None for an incompressible one."""
+    if lubricant.density_law is None:
+        return None
+    viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
+    return lubricant.density_law.bound(viscosity)
+
+
+def _check_density(bearing: JournalBearing) -> None:
+    if bearing.thermal is not None:
+        raise InputError(
+            f"JournalBearing.thermal must be None with Lubricant.density_law={bearing.lubricant.density_law!r}, got "
+            f"{bearing.thermal!r}; its heat balance takes oil as incompressible, leave one of the two out."
+        )
+
+
+def _transform_law(lubricant: Lubricant) -> PressureLaw | None:
+    density = compressible_law(lubricant)
+    if density is not None or lubricant.pressure_law is None:
+        return density
+    return lubricant.pressure_law.bound(lubricant.viscosity)
 
 
 def known_pressures(lubricant: Lubricant, boundary: float | np.ndarray, cavity: float) -> tuple[np.ndarray, float]:
@@ -97,16 +128,17 @@ def known_pressures(lubricant: Lubricant, boundary: float | np.ndarray, cavity: 
             f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs the sliding "
             "speed of a JournalBearing (steady)."
         )
-    if lubricant.pressure_law is None:
+    law = _transform_law(lubricant)
+    if law is None:
         return np.asarray(boundary), cavity
-    law = lubricant.pressure_law.bound(lubricant.viscosity)
     return law.transform(np.asarray(boundary, dtype=float)), float(law.transform(np.array([cavity]))[0])
 
 
 def true_pressure(lubricant: Lubricant, q: np.ndarray, scale: float) -> np.ndarray | None:
     """Pressure (n, m) from the transformed one, both divided by ``scale`` in Pa; None if there is none."""
-    if lubricant.pressure_law is None:
+    law = _transform_law(lubricant)
+    if law is None:
         return q
     p, ratio, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-    found = lubricant.pressure_law.bound(lubricant.viscosity).inverse(q * scale, p, ratio, slope)
+    found = law.inverse(q * scale, p, ratio, slope)
     return p / scale if found else None

@@ -9,14 +9,18 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.cavitation import SwiftStieber
+from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.steps import SteppedGap
+from exudyn_ehd.joint.audit import Audit, audit_states
+from exudyn_ehd.joint.audit_states import FilmState
 from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.model import BearingModel
-from exudyn_ehd.joint.rheology import known_pressures, true_pressure
+from exudyn_ehd.joint.rheology import compressible_law, known_pressures, true_pressure
 from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
@@ -48,7 +52,8 @@ class FilmResult:
     fill : (n, m) array
         Film fraction; ones for closures that do not conserve mass.
     content : (n, m) array
-        fill times gap, m: the ``history`` of the next step.
+        fill times gap, m, and times the density over that at ambient pressure if the lubricant has a density law: the
+        ``history`` of the next step.
     """
 
     status: Status
@@ -84,7 +89,7 @@ def solve_film(
     gap : (n, m) array
         Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
     lubricant : Lubricant
-        Its pressure law takes part; a shear law needs a bearing.
+        Its pressure and density laws take part; a shear law needs a bearing.
     surface_speed : (float, float)
         Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
     gap_rate : (n, m) array, optional
@@ -120,7 +125,7 @@ def solve_film(
     if history is not None:
         mass = np.asarray(history) / c
         rate = (H - mass) / step
-    solver = FilmSolver(grid, closure, squeeze=rate is not None, flux_effects=(SteppedGap(H),) if stepped_gap else ())
+    solver = _any_gap_solver(grid, closure, lubricant, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
@@ -144,8 +149,20 @@ def solve_film(
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(pressure * grid.weight)) * scale * R**2,
         fill=fill,
-        content=fill * gap,
+        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
     )
+
+
+def _any_gap_solver(
+    grid: FilmGrid, closure: Closure, lubricant: Lubricant, squeeze: bool, steps: SteppedGap | None, scale: float
+) -> FilmSolver:
+    effects = () if steps is None else (steps,)
+    law = compressible_law(lubricant)
+    if law is None:
+        return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
+    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+    solver.pressure_scale = scale
+    return solver
 
 
 def _check_film(
@@ -210,6 +227,9 @@ class SteadyResult:
         Of a flexible bore, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
         Of a flexible bore, m.
+    bearing : JournalBearing
+    motion : (10,) array
+        Of the journal, as in `exudyn_ehd.joint.model`; with a flexible bore followed by its coordinates and rates.
     """
 
     theta: np.ndarray
@@ -239,6 +259,24 @@ class SteadyResult:
     temperature: float | np.ndarray | None = None
     bore_displacement: np.ndarray | None = None
     bore_coordinates: np.ndarray | None = None
+    bearing: JournalBearing = field(repr=False, kw_only=True)
+    motion: np.ndarray = field(repr=False, kw_only=True)
+
+    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
+        """Which effects matter at this position, which are left out, which are paid for in vain; print it for a table.
+
+        Parameters
+        ----------
+        liner : ElasticLiner, optional
+            Of which to say whether its elasticity would matter; for bearings without one.
+        measure_time : bool
+            Measure the share of the time that every effect takes which is on.
+        """
+        open_ring = isinstance(self.bearing.inlet, MaximumGap)
+        start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
+        model = build_study_model(self.bearing, start)
+        state = FilmState(self.motion, _history_at(model, self.motion, "audit"))
+        return audit_states(model, [state], liner=liner, measure_time=measure_time)
 
 
 def steady(
@@ -367,6 +405,8 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         iterations=model.iterations,
         temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
         **model.bore_fields(),
+        bearing=model.bearing,
+        motion=model.motion.copy(),
     )
 
 

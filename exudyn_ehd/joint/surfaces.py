@@ -96,6 +96,7 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
         "cavitation=ElrodAdams()": bearing.cavitation.conserves_mass,
         f"film={type(bearing.film).__name__}()": not isinstance(bearing.film, FiniteLength),
         "lubricant.pressure_law": bearing.lubricant.pressure_law is not None,
+        "lubricant.density_law": bearing.lubricant.density_law is not None,
         "lubricant.shear_law": bearing.lubricant.shear_law is not None,
         "thermal=FilmEnergy(...)": isinstance(bearing.thermal, FilmEnergy),
         "contact=RegularisedWall(...)": bearing.contact is not None,

@@ -26,7 +26,7 @@ CASES = {
     "roughness and asperity": ({"roughness": ROUGHNESS, "asperity": ASPERITY}, 1.6),
     "profile": ({"profile": ehd.Crown(drop=1e-6)}, 1.5),
     "wear": ({"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}, 1.8),
-    "liner": ({"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)}, 2.8),
+    "liner": ({"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)}, 3.5),
 }
 
 

@@ -17,6 +17,8 @@ EFFECTS = {
     "barus": ({"pressure_law": ehd.BarusPressure(coefficient=2e-8)}, None),
     "roelands": ({"pressure_law": ROELANDS}, None),
     "carreau": ({"shear_law": CARREAU}, None),
+    "density": ({"density_law": ehd.DowsonHigginson(coefficient=3e-9)}, None),
+    "density and roelands": ({"density_law": ehd.DowsonHigginson(), "pressure_law": ROELANDS}, None),
     "lumped": ({}, ehd.LumpedThermal(supply_temperature=330.0)),
     "field": ({}, FIELD),
     "all": ({"pressure_law": ROELANDS, "shear_law": CARREAU}, FIELD),

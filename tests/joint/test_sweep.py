@@ -22,6 +22,7 @@ EFFECTS = {
     "shear thinning": {
         "lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=2e-6, exponent=0.8))
     },
+    "density": {"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
 }
 
 

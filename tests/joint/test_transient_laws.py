@@ -15,6 +15,11 @@ EFFECTS = {
     "barus": {"pressure_law": ehd.BarusPressure(coefficient=2e-8)},
     "roelands": {"pressure_law": ehd.RoelandsPressure(coefficient=2e-8)},
     "carreau": {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)},
+    "density": {"density_law": ehd.DowsonHigginson(coefficient=3e-9)},
+    "density and roelands": {
+        "density_law": ehd.DowsonHigginson(),
+        "pressure_law": ehd.RoelandsPressure(coefficient=2e-8),
+    },
     "lumped": {"thermal": ehd.LumpedThermal(supply_temperature=330.0)},
     "field": {"thermal": ehd.FilmEnergy(supply_temperature=330.0, bush_coefficient=1e3)},
     "all": {

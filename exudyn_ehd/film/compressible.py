@@ -1,0 +1,274 @@
+"""Compressible film: the density follows the pressure, on any closure.
+
+With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of `exudyn_ehd.film.density`, scaled to P, the mass balance
+of a control volume reads
+
+    sum over its links of (sigma V H - H^3 dP/ds) + d(rho fill H)/dt area = 0,
+
+the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled form of
+`exudyn_ehd.film.reynolds`. sigma is the mean density of a link's ends (second order) times the fill of its upstream end. The closures
+are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over the whole film, cut off afterwards; the density
+answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
+
+Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history there is no rate
+of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as the strain of the oil, dp / K
+with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H: 1 % for 10 MPa during which the gap
+changes by half. The rates at an instant (a history without a time step) leave it out likewise. A flooded start
+holds oil of ambient density, so that its film builds up the pressure over some steps.
+
+Newton's method with the exact non-symmetric matrix starts from the last film, else from the incompressible one. Should it fail, the
+density's departure from a constant is switched on in steps. Oil that no pressure of the law's range carries has no film.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.band_lu import solve_lu_transposed
+from exudyn_ehd.film.density import CompressibleLaw
+from exudyn_ehd.film.density_newton import (
+    CLIPPED,
+    COMPLEMENTARY,
+    FILLED,
+    FULL,
+    Balance,
+    Buffers,
+    carry_density,
+    compressible_balance,
+    factor_compressible,
+    link_factors,
+    solve_compressible,
+)
+from exudyn_ehd.film.elrod import _lu_buffers
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives
+from exudyn_ehd.status import Status
+
+SMALLEST_SHARE = 1.0 / 64.0
+
+
+class CompressibleFilmSolver(FilmSolver):
+    """`FilmSolver` with a density that follows the pressure; flows are mass flows over the density at ambient pressure.
+
+    Parameters
+    ----------
+    grid, closure, squeeze, flux_effects
+        As for `FilmSolver`.
+    law : CompressibleLaw
+
+    Attributes
+    ----------
+    pressure_scale : float
+        Pa per unit of the scaled pressure; set by the caller before ``solve``.
+    rho : (n, m) array
+        Density over that at ambient pressure, of the last solution.
+    """
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        law: CompressibleLaw,
+        *,
+        squeeze: bool = True,
+        flux_effects: tuple[FluxEffect, ...] = (),
+    ) -> None:
+        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
+        shape = grid.shape
+        self.flux = LinkFlux(shape)
+        self.law, self.pressure_scale = law, 1.0
+        w, s = self.work, self.system
+        self.film = Balance(
+            s.kx, s.kz, s.fx, s.fz, np.zeros(shape), np.zeros(shape), np.zeros(shape), self.area, grid.fixed
+        )
+        lower, upper = _lu_buffers(w)
+        self.buffers = Buffers(
+            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.ones((6, *shape)), np.zeros(shape)
+        )
+        self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
+        self.exact = False
+        if closure.conserves_mass:
+            self.kind = FILLED
+        elif closure.clips:
+            self.kind = CLIPPED
+        else:
+            self.kind = COMPLEMENTARY if np.isfinite(closure.cavity_pressure) else FULL
+
+    @property
+    def rho(self) -> np.ndarray:
+        """Density ratio of the last solution (n, m)."""
+        return self.buffers.fields[4]
+
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled mass rho fill H of the last solution (n, m)."""
+        return self.rho * self._fill * self.H
+
+    @property
+    def _fill(self) -> np.ndarray:
+        return self.system.fill if self.closure.conserves_mass else self.ones
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """Solve for the gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        s, w = self.system, self.work
+        if mass_old is not None and step <= 0.0:
+            # What an instant keeps is the volume: a full film follows the gap with the density that its pressure gives it.
+            at_cavity = self.law.density.ratio(self._cavity_in_pascal(cavity_pressure))
+            mass_old = np.minimum(mass_old / at_cavity, self.H)
+        steps = 0
+        if w.warm:
+            self._prepare(vx, vz, cavity_pressure, mass_old, step)
+            ok, steps = self._newton(1.0)
+            if ok:
+                return self._finish(steps)
+        w.warm = False
+        status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
+        steps += count
+        w.warm = False
+        if status is not Status.CONVERGED:
+            return status, steps
+        self._set_store()
+        # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
+        out = bool(np.any(s.linear_pressure * self.pressure_scale >= self.law.kernel_table.highest))
+        ok, count = self._newton(1.0) if out else self._switch_on()
+        steps += count
+        if not ok:
+            return (Status.NO_PRESSURE if out else Status.NOT_CONVERGED), steps
+        return self._finish(steps)
+
+    def _cavity_in_pascal(self, cavity_pressure: float) -> np.ndarray:
+        q = np.array([[cavity_pressure * self.pressure_scale]])
+        p, ratio, slope = np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 1))
+        self.law.inverse(q, p, ratio, slope)
+        return p[0, 0]
+
+    def _prepare(self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None, step: float) -> None:
+        """Coefficients of this film, as `FilmSolver.solve` sets them."""
+        s = self.system
+        self.vx, self.vz = vx, vz
+        assert self.flux is not None
+        self._apply_flux_effects(self.flux)
+        s.cavity_pressure = cavity_pressure
+        if self.closure.clips:
+            s.linear_pressure[self.grid.fixed] = s.pressure[self.grid.fixed]
+        if self.closure.conserves_mass:
+            self._set_storage(mass_old, step)
+        self._set_store()
+
+    def _set_store(self) -> None:
+        """Coefficients of the storage term; see `Balance`."""
+        s, f = self.system, self.film
+        f.known[:] = 0.0
+        f.kept[:] = 0.0
+        if s.inverse_step > 0.0:
+            np.multiply(self.H, s.inverse_step, out=f.grow)
+            np.multiply(s.mass_old, -s.inverse_step, out=f.known if self.instant else f.kept)
+        elif self.squeeze:
+            f.grow[:] = self.H_t
+        else:
+            f.grow[:] = 0.0
+
+    def _newton(self, share: float) -> tuple[bool, int]:
+        s, w = self.system, self.work
+        ok, steps, self.exact, w.count, w.width = solve_compressible(
+            self.film, self.pressure_scale, s.cavity_pressure, self.kind, self.law.kernel_table, share, w.active,
+            self.buffers, s.linear_pressure, self._fill,
+        )  # fmt: skip
+        return ok, steps
+
+    def _switch_on(self) -> tuple[bool, int]:
+        """The law at once, or in steps from the constant density of the present film."""
+        s, w = self.system, self.work
+        done, share, total = 0.0, 1.0, 0
+        start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
+        while done < 1.0:
+            ok, steps = self._newton(min(1.0, done + share))
+            total += steps
+            if ok:
+                done = min(1.0, done + share)
+                start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
+                share *= 2.0
+                continue
+            s.linear_pressure[:], s.fill[:], w.active[:] = start
+            share *= 0.25
+            if share < SMALLEST_SHARE:
+                return False, total
+        return True, total
+
+    def _finish(self, steps: int) -> tuple[Status, int]:
+        """Clip what the closure clips; factors of the Couette flows on the links."""
+        s, w, fixed = self.system, self.work, self.grid.fixed
+        P = s.linear_pressure
+        w.warm = True
+        if self.kind == CLIPPED:
+            np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
+            np.logical_and(~fixed, s.cavity_pressure <= P, out=w.active)
+        elif self.kind != FULL:
+            free = ~fixed
+            P[free] = np.maximum(P[free], s.cavity_pressure)
+            if self.kind == FILLED:
+                np.clip(s.fill, 0.0, 1.0, out=s.fill)
+        link_factors(self._fill, self.rho, s.fx, s.fz, self.sigma_x, self.sigma_z)
+        return Status.CONVERGED, steps
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette mass flows of the links in theta and z, and the rate at which a full film's mass grows with its gap."""
+        return self.system.fx * self.sigma_x, self.system.fz * self.sigma_z, self.rho * self.H_t
+
+    def inflow(self) -> np.ndarray:
+        """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
+        balance = np.empty(self.grid.shape)
+        compressible_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
+        return np.where(self.grid.fixed, balance, 0.0)
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w, b = self.work, self.buffers
+        if not self.exact:
+            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), b)
+            self.exact = True
+        solve_lu_transposed(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs)
+        fields = np.zeros((rhs.shape[0], self.H.size))
+        fields[:, w.order[: w.count]] = rhs
+        return fields.reshape(rhs.shape[0], *self.grid.shape)
+
+    def _unknown_pressure(self) -> np.ndarray:
+        return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m)."""
+        d = self.link_derivatives()
+        by_rate, by_gap = self.storage_weights()
+        along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
+        half = -0.5 * across * d.DZ[:, :-1]
+        cell = -lam * by_gap
+        cell[:, :, :-1] += half
+        cell[:, :, 1:] += half
+        turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
+        sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
+        return Sensitivities(cell, -along * d.DX, -lam * by_rate, -np.stack([turning, sliding], axis=1))
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
+        g, d, f = self.grid, self.link_fields, self.flux
+        assert f is not None
+        flux_link_derivatives(
+            self.system.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
+            self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
+        )  # fmt: skip
+        carry_density(
+            self.sigma_x, self.sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+            d.DX, d.DZ, d.SX, d.SZ,
+        )  # fmt: skip
+        return d
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s, content = self.system, self.area * self.rho * self._fill
+        if s.inverse_step > 0.0 and not self.instant:
+            return self.nothing, content * s.inverse_step
+        return (content if self.squeeze else self.nothing), self.nothing

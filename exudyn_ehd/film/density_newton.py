@@ -1,0 +1,297 @@
+"""Kernels of the compressible film: balance, Newton's matrix, its sets and gradients; see `exudyn_ehd.film.compressible`.
+
+Symbols: P transformed pressure, fill film fraction, rho density ratio at the vertices and rho_P its derivative to P; k, f conductance
+and Couette flux of a link (those of a film of density 1) and ``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b;
+full: P is the unknown of a vertex, else its fill.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.band_lu import factor_lu, solve_lu
+from exudyn_ehd.film.density import density_of_transformed
+from exudyn_ehd.film.direct import PAD, number_cells
+from exudyn_ehd.film.elrod import _add_entry
+
+MAX_NEWTON_STEPS = 60
+# Shares of the peak pressure: where a vertex changes sides, and the error at which the solution stands.
+SET_TOLERANCE = 1e-12
+ERROR_TOLERANCE = 1e-14
+# A step so small leaves an error of its square; a factor from so near, or one with which steps shrink so fast, counts as exact.
+LAST_STEP = 1e-7
+EXACT_RATIO = 1e-8
+FULL, CLIPPED, COMPLEMENTARY, FILLED = 0, 1, 2, 3
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+class Balance(NamedTuple):
+    """One film's coefficients, (n, m) each; the storage of a vertex is ``area (rho (grow fill + known) + kept)``."""
+
+    kx: np.ndarray
+    kz: np.ndarray
+    fx: np.ndarray
+    fz: np.ndarray
+    grow: np.ndarray
+    known: np.ndarray
+    kept: np.ndarray
+    area: np.ndarray
+    fixed: np.ndarray
+
+
+class Buffers(NamedTuple):
+    """Arrays that a solution works on: numbering, factor, right-hand side, four fields and the residual (n, m)."""
+
+    order: np.ndarray
+    number: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    inv_diag: np.ndarray
+    x: np.ndarray
+    fields: np.ndarray
+    residual: np.ndarray
+
+
+@njit(cache=True, fastmath=_FAST)
+def compressible_balance(P, fill, rho, film, out):
+    """Mass that leaves every vertex (n, m) less what it holds in store: 0 where the film is solved."""
+    n, m = P.shape
+    kx, kz, fx, fz, area = film.kx, film.kz, film.fx, film.fz, film.area
+    grow, known, kept = film.grow, film.known, film.kept
+    for i in range(n):
+        for j in range(m):
+            store = rho[i, j] * (grow[i, j] * fill[i, j] + known[i, j]) + kept[i, j]
+            out[i, j] = area[i, j] * store
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            f = fx[i, j]
+            up = fill[i, j] if f >= 0.0 else fill[nxt, j]
+            q = kx[i, j] * (P[i, j] - P[nxt, j]) + 0.5 * f * up * (rho[i, j] + rho[nxt, j])
+            out[i, j] += q
+            out[nxt, j] -= q
+        for j in range(m - 1):
+            f = fz[i, j]
+            up = fill[i, j] if f >= 0.0 else fill[i, j + 1]
+            q = kz[i, j] * (P[i, j] - P[i, j + 1]) + 0.5 * f * up * (rho[i, j] + rho[i, j + 1])
+            out[i, j] += q
+            out[i, j + 1] -= q
+
+
+@njit(cache=True)
+def link_factors(fill, rho, fx, fz, sigma_x_out, sigma_z_out):
+    """sigma on the links in theta and z (0 behind the last row)."""
+    n, m = rho.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
+            sigma_x_out[i, j] = 0.5 * up * (rho[i, j] + rho[nxt, j])
+        for j in range(m - 1):
+            up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
+            sigma_z_out[i, j] = 0.5 * up * (rho[i, j] + rho[i, j + 1])
+        sigma_z_out[i, m - 1] = 0.0
+
+
+@njit(cache=True)
+def _add_link(a, b, full_a, full_b, k, f, fill_a, fill_b, rho_a, rho_b, by_a, by_b, lower, upper):
+    """Derivatives of the flux over one link a -> b into the rows of its ends; a, b are unknowns or -1."""
+    mean = 0.5 * (rho_a + rho_b)
+    up = fill_a if f >= 0.0 else fill_b
+    if a >= 0:
+        if full_a:
+            d = k + 0.5 * f * up * by_a
+        else:
+            d = f * mean if f >= 0.0 else 0.0
+        upper[a, 0] += d
+        if b >= 0:
+            _add_entry(lower, upper, b, a, -d)
+    if b >= 0:
+        if full_b:
+            d = -k + 0.5 * f * up * by_b
+        else:
+            d = f * mean if f < 0.0 else 0.0
+        upper[b, 0] -= d
+        if a >= 0:
+            _add_entry(lower, upper, a, b, d)
+
+
+@njit(cache=True)
+def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, width, lower, upper):
+    """Newton's matrix of the numbered vertices into the two bands."""
+    n, m = rho.shape
+    kx, kz, fx, fz, area = film.kx, film.kz, film.fx, film.fz, film.area
+    grow, known = film.grow, film.known
+    for r in range(count):
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a = number[i, j]
+            b = number[nxt, j]
+            if (a >= 0 or b >= 0) and kx[i, j] != 0.0:
+                _add_link(
+                    a, b, full[i, j], full[nxt, j], kx[i, j], fx[i, j], fill[i, j], fill[nxt, j], rho[i, j],
+                    rho[nxt, j], rho_P[i, j], rho_P[nxt, j], lower, upper,
+                )  # fmt: skip
+            if j + 1 < m:
+                b = number[i, j + 1]
+                if a >= 0 or b >= 0:
+                    _add_link(
+                        a, b, full[i, j], full[i, j + 1], kz[i, j], fz[i, j], fill[i, j], fill[i, j + 1],
+                        rho[i, j], rho[i, j + 1], rho_P[i, j], rho_P[i, j + 1], lower, upper,
+                    )  # fmt: skip
+            if a >= 0:
+                if full[i, j]:
+                    store = rho_P[i, j] * (grow[i, j] * fill[i, j] + known[i, j])
+                else:
+                    store = rho[i, j] * grow[i, j]
+                upper[a, 0] += area[i, j] * store
+
+
+@njit(cache=True)
+def factor_compressible(fill, film, kind, full, b):
+    """Newton's matrix at the density in ``b.fields``, factored; returns (ok, count, width)."""
+    if kind == COMPLEMENTARY:
+        count, width = number_cells(full, film.kx, b.order, b.number)
+    else:
+        count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
+    assemble_compressible(fill, b.fields[4], b.fields[5], film, full, b.number, b.order, count, width, b.lower, b.upper)
+    return factor_lu(b.lower, b.upper, count, width, b.inv_diag), count, width
+
+
+@njit(cache=True)
+def _take(P, fill, full, order, count, x, pc, kind):
+    """Add the step x; returns its largest share of the peak pressure (or of a full film)."""
+    m = P.shape[1]
+    reference = 0.0 if kind == FULL else pc
+    peak = 1e-300
+    by_pressure = 0.0
+    by_fill = 0.0
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        if full[i, j]:
+            P[i, j] += x[r]
+            peak = max(peak, abs(P[i, j] - reference))
+            by_pressure = max(by_pressure, abs(x[r]))
+        else:
+            fill[i, j] += x[r]
+            by_fill = max(by_fill, abs(x[r]))
+    return max(by_pressure / peak, by_fill), peak
+
+
+@njit(cache=True)
+def _select(P, fill, r, fixed, full, pc, kind, floor):
+    """Vertices change sides: pressures below ``floor``, films above 1 (or, without a fill, oil that piles up); returns their number."""
+    n, m = P.shape
+    changes = 0
+    for i in range(n):
+        for j in range(m):
+            if fixed[i, j]:
+                continue
+            if full[i, j]:
+                if P[i, j] < floor:
+                    full[i, j] = False
+                    P[i, j] = pc
+                    changes += 1
+            elif kind == FILLED:
+                if fill[i, j] > 1.0 + SET_TOLERANCE:
+                    full[i, j] = True
+                    fill[i, j] = 1.0
+                    changes += 1
+            elif r[i, j] <= 0.0:
+                full[i, j] = True
+                changes += 1
+    return changes
+
+
+@njit(cache=True)
+def _start(P, fill, film, full, pc, kind):
+    """Known values at vertices without that unknown."""
+    n, m = P.shape
+    for i in range(n):
+        for j in range(m):
+            if film.fixed[i, j]:
+                full[i, j] = False
+            elif kind in (FULL, CLIPPED):
+                full[i, j] = True
+            elif full[i, j]:
+                P[i, j] = max(P[i, j], pc)
+            else:
+                P[i, j] = pc
+            if kind == FILLED and (film.fixed[i, j] or full[i, j]):
+                fill[i, j] = 1.0
+
+
+@njit(cache=True)
+def _balance_at(P, fill, film, scale, floor, law, share, b):
+    c = b.fields
+    density_of_transformed(P, scale, floor, law, share, c[0], c[1], c[2], c[3], c[4], c[5])
+    compressible_balance(P, fill, c[4], film, b.residual)
+
+
+@njit(cache=True)
+def solve_compressible(film, scale, pc, kind, law, share, full, b, P, fill):
+    """Newton from P, fill and the sets in ``full``; returns (ok, steps, exact, count, width).
+
+    A factor serves further steps as long as the sets stay and each step is five times smaller than the last. ``exact`` says that the
+    last factor is that of the solution.
+    """
+    floor = -np.inf if kind == FULL else pc
+    m = P.shape[1]
+    _start(P, fill, film, full, pc, kind)
+    _balance_at(P, fill, film, scale, floor, law, share, b)
+    count, width = 0, 1
+    last = moved = 0.0
+    fresh = True
+    for step in range(MAX_NEWTON_STEPS):
+        if fresh:
+            ok, count, width = factor_compressible(fill, film, kind, full, b)
+            if not ok:
+                return False, step + 1, False, count, width
+            moved = 0.0
+        for r in range(count):
+            i = b.order[r] // m
+            b.x[r] = -b.residual[i, b.order[r] - i * m]
+        solve_lu(b.lower, b.upper, b.inv_diag, count, width, b.x.reshape(1, b.x.size))
+        size, peak = _take(P, fill, full, b.order, count, b.x, pc, kind)
+        if not size < 1e300:
+            return False, step + 1, False, count, width
+        moved += size
+        _balance_at(P, fill, film, scale, floor, law, share, b)
+        changes = 0
+        if kind >= COMPLEMENTARY:
+            changes = _select(P, fill, b.residual, film.fixed, full, pc, kind, pc - SET_TOLERANCE * peak)
+        if changes > 0:
+            _balance_at(P, fill, film, scale, floor, law, share, b)
+            fresh = True
+            continue
+        ratio = size / last if not fresh and last > 0.0 else size
+        if (fresh and size <= LAST_STEP) or (not fresh and ratio * size <= ERROR_TOLERANCE) or size <= ERROR_TOLERANCE:
+            exact = moved <= LAST_STEP or (not fresh and ratio <= EXACT_RATIO)
+            return True, step + 1, exact, count, width
+        fresh = not fresh and ratio > 0.2
+        last = size
+    return False, MAX_NEWTON_STEPS, False, count, width
+
+
+@njit(cache=True, fastmath=_FAST)
+def carry_density(sigma_x, sigma_z, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z, link_x, DX, DZ, SX, SZ):
+    """Correct the Couette parts of a full film's link derivatives (see `exudyn_ehd.film.sweep`) for sigma on the links."""
+    n, m = sigma_x.shape
+    for i in range(n):
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            more = linked * width_z[j] * (sigma_x[i, j] - 1.0)
+            DX[i, j] += more * vx * cx_h[i, j]
+            SX[i, j] += more * cx[i, j]
+        for j in range(m - 1):
+            more = width_x[i] * (sigma_z[i, j] - 1.0)
+            DZ[i, j] += more * vz * cz_h[i, j]
+            SZ[i, j] += more * cz[i, j]

@@ -1,0 +1,231 @@
+"""What a compressible film must keep with every closure: exact tangent, the incompressible limit, oil mass, a solution, no cost when off."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film import compressible, density, density_newton
+from exudyn_ehd.joint.build import build_model
+
+C, STEP = 25e-6, 1e-4
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+PRESSURE = [None, ehd.BarusPressure(coefficient=1e-8), ehd.RoelandsPressure(coefficient=2e-8)]
+CARREAU = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)
+DENSITY = ehd.DowsonHigginson()
+# Ten times softer than oil, so that an error in the density's share of the tangent would show.
+SOFT = ehd.DowsonHigginson(coefficient=3e-9, saturation=1.7e-9)
+# Tilted, squeezing, sliding axially.
+MOTION = np.array([11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3])
+UNIT = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
+
+
+def make(law=DENSITY, pressure=None, shear=None, cavitation=CLOSURES[2], **options):
+    oil = ehd.Lubricant(viscosity=0.02, pressure_law=pressure, shear_law=shear, density_law=law)
+    values = {
+        "journal_radius": 0.025, "length": 0.05, "radial_clearance": C, "lubricant": oil, "cavitation": cavitation,
+        "end_pressures": (1e5, 2e5), "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }  # fmt: skip
+    return build_model(ehd.JournalBearing(**(values | options)))
+
+
+def start(model):
+    """A history three steps after a flooded start."""
+    history = model.initial_history(MOTION)
+    for _ in range(3):
+        assert model.evaluate(MOTION, history, STEP).status is ehd.Status.CONVERGED
+        history = model.history()
+    return history
+
+
+def tangent_error(model, history, step=STEP, columns=range(10)):
+    """Largest difference to fourth-order central differences, relative to the rows; the best of several steps (moving rupture lines)."""
+    columns = list(columns)
+    exact = (model.evaluate(MOTION, history, step).tangent() * UNIT)[:, columns]
+    size, errors = np.abs(exact).max(axis=1, keepdims=True), []
+    for h in (1e-4, 1e-5, 1e-6, 1e-7):
+        found = []
+        for k in columns:
+            d = h * np.eye(10)[k] * UNIT
+            w = [model.evaluate(MOTION + a * d, history, step).wrench for a in (-2, -1, 1, 2)]
+            found.append((8.0 * (w[2] - w[1]) - (w[3] - w[0])) / (12.0 * h))
+        errors.append(float((np.abs(np.array(found).T - exact) / size).max()))
+    return min(errors)
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize("shear", [None, CARREAU], ids=["newton", "carreau"])
+@pytest.mark.parametrize("pressure", PRESSURE, ids=lambda p: type(p).__name__)
+@pytest.mark.parametrize("law", [DENSITY, SOFT], ids=["oil", "soft"])
+def test_tangent_is_exact(law, pressure, shear, cavitation):
+    """1e-6: differences of a film solved to 1e-14, over steps of 1e-4 to 1e-7."""
+    if law is SOFT and isinstance(pressure, ehd.RoelandsPressure):
+        pressure = ehd.RoelandsPressure(coefficient=1e-8)  # with 2e-8 no pressure of the law's range carries this film
+    model = make(law, pressure, shear, cavitation)
+    assert tangent_error(model, start(model)) < 1e-6
+    if cavitation.conserves_mass:
+        assert tangent_error(model, None) < 1e-6
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"squeeze": False},
+        {"supply": (ehd.AxialGroove(angle=1.5, width_angle=0.3, length=0.03, pressure=3e5),)},
+        {"contact": ehd.RegularisedWall(onset=15e-6)},
+        {"roughness": ehd.PatirCheng(composite_roughness=2e-6)},
+    ],
+    ids=["no squeeze", "groove", "wall", "rough"],
+)
+def test_tangent_is_exact_with_other_options(options, cavitation):
+    try:
+        model = make(SOFT, PRESSURE[1], cavitation=cavitation, **options)
+    except ehd.InputError:
+        pytest.skip("refused without a density law, too")
+    assert tangent_error(model, start(model)) < 1e-6
+
+
+@pytest.mark.parametrize("pressure", PRESSURE[:2], ids=["constant", "barus"])
+def test_rates_at_an_instant_are_exact(pressure):
+    """Columns of the rates and speeds from a cavitated history without a step, where full films squeeze at once."""
+    model = make(SOFT, pressure, cavitation=CLOSURES[3])
+    history = start(model)
+    # An instant is a step of 1e-9 s in the volume: rounding 1e-16 / 1e-9 of the gap's rates.
+    assert tangent_error(model, history, 0.0, range(4, 8)) < 1e-5
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+def test_vanishing_coefficient_recovers_the_incompressible_film(cavitation):
+    """With the first order in the coefficient."""
+    plain = make(None, cavitation=cavitation).evaluate(MOTION).wrench
+    errors = []
+    for a in (1e-11, 1e-12):
+        wrench = make(ehd.DowsonHigginson(coefficient=a), cavitation=cavitation).evaluate(MOTION).wrench
+        errors.append(np.abs(wrench - plain).max() / np.abs(plain).max())
+    assert errors[0] < 1e-3
+    assert 9.0 < errors[0] / errors[1] < 11.0
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES[1:], ids=lambda c: type(c).__name__)
+def test_denser_oil_carries_less_with_a_density_that_grows_into_the_wedge(cavitation):
+    """The wedge must press ``rho h`` through: the oil that is compressed in it need not be pressed out."""
+    soft, plain = (make(law, cavitation=cavitation).evaluate(MOTION).wrench for law in (SOFT, None))
+    loads = [float(np.hypot(*w[:2])) for w in (soft, plain)]
+    assert abs(loads[0] / loads[1] - 1.0) > 1e-3
+
+
+@pytest.mark.parametrize(
+    "pressure", [*PRESSURE[:2], ehd.RoelandsPressure(coefficient=1e-8)], ids=["constant", "barus", "roelands"]
+)
+def test_oil_mass_is_conserved_over_a_transient(pressure):
+    """Elrod-Adams, swinging journal: what enters is the change of ``rho fill h`` at every step and over all of them."""
+    model = make(SOFT if pressure is None else DENSITY, pressure, cavitation=CLOSURES[3])
+    motion, history = MOTION.copy(), model.initial_history(MOTION)
+    first, total, scale, rho, fill = float(np.sum(model.solver.area * history.mass)), 0.0, 0.0, 1.0, 1.0
+    for k in range(40):
+        motion[:2] = MOTION[:2] + 2e-6 * np.sin(0.3 * k + np.array([0.0, 1.0])) - 2e-6 * np.sin([0.0, 1.0])
+        assert model.evaluate(motion, history, STEP).status is ehd.Status.CONVERGED
+        new, inflow = model.history(), model.solver.inflow()
+        change = float(np.sum(model.solver.area * (new.mass - history.mass))) / STEP
+        assert abs(change - inflow.sum()) < 1e-10 * np.abs(inflow).sum()  # banded solution: rounding times its growth
+        total += STEP * inflow.sum()
+        scale += STEP * np.abs(inflow).sum()
+        history = new
+        rho, fill = max(rho, model.solver.rho.max()), min(fill, model.solver.fill.min())
+    assert rho > 1.01 and fill < 0.99
+    gain = float(np.sum(model.solver.area * history.mass)) - first
+    assert abs(gain - total) < 1e-10 * scale
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+def test_leakage_is_what_supplies_and_squeeze_leave(cavitation):
+    """Mass flows at rest of the journal: nothing is stored, so that both ends together lose what the closure creates: nothing."""
+    model = make(cavitation=cavitation)
+    still = MOTION.copy()
+    still[4:8] = 0.0
+    e = model.evaluate(still)
+    if cavitation.conserves_mass or (not cavitation.clips and not np.isfinite(cavitation.cavity_pressure)):
+        values = e.quantities()
+        both = abs(values["leakage_lower"]) + abs(values["leakage_upper"])
+        assert abs(values["leakage"]) < 1e-11 * both  # rounding
+
+
+def random_motion(rng):
+    motion = np.zeros(10)
+    e, at = rng.uniform(0.0, 0.99), rng.uniform(0.0, 2.0 * np.pi)
+    motion[:2] = e * C * np.array([np.cos(at), np.sin(at)])
+    motion[2:4] = rng.uniform(-0.6, 0.6, 2) * (1.0 - e) * C / 0.025
+    motion[4:6], motion[6:8] = rng.normal(0.0, 0.01, 2), rng.normal(0.0, 0.1, 2)
+    motion[8:] = rng.uniform(-500.0, 500.0), rng.normal()
+    return motion
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize("pressure", PRESSURE, ids=lambda p: type(p).__name__)
+def test_every_random_state_is_solved_or_beyond_the_law(pressure, cavitation):
+    """Up to eccentricity ratio 0.99, tilted, squeezing, in both senses of rotation: the only failure is oil beyond its law."""
+    model, rng = make(pressure=pressure, cavitation=cavitation), np.random.default_rng(11)
+    solved = 0
+    for _ in range(40):
+        motion = random_motion(rng)
+        for history, step in ((None, 0.0), (model.initial_history(motion), STEP)):
+            e = model.evaluate(motion, history, step)
+            assert e.status in (ehd.Status.CONVERGED, ehd.Status.NO_PRESSURE)
+            if e.status is ehd.Status.CONVERGED:
+                solved += 1
+                assert np.all(np.isfinite(e.wrench)) and np.all(np.isfinite(e.tangent()))
+    assert solved > 30  # of 80: with Roelands' law and 2e-8 a rigid bearing carries up to some 0.5
+
+
+def test_equilibrium_with_its_coefficients():
+    """Stiffness and damping of a loaded bearing stay near the incompressible ones: 7 MPa compress oil by 0.4 %."""
+    results = []
+    for law in (DENSITY, None):
+        bearing = dataclasses.replace(make(law, cavitation=CLOSURES[3]).bearing, end_pressures=(1e5, 1e5))
+        results.append(ehd.equilibrium(bearing, speed=250.0, load=(0.0, -2000.0)))
+    for name in ("stiffness", "damping"):
+        soft, plain = (getattr(r, name) for r in results)
+        np.testing.assert_allclose(soft[:2, :2], plain[:2, :2], atol=0.02 * np.abs(plain[:2, :2]).max())
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+def test_absent_law_calls_nothing(cavitation, monkeypatch):
+    """Its kernels and solver are forbidden, and the film's solver is the plain one."""
+
+    def forbidden(*_, **__):
+        raise AssertionError("an absent law was called")
+
+    for module in (density, density_newton, compressible):
+        for name in [n for n in vars(module) if callable(getattr(module, n)) and not n[0].isupper() and n[0] != "_"]:
+            if getattr(module, name).__module__.startswith("exudyn_ehd.film.density"):
+                monkeypatch.setattr(module, name, forbidden)
+    for target in ("compressible.CompressibleFilmSolver.__init__", "density.CompressibleLaw.__init__"):
+        monkeypatch.setattr(f"exudyn_ehd.film.{target}", forbidden)
+    model = make(None, cavitation=cavitation)
+    history = start(model)
+    model.evaluate(MOTION, history, STEP).tangent()
+    assert model.effects.density is None and model.compressible is None
+    assert all(np.isfinite(v) for v in model.quantities().values())
+
+
+@pytest.mark.parametrize(
+    ("options", "names"),
+    [
+        ({"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}, "ClassicSOR"),
+        ({"film": ehd.ShortBearing()}, "ShortBearing"),
+        (
+            {"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3, pressure=0.0),)},
+            "LongBearing",
+        ),
+        ({"film": ehd.ImpedanceMap()}, "ImpedanceMap"),
+        ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10)}, "density_law"),
+        ({"thermal": ehd.LumpedThermal(supply_temperature=320.0)}, "thermal"),
+        ({"thermal": ehd.FilmEnergy(supply_temperature=320.0)}, "thermal"),
+    ],
+    ids=lambda o: o if isinstance(o, str) else "",
+)
+def test_what_takes_oil_as_incompressible_refuses_the_law(options, names):
+    with pytest.raises(ehd.InputError, match=names):
+        make(**({"end_pressures": (0.0, 0.0)} | options))

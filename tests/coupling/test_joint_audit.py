@@ -1,0 +1,134 @@
+"""The audit of a joint: from its accepted steps, without touching it."""
+
+import math
+
+import exudyn.itemInterface as eii
+import numpy as np
+import pytest
+import scenes
+
+import exudyn_ehd as ehd
+
+SPEED = 300.0
+
+
+@pytest.fixture(autouse=True)
+def cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("EXUDYN_EHD_CACHE", str(tmp_path_factory.getbasetemp() / "maps"))
+
+
+def _joint(load=2000.0, assemble=True, **options):
+    bearing = ehd.JournalBearing(
+        **({
+            "journal_radius": 0.02, "length": 0.02, "radial_clearance": 20e-6, "lubricant": ehd.Lubricant(viscosity=0.02),
+            "film": ehd.FiniteLength(n_theta=48, n_z=6),
+        } | options)
+    )  # fmt: skip
+    mbs = scenes.new_system()
+    ground = scenes.add_body(mbs, "ground")
+    body = scenes.add_body(mbs, "2D", spin=(0, 0, SPEED))
+    centre = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
+    mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0.0, -load, 0.0]))
+    joint = ehd.CreateLubricatedJoint(mbs, "rotor", [ground, body], [0, 0, 0], [0, 0, 1], bearing)
+    if assemble:
+        mbs.Assemble()
+    return mbs, joint
+
+
+def _run(mbs, end=5e-3, steps=50):
+    mbs.SolveDynamic(ehd.ConfigureSolver(scenes.settings(end, steps)))
+
+
+def test_a_joint_without_steps_says_so():
+    _, joint = _joint(assemble=False)
+    with pytest.raises(ehd.InputError, match="'rotor' has no accepted steps"):
+        joint.audit()
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"film": ehd.ImpedanceMap()},
+        {"film": ehd.ShortBearing()},
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+        {"asperity": ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=2e10)},
+        {"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)},
+        {"thermal": ehd.FilmEnergy(supply_temperature=320.0), "lubricant": ehd.oil("ISO VG 46", temperature=320.0)},
+        {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.4, pressure=1e5, rotating=True, length=0.015),)},
+    ],
+    ids=["plain", "map", "short", "elrod", "asperity", "liner", "field", "turning groove"],
+)
+def test_every_joint_can_be_audited(options):
+    mbs, joint = _joint(**options)
+    _run(mbs)
+    evaluations, record = joint.element.evaluations, joint.history.force.copy()
+    found = joint.audit()
+    assert "nan" not in str(found)
+    assert all(math.isfinite(f.value) for f in found.findings)
+    assert {"time step", "heating", "squeeze", "contact"} <= {f.effect for f in found.findings}
+    # nothing of the joint has moved: neither its film nor its record
+    assert joint.element.evaluations == evaluations
+    assert np.array_equal(joint.history.force, record)
+
+
+def test_fields_of_a_film_that_remembers_are_those_of_the_run():
+    mbs, joint = _joint(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    _run(mbs)
+    found = joint.audit()
+    law = 2e-8  # the coefficient that the audit takes where none is named
+    peak = np.max(joint.history.peak_pressure[1:])
+    # The record starts flooded and is run again from its first step: the same films, up to Newton's tolerance of the run.
+    assert found["piezoviscosity"].value == pytest.approx(law * peak, rel=1e-6)
+
+
+def test_load_and_step_show():
+    light, heavy = _joint(load=200.0), _joint(load=2e5)
+    for mbs, _ in (light, heavy):
+        _run(mbs)
+    calm, hard = light[1].audit(), heavy[1].audit()
+    for effect in ("piezoviscosity", "grid around"):
+        assert not calm[effect].matters and hard[effect].matters, effect
+    assert hard["time step"].value > calm["time step"].value
+    assert calm["squeeze"].matters  # dropped from the centre
+
+
+def test_contact_is_counted_over_the_steps():
+    mbs, joint = _joint(contact=ehd.RegularisedWall(onset=1e-6))
+    _run(mbs)
+    finding = joint.audit()["contact"]
+    assert finding.in_vain and "acting in 0% of the steps" in finding.indicator
+    share = joint.audit(measure_time=True)["contact"].time_share
+    assert share is not None and 0.0 <= share < 1.0
+
+
+def test_a_liner_can_be_asked_about():
+    mbs, joint = _joint()
+    _run(mbs)
+    soft = joint.audit(liner=ehd.ElasticLiner(thickness=0.002, youngs_modulus=5e8))
+    assert soft["elasticity"] in soft.neglected
+
+
+def test_an_audit_says_the_same_again():
+    mbs, joint = _joint(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    _run(mbs)
+    assert str(joint.audit()) == str(joint.audit())
+
+
+def test_heat_is_averaged_over_the_run():
+    mbs, joint = _joint()
+    _run(mbs)
+    h, oil = joint.history, joint.bearing.lubricant
+    rise = np.mean(h.power_loss) / (oil.density * oil.specific_heat * np.mean(h.leakage))
+    assert joint.audit()["heating"].value == pytest.approx(0.03 * rise, rel=1e-12)
+    lumped = {
+        "thermal": ehd.LumpedThermal(supply_temperature=320.0),
+        "lubricant": ehd.oil("ISO VG 46", temperature=320.0),
+    }
+    mbs, joint = _joint(**lumped)
+    _run(mbs)
+    finding, law = joint.audit()["heating"], joint.bearing.lubricant.temperature_law
+    rise = np.max(joint.history.film_temperature) - 320.0
+    slope = math.log(law.viscosity(319.0, 879.0) / law.viscosity(321.0, 879.0)) / 2.0
+    # the film of a step has the temperature of its start, and so has the audited one
+    assert finding.on and finding.value == pytest.approx(slope * rise, rel=0.1)

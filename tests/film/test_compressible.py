@@ -1,0 +1,125 @@
+"""Compressible film on sliders: against the ordinary differential equation, uniform mass flow, kernels against twins."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.density_newton import Balance, compressible_balance
+
+MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
+DENSITY = ehd.DowsonHigginson()
+BARUS = ehd.BarusPressure(coefficient=1e-9)
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
+
+
+def slider(n, pressure_law=None, closure=CLOSURES[0], density=DENSITY):
+    grid = ehd.slider_grid(LENGTH, LENGTH, n, 1, sealed_sides=True)
+    gap = (H0 + (H1 - H0) * grid.x[:, None]) * np.ones((1, 2))
+    oil = ehd.Lubricant(viscosity=MU, pressure_law=pressure_law, density_law=density)
+    return grid, ehd.solve_film(grid, gap, lubricant=oil, surface_speed=(U, 0.0), cavitation=closure)
+
+
+def reference(x, pressure_law):
+    """Pressure at x / L: ``rho (U h / 2 - h^3 p' / (12 mu)) = m`` integrated from the inlet, m by shooting to p(L) = 0."""
+
+    def course(m, dense):
+        def slope(s, p):
+            h = H0 + (H1 - H0) * s
+            mu = MU if pressure_law is None else MU * np.exp(pressure_law.coefficient * p)
+            return LENGTH * 12.0 * mu / h**3 * (0.5 * U * h - m / DENSITY.ratio(p))
+
+        return solve_ivp(slope, (0.0, 1.0), [0.0], method="DOP853", rtol=1e-11, atol=1e-3, dense_output=dense)
+
+    m0 = U * H0 * H1 / (H0 + H1)
+    m = brentq(lambda m: course(m, False).y[0, -1], 0.97 * m0, 1.15 * m0, xtol=1e-18, rtol=1e-14)
+    return course(m, True).sol(x)[0], m
+
+
+@pytest.mark.parametrize("pressure_law", [None, BARUS], ids=["constant", "barus"])
+def test_slider_converges_to_the_differential_equation_with_the_second_order(pressure_law):
+    errors = []
+    for n in (100, 200):
+        grid, film = slider(n, pressure_law)
+        exact, _ = reference(grid.x, pressure_law)
+        errors.append(np.abs(film.pressure[:, 0] - exact).max() / exact.max())
+    print(f"peak {exact.max():.3g} Pa, errors {errors}")
+    assert DENSITY.ratio(exact.max()) > 1.05  # the law matters
+    assert errors[1] < 1e-4  # second order, 200 cells
+    assert 3.6 < errors[0] / errors[1] < 4.4
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_converging_slider_is_the_same_with_every_closure(closure):
+    grid, film = slider(100, closure=closure)
+    _, expected = slider(100)
+    np.testing.assert_allclose(film.pressure, expected.pressure, atol=1e-11 * expected.pressure.max())  # rounding
+    exact = reference(grid.x, None)[1] * LENGTH
+    inflow = film.inflow[0].sum()
+    assert inflow == pytest.approx(exact, rel=1e-3)  # second order, 100 cells
+    assert abs(film.inflow.sum()) < 1e-12 * inflow
+
+
+def bare_solver(closure, speed):
+    grid = ehd.slider_grid(LENGTH, LENGTH, 80, 6, sealed_sides=True)
+    solver = CompressibleFilmSolver(grid, closure, DENSITY.bound(BARUS), squeeze=False)
+    gap = 1.0 + 0.7 * np.cos(2.0 * np.pi * grid.x)[:, None] + 0.05 * grid.z
+    solver.H[:] = gap
+    solver.HF[:] = 0.5 * (gap + np.roll(gap, -1, axis=0))
+    solver.pressure_scale = 12.0 * MU * LENGTH**2 / H1**2
+    assert solver.solve(speed, 0.0, -0.01)[0] is ehd.Status.CONVERGED
+    return solver
+
+
+def test_mass_flow_is_uniform_along_a_cavitated_slider():
+    """Sum over the width on every station; Elrod-Adams carries the mass through the cavity."""
+    s = bare_solver(ehd.ElrodAdams(), 3.0)
+    y = s.system
+    flow = (y.kx * (s.pressure - np.roll(s.pressure, -1, axis=0)) + y.fx * s.sigma_x).sum(axis=1)[:-1]
+    assert s.rho.max() > 1.01 and s.fill.min() < 0.9
+    assert np.ptp(flow) < 1e-11 * np.abs(flow).mean()
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_balance_vanishes_where_pressure_is_unknown_and_oil_leaves_nowhere_else(closure):
+    s = bare_solver(closure, 3.0)
+    r = np.empty(s.grid.shape)
+    compressible_balance(s.system.linear_pressure, s._fill, s.rho, s.film, r)
+    free = ~s.grid.fixed if closure.clips or closure.conserves_mass else s.work.active
+    size = np.abs(s.system.fx).max()
+    assert np.abs(r[free]).max() < 1e-12 * size  # rounding of the fluxes
+    if not closure.clips:
+        assert r[~s.grid.fixed].min() > -1e-12 * size
+
+
+def test_balance_equals_its_twin():
+    rng = np.random.default_rng(3)
+    n, m = 5, 4
+    P, fill, rho = rng.random((3, n, m))
+    fields = rng.normal(size=(8, n, m))
+    fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
+    film = Balance(*fields, np.zeros((n, m), dtype=bool))
+    out = np.empty((n, m))
+    compressible_balance(P, fill, rho, film, out)
+    expected = film.area * (rho * (film.grow * fill + film.known) + film.kept)
+    for axis, k, f in ((0, film.kx, film.fx), (1, film.kz, film.fz)):
+        P_b, rho_b, fill_b = (np.roll(v, -1, axis=axis) for v in (P, rho, fill))
+        q = k * (P - P_b) + f * np.where(f >= 0.0, fill, fill_b) * 0.5 * (rho + rho_b)
+        expected += q - np.roll(q, 1, axis=axis)
+    np.testing.assert_allclose(out, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_warm_start_and_cold_start_agree(closure):
+    s = bare_solver(closure, 3.0)
+    cold = s.pressure.copy()
+    assert s.solve(2.5, 0.0, -0.01)[0] is ehd.Status.CONVERGED
+    assert s.solve(3.0, 0.0, -0.01)[0] is ehd.Status.CONVERGED
+    np.testing.assert_allclose(s.pressure, cold, atol=1e-12 * np.abs(cold).max())  # both solved to 1e-14 of the peak
+
+
+def test_oil_beyond_the_law_has_no_pressure():
+    with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
+        slider(60, ehd.BarusPressure(coefficient=3e-8))
