@@ -7,6 +7,7 @@ items         item numbers of a scene to carriers of a joint frame, input checks
 sides         who carries a marker frame: nodes of rigid bodies, ground, any other rigid marker
 kinematics    poses, rates and exact variations of the two frames, as kernels
 film_element  force and Jacobian user functions, failures, accepted steps
+elastic_film  the film element on a flexible bore, modal; nodal_film: on the nodes of a bush; elastic_attach: their items
 solvers       which Exudyn solver is at work
 history       record of accepted steps; sensors: the same quantities as Exudyn sensors
 settings      `ConfigureSolver`

@@ -176,7 +176,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         tension=float(np.sum(weight[pressure < TENSION])),
         tilt_loss=tilt_loss(b, model.motion),
         squeeze_share=squeeze_share(b, model.motion),
-        deflection=0.0 if model.liner_solver is None else _largest(model.liner_solver.deflection) * b.radial_clearance,
+        deflection=_deflection(model),
         shape=0.0 if model.extra is None else float(np.ptp(model.extra)) * b.radial_clearance,
         columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
         rows=intervals_at_half(pressure[i], int(j)),
@@ -239,3 +239,11 @@ def intervals_at_half(values: np.ndarray, peak: int) -> float:
         k = int(below[0])
         width += k - float((half - side[k]) / (side[k - 1] - side[k]))
     return width
+
+
+def _deflection(model: BearingModel) -> float:
+    """Largest deflection of a liner or of a flexible bore, m."""
+    if model.liner_solver is not None:
+        return _largest(model.liner_solver.deflection) * model.bearing.radial_clearance
+    fields = model.bore_fields()
+    return _largest(fields["bore_displacement"]) if fields else 0.0

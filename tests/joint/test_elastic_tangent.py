@@ -22,6 +22,12 @@ OPTIONS = {
     "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
     "ends": {"end_pressures": (3e5, 1e5)},
     "no squeeze": {"squeeze": False},
+    "piezoviscous": {"lubricant": ehd.Lubricant(viscosity=9e-3, pressure_law=ehd.RoelandsPressure(coefficient=1.8e-8))},
+    "shear thinning": {
+        "lubricant": ehd.Lubricant(viscosity=9e-3, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))
+    },
+    "compressible": {"lubricant": ehd.Lubricant(viscosity=9e-3, density_law=ehd.DowsonHigginson())},
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=1e-6)},
     "wall": {"contact": ehd.RegularisedWall(onset=12e-6, pressure=2e7)},
 }
 C = 30e-6
