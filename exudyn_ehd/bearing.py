@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING
 
 from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
@@ -23,6 +24,10 @@ from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.status import InputError, require_number, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.reduce import ModalBush
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -75,8 +80,8 @@ class JournalBearing:
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
-    bush : ElasticLiner or None
-        What gives way under the film's pressure; None: a rigid bore.
+    bush : ElasticLiner, ModalBush, ANCFBush or None
+        What gives way under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -104,7 +109,7 @@ class JournalBearing:
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
-    bush: ElasticLiner | None = None
+    bush: ElasticLiner | ModalBush | ANCFBush | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -125,7 +130,6 @@ class JournalBearing:
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
-        _require_type("bush", self.bush, (ElasticLiner, type(None)))
         _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
         _require_type("roughness", self.roughness, (PatirCheng, type(None)))
         _require_type("wear", self.wear, (ArchardWear, type(None)))
@@ -141,6 +145,8 @@ class JournalBearing:
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
+        if self.bush is not None and not isinstance(self.bush, ElasticLiner):
+            _check_bush(self)
 
     def _check_plain(self) -> None:
         """What `ImpedanceMap` needs: nothing beside geometry, viscosity and a closure at ambient cavity pressure."""
@@ -224,4 +230,32 @@ def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None
         names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
         raise InputError(
             f"JournalBearing.{argument} must be {names}, got {value!r}; options are objects, not strings or classes."
+        )
+
+
+def _check_bush(bearing: JournalBearing) -> None:
+    """Refuse a bush that is none, or whose bore is another than the film's."""
+    # imported here: a rigid bearing needs no solid
+    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.mesh import HollowCylinder
+    from exudyn_ehd.solid.reduce import ModalBush
+
+    _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, type(None)))
+    if not isinstance(bearing.film, FiniteLength | ShortBearing):
+        raise InputError(
+            f"JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got {type(bearing.film).__name__}(...)."
+        )
+    mesh = bearing.bush.mesh if isinstance(bearing.bush, ModalBush | ANCFBush) else None
+    if not isinstance(mesh, HollowCylinder):
+        return
+    radius = bearing.journal_radius + bearing.radial_clearance
+    if abs(mesh.inner_radius - radius) > 0.02 * radius:
+        raise InputError(
+            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got "
+            f"HollowCylinder.inner_radius = {mesh.inner_radius:g} m."
+        )
+    if mesh.length < bearing.length * (1.0 - 1e-9):
+        raise InputError(
+            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m, got HollowCylinder.length "
+            f"= {mesh.length:g} m."
         )

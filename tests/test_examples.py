@@ -18,3 +18,27 @@ def test_slider_crank(example, tmp_path):
     assert play["largest_crank_moment_Nm"] > 1.15 * real["largest_crank_moment_Nm"]
     assert play["largest_eccentricity_ratio"] > 0.98
     assert real["minimum_gap_um"] == pytest.approx(8.4, abs=0.3)
+
+
+def test_rotating_journal(example, tmp_path):
+    cases = example("rotating_journal").main(quick=True, results=tmp_path)
+    assert all(path.stat().st_size > 10_000 for path in cases.pop("pictures"))
+    for closure in ("Gumbel", "mass conserving"):
+        for name in ("aligned", "tilted"):
+            rigid, steel = cases[closure, name, "rigid"], cases[closure, name, "steel, modal"]
+            # the paper's conclusion: flexibility widens the film and lowers the peak
+            assert steel["peak_MPa"] < 0.95 * rigid["peak_MPa"]
+            assert steel["extent_deg"] >= rigid["extent_deg"]
+            assert steel["minimum_gap_um"] > rigid["minimum_gap_um"]
+    # Gumbel drops the linear film's suction: symmetric to rounding when aligned
+    assert cases["Gumbel", "aligned", "steel, modal"]["asymmetry"] < 1e-6
+
+
+def test_elastic_big_end(example, tmp_path):
+    cases = example("elastic_big_end").main(quick=True, results=tmp_path)
+    assert cases.pop("picture").stat().st_size > 10_000
+    rigid, elastic = cases["rigid"], cases["elastic"]
+    # the mechanism sets the force; the elastic bore spreads its pressure
+    assert abs(elastic["largest_force_kN"] / rigid["largest_force_kN"] - 1) < 0.01
+    assert elastic["peak_MPa"] < 0.95 * rigid["peak_MPa"]
+    assert abs(elastic["iterations_per_step"] - rigid["iterations_per_step"]) < 2

@@ -58,6 +58,8 @@ class LubricatedJoint:
         The axial constraint, if `Held`.
     element : FilmElement
         The film between the two frames.
+    bush : FlexibleBush or None
+        The nodal bush, if the bearing has one.
     """
 
     def __init__(self, mbs: Any, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
@@ -66,6 +68,7 @@ class LubricatedJoint:
         self.element = element
         self.bearing = element.model.bearing
         self.objectNumber, self.constraintNumber = numbers
+        self.bush = getattr(element, "bush", None)
 
     @property
     def history(self) -> JointHistory:
@@ -260,13 +263,20 @@ def attach(
     # planar bodies can't move axially: the constraint would be empty, and singular
     held = isinstance(axial, Held) and not (housing.kind in flat and journal.kind in flat)
     element = FilmElement(model, *sides, name)
+    nodes, more = [node for side in sides for node in side.nodes], {}
+    if hasattr(model, "bore"):
+        # imported here: a rigid bearing needs no solid
+        attach_bush = importlib.import_module("exudyn_ehd.coupling.elastic_attach").attach_bush
+        element, more = attach_bush(mbs, model, sides, (points[0], rotation), name, show)
+        nodes += element.bore_nodes
     number = mbs.AddObject(
         eii.ObjectGenericODE2(
             name=name,
-            nodeNumbers=[node for side in sides for node in side.nodes],
+            nodeNumbers=nodes,
             forceUserFunction=element.force,
             jacobianUserFunction=element.jacobian,
             visualization=eii.VObjectGenericODE2(show=show, color=list(color)),
+            **more,
         )
     )
     constraint = _hold_axially(mbs, name, housing, journal, points, rotation) if held else None

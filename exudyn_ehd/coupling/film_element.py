@@ -90,12 +90,7 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full(len(q), np.nan)
-        assert trial.evaluation is not None
-        housing, journal = self.sides
-        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
-        force = np.empty(len(q))
-        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
-        return force
+        return self._generalized_force(trial)
 
     def jacobian(
         self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
@@ -107,6 +102,15 @@ class FilmElement:
             return np.full((len(q), len(q)), np.nan)
         stiffness, damping = self._derivatives(mbs, trial)
         return -(f_q * stiffness + f_qt * damping)
+
+    def _generalized_force(self, trial: Trial) -> np.ndarray:
+        """Q (n,) at the trial, to which the sides' arrays belong."""
+        assert trial.evaluation is not None
+        housing, journal = self.sides
+        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        force = np.empty(len(trial.q))
+        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
+        return force
 
     # --- evaluation -----------------------------------------------------------------------------------------------
 
@@ -131,10 +135,12 @@ class FilmElement:
 
     def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
         """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
+        return self._move_rigid(mbs, np.array(q), np.array(q_t), configuration)
+
+    def _move_rigid(self, mbs: Any, qv: np.ndarray, qv_t: np.ndarray, configuration: Any) -> np.ndarray:
         if not self._bound:
             self._bind(mbs)
         housing, journal = self.sides
-        qv, qv_t = np.array(q), np.array(q_t)
         n = housing.size
         housing.update(mbs, qv[:n], qv_t[:n], configuration)
         journal.update(mbs, qv[n:], qv_t[n:], configuration)
@@ -157,9 +163,17 @@ class FilmElement:
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
         assert trial.evaluation is not None
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(trial.evaluation.tangent()))
+        return stiffness, damping
+
+    def _rigid_derivatives(
+        self, mbs: Any, trial: Trial, tangent: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
+        assert trial.evaluation is not None
         housing, journal = self.sides
         n_h, n = housing.size, housing.size + journal.size
-        q, q_t = np.array(trial.q), np.array(trial.q_t)
+        q, q_t = np.array(trial.q)[:n], np.array(trial.q_t)[:n]
         kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
@@ -174,13 +188,13 @@ class FilmElement:
             housing.jac,
             journal.jac,
             self._loads,
-            np.ascontiguousarray(trial.evaluation.tangent()),
+            tangent,
             motion_q,
             motion_qt,
             stiffness,
             damping,
         )
-        return stiffness, damping
+        return stiffness, damping, motion_q, motion_qt
 
     # --- failures -------------------------------------------------------------------------------------------------
 
@@ -234,15 +248,19 @@ class FilmElement:
                 self._trial = None
         self._start = start
 
+    def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
+        """Coordinates and rates of all nodes of the element in a configuration."""
+        return read_state(mbs, self.sides, configuration)
+
     def _first_memory(self, mbs: Any) -> Any:
-        q, q_t = read_state(mbs, self.sides, _START_OF_STEP)
+        q, q_t = self._read(mbs, _START_OF_STEP)
         motion = self._move(mbs, q, q_t, _START_OF_STEP)
         self._trial = None
         return self.model.initial_history(motion) if np.isfinite(motion.sum()) else None
 
     def _look(self, mbs: Any, time: float, configuration: Any) -> Trial:
         """Evaluate the film at the state that Exudyn holds in ``configuration``."""
-        q, q_t = read_state(mbs, self.sides, configuration)
+        q, q_t = self._read(mbs, configuration)
         trial = self._try(mbs, q, q_t, configuration, time)
         if configuration != _CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):
             # the markers' Jacobians were not brought to this state: never reuse it
@@ -254,7 +272,7 @@ class FilmElement:
             return None
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-        return make_row(time, trial.motion, ratios, trial.evaluation.wrench, trial.evaluation.quantities())
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, trial.evaluation.quantities())
 
     def current_row(self, mbs: Any) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

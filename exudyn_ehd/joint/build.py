@@ -39,9 +39,19 @@ def _one_shear_factor(first: ShearFactor | None, second: ShearFactor | None) -> 
     return second if first is None else first
 
 
+def _model(bearing: JournalBearing, start_angle: float) -> BearingModel:
+    effects = collect_effects(bearing, start_angle)
+    if bearing.bush is None or effects.liner is not None:
+        return BearingModel(bearing, start_angle=start_angle, effects=effects)
+    # imported here: a rigid bearing needs no solid
+    from exudyn_ehd.joint.bush import elastic_model
+
+    return elastic_model(bearing, start_angle, effects)
+
+
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
-    model = BearingModel(bearing, start_angle=start_angle, effects=collect_effects(bearing, start_angle))
+    model = _model(bearing, start_angle)
     compile_kernels(model)
     return model
 
@@ -63,6 +73,6 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
         )
     if isinstance(bearing.film, ImpedanceMap):
         return ImpedanceModel(bearing)
-    model = BearingModel(bearing, effects=collect_effects(bearing))
+    model = _model(bearing, 0.0)
     compile_kernels(model)
     return model

@@ -26,13 +26,14 @@ if TYPE_CHECKING:
 SIZE = 10
 
 
-def wrench_tangent(model: BearingModel, slow_motion: bool = False) -> np.ndarray:
+def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.ndarray | None = None) -> np.ndarray:
     """d wrench / d motion (6, 10) in SI units for the last evaluation of ``model``.
 
     With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it follows a slow motion,
-    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state.
+    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
+    `adjoint_rows`, if they are known already.
     """
-    ds, dc, extra = _integral_gradients(model, slow_motion)
+    ds, dc, extra = _integral_gradients(model, film_gradient(model, slow_motion) if gradient is None else gradient)
     ends = np.zeros(4)
     if model.limiter_fields is not None and model.end_pressures.any():
         ends = _end_gradient(model)
@@ -46,20 +47,24 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False) -> np.ndarray
     return out
 
 
-def _integral_gradients(model: BearingModel, slow_motion: bool = False) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
+def film_gradient(model: BearingModel, slow_motion: bool) -> np.ndarray:
+    """Gradients (k, 10) of the film's integrals to (scaled pose, scaled rates, vx, vz)."""
     s = model.solver
-    rows = _adjoint_rows(model)
-    k = rows.shape[0]
+    rows = adjoint_rows(model)
     lam = s.adjoint(rows)
-    gradient = np.zeros((k, SIZE))
+    gradient = np.zeros((rows.shape[0], SIZE))
     if s.plain_links and not slow_motion:
         swept_gradient(model, lam, gradient)
     else:
         field_gradient(model, lam, gradient, slow_motion)
+    return gradient
+
+
+def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     dc, extra = np.zeros(SIZE), np.zeros((2, SIZE))
     at = 4
-    if _shear_needs_adjoint(model):
+    if shear_needs_adjoint(model):
         dc = gradient[at]
         at += 1
     _add_couette_direct(model, dc)
@@ -96,8 +101,10 @@ def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -
     )  # fmt: skip
 
 
-def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False) -> None:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, for any film."""
+def field_gradient(
+    model: BearingModel, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False
+) -> Sensitivities:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
     if model.limiter_fields is not None:
@@ -110,18 +117,20 @@ def field_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray, s
     if slow_motion and sens.rate is not None and model.liner_solver is not None:
         rates += _following_deflection(model, model.liner_solver, sens.rate)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
+    return sens
 
 
-def _shear_needs_adjoint(model: BearingModel) -> bool:
+def shear_needs_adjoint(model: BearingModel) -> bool:
+    """Whether fill or pressure enter the Couette shear."""
     return (
         model.solver.closure.conserves_mass or model.effects.pressure_law is not None or model.liner_solver is not None
     )
 
 
-def _adjoint_rows(model: BearingModel) -> np.ndarray:
+def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
     s, g, w = model.solver, model.grid, model.solver.work
-    shear = _shear_needs_adjoint(model)
+    shear = shear_needs_adjoint(model)
     rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
     at = w.order[: w.count]
@@ -215,7 +224,7 @@ def _add_friction(
     R = model.grid.reference_length
     scale = contact.friction_coefficient * R**2
     g_theta, g_z, dg = model.slip(contact)
-    theta, axial = _friction_rows(R)
+    theta, axial = friction_rows(R)
     out[:, :4] += (g_theta * theta + g_z * axial) @ (grads * (scale * model.pose_scale))
     along, across = scale * (theta @ integrals), scale * (axial @ integrals)
     out[:, 8] += along * dg[0, 0] + across * dg[1, 0]
@@ -236,7 +245,7 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
 
 
 @functools.cache
-def _friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
+def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
     """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
     theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
     theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R

@@ -530,6 +530,18 @@ class BearingModel:
             return np.full((6, MOTION_SIZE), np.nan)
         return wrench_tangent(self, slow_motion)
 
+    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> Evaluation:
+        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
+        return self.evaluate(motion, history)
+
+    def bore_fields(self) -> dict[str, np.ndarray]:
+        """Displacement and coordinates of a flexible bore by name; empty for a rigid one."""
+        return {}
+
+    def steady_tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) after `evaluate_steady`; a flexible bore follows."""
+        return self.tangent()
+
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation.
 

@@ -226,6 +226,10 @@ class SteadyResult:
     bearing : JournalBearing
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.model`.
+    bore_displacement : (n, m) array or None
+        Of a flexible bore, m, positive outward; None for a rigid one.
+    bore_coordinates : (k,) array or None
+        Of a flexible bore, m.
     """
 
     theta: np.ndarray
@@ -253,6 +257,8 @@ class SteadyResult:
     status: Status
     iterations: int
     temperature: float | np.ndarray | None = None
+    bore_displacement: np.ndarray | None = None
+    bore_coordinates: np.ndarray | None = None
     bearing: JournalBearing = field(repr=False, kw_only=True)
     motion: np.ndarray = field(repr=False, kw_only=True)
 
@@ -350,7 +356,7 @@ def _history_at(model: BearingModel, motion: np.ndarray, where: str) -> History 
 
 
 def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    evaluation = model.evaluate(motion, _history_at(model, motion, where))
+    evaluation = model.evaluate_steady(motion, _history_at(model, motion, where))
     if evaluation.status is not Status.CONVERGED:
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
@@ -400,6 +406,7 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
         bearing=model.bearing,
         motion=model.motion.copy(),
+        **model.bore_fields(),
     )
 
 
@@ -484,7 +491,7 @@ def equilibrium(
     for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
         wrench = _evaluate(model, motion, "equilibrium")
         unbalance = wrench[:2] + force
-        tangent = model.tangent()
+        tangent = model.steady_tangent()
         residual = float(np.max(np.abs(unbalance))) / size
         if residual < max(LOAD_TOLERANCE, rounding):
             break
@@ -494,7 +501,7 @@ def equilibrium(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
             f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
         )
-    K, C = -tangent[:2, :2], -_rate_tangent(model, motion, tangent)[:2, 4:6]
+    K, C = -tangent[:2, :2], -_rate_tangent(model, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = _result(model, motion, "equilibrium")
     return EquilibriumResult(
@@ -511,13 +518,14 @@ def equilibrium(
     )
 
 
-def _rate_tangent(model: BearingModel, motion: np.ndarray, tangent: np.ndarray) -> np.ndarray:
+def _rate_tangent(model: BearingModel, tangent: np.ndarray) -> np.ndarray:
     """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner; see `equilibrium`."""
     if model.liner_solver is not None:
         return model.tangent(slow_motion=True)
     if not model.remembers_mass:
         return tangent
-    return model.evaluate(motion, model.history()).tangent()
+    model.evaluate(model.motion, model.history())
+    return model.steady_tangent()
 
 
 def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

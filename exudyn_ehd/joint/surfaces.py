@@ -90,7 +90,7 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
     InputError
         For options that a liner does not go with.
     """
-    if bearing.bush is None:
+    if not isinstance(bearing.bush, ElasticLiner):
         return None
     excluded = {
         "cavitation=ElrodAdams()": bearing.cavitation.conserves_mass,

@@ -1,0 +1,133 @@
+"""Puts the items of a flexible bush into an Exudyn system and makes the film element on them."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import exudyn
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.bush_object import CarriedOuter, CreateFlexibleBush, FixedOuter
+from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.nodal_film import NodalFilmElement
+from exudyn_ehd.coupling.sides import NodeSide, Side
+from exudyn_ehd.film.cavitation import SwiftStieber
+from exudyn_ehd.joint.bore import ModalBore
+from exudyn_ehd.joint.build import collect_effects
+from exudyn_ehd.joint.bush import displacements_at_rest
+from exudyn_ehd.joint.elastic import ElasticBearingModel
+from exudyn_ehd.status import InputError, Status
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+SIZE = 10
+# Period over 2 pi of a mode on its numerical mass, s.
+NUMERICAL_PERIOD = 1e-6
+
+
+def attach_bush(
+    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
+) -> tuple[BoreFilmElement, dict[str, Any]]:
+    """Add the bush of ``model`` (an `ElasticBearingModel`).
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    model : ElasticBearingModel
+    sides : pair of sides
+        Housing and journal in the initial configuration.
+    place : ndarray (3,), ndarray (3, 3)
+        Joint point and joint frame in the reference configuration, global.
+    name : str
+        Of the joint.
+    show : bool
+        Draw the bush.
+
+    Returns
+    -------
+    element : BoreFilmElement
+        The film on it.
+    arguments : dict
+        What the element's ObjectGenericODE2 needs beside nodes and functions.
+    """
+    if not isinstance(model.bore, ModalBore):
+        return _attach_nodes(mbs, model, sides, place, name, show), {}
+    start = initial_coordinates(model, sides)
+    k = model.bore.size
+    node = mbs.AddNode(
+        eii.NodeGenericODE2(
+            name=f"{name} bush modes",
+            referenceCoordinates=[0.0] * k,
+            initialCoordinates=[0.0] * k if start is None else start.tolist(),
+            initialCoordinates_t=[0.0] * k,
+            numberOfODE2Coordinates=k,
+        )
+    )
+    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
+    return element, {} if start is None else {"massMatrix": _numerical_mass(element)}
+
+
+def _attach_nodes(
+    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
+) -> NodalFilmElement:
+    housing = sides[0]
+    if not isinstance(housing, NodeSide) or housing.kind == kinematics.PLANAR:
+        raise InputError(
+            "CreateLubricatedJoint.itemNumbers[0] must be ground or a rigid body with an ANCFBush, which it carries; use a "
+            "ModalBush on other markers and planar bodies."
+        )
+    outer = CarriedOuter(itemNumber=housing.nodes[0]) if housing.nodes else FixedOuter()
+    bush = CreateFlexibleBush(
+        mbs,
+        f"{name} bush",
+        bush=model.bearing.bush,
+        outer=outer,
+        position=place[0].tolist(),
+        rotationMatrix=place[1],
+        show=show,
+    )
+    start = initial_coordinates(model, sides)
+    if start is not None:
+        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ housing.frame[:, :3].T
+        for number, shift in zip(bush.nodeNumbers, u):
+            if number >= 0 and shift.any():
+                node = exu.NodeIndex(int(number))
+                initial = np.array(mbs.GetNodeParameter(node, "initialCoordinates")) + shift
+                mbs.SetNodeParameter(node, "initialCoordinates", initial.tolist())
+    nodes = [exu.NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
+    return NodalFilmElement(model, *sides, nodes, name, bush)
+
+
+def _numerical_mass(element: ModalFilmElement) -> np.ndarray:
+    """Mass (n + k, n + k) that gives Exudyn's initial accelerations a solution; far too small to be felt.
+
+    Only for a bore that starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
+    """
+    n, k = element.rigid_size, element.stiffness.size
+    mass = np.zeros((n + k, n + k))
+    mass[np.arange(n, n + k), np.arange(n, n + k)] = element.stiffness * NUMERICAL_PERIOD**2
+    return mass
+
+
+def initial_coordinates(model: Any, sides: tuple[Side, Side]) -> np.ndarray | None:
+    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
+
+    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
+    first instant is Swift-Stieber's.
+    """
+    if not all(isinstance(side, NodeSide) for side in sides):
+        return None
+    bearing = dataclasses.replace(model.bearing, thermal=None)
+    if bearing.cavitation.conserves_mass:
+        closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
+        bearing = dataclasses.replace(bearing, cavitation=closure)
+    film = ElasticBearingModel(
+        bearing, lambda grid: model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
+    )
+    motion = np.empty(SIZE)
+    kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
+    settled = film.evaluate_steady(motion).status is Status.CONVERGED
+    return film.coordinates.copy() if settled else None

@@ -1,0 +1,122 @@
+"""The film element on a flexible bore: a third block of coordinates beside housing and journal.
+
+Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is ``Q - K q``; they
+have no mass. The wrench on the housing stays the opposite of the journal's, since the modes' forces are internal to the bush: force and
+moment on journal and housing cancel exactly.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn
+import numpy as np
+
+from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.film_element import FilmElement, Trial
+from exudyn_ehd.coupling.sides import Side
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+SIZE = 10
+
+
+class BoreFilmElement(FilmElement):
+    """Film between two sides on a bore with nodes of its own.
+
+    Parameters
+    ----------
+    model : ElasticBearingModel
+        The film.
+    housing, journal : NodeSide or MarkerSide
+        As in `FilmElement`.
+    nodes : list
+        Nodes of the bore; their coordinates follow those of housing and journal.
+    name : str
+        For messages.
+    """
+
+    def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str) -> None:
+        super().__init__(model, housing, journal, name)
+        self.bore_nodes = nodes
+
+    @property
+    def rigid_size(self) -> int:
+        """Number of coordinates of housing and journal."""
+        return self.sides[0].size + self.sides[1].size
+
+    def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
+        q, q_t = super()._read(mbs, configuration)
+        output = exu.OutputVariableType
+        for node in self.bore_nodes:
+            q += np.atleast_1d(mbs.GetNodeOutput(node, output.Coordinates, configuration)).tolist()
+            q_t += np.atleast_1d(mbs.GetNodeOutput(node, output.Coordinates_t, configuration)).tolist()
+        return q, q_t
+
+    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+        """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
+        if not self._bound:
+            self._bind(mbs)
+        qv, qv_t, n = np.array(q), np.array(q_t), self.rigid_size
+        rigid = self._move_rigid(mbs, qv[:n], qv_t[:n], configuration)
+        return np.concatenate((rigid, *self._bore_motion(qv[n:], qv_t[n:])))
+
+    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
+        return q, q_t
+
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
+        housing, journal = self.sides
+        A = housing.frame[:, :3]
+        x, y, z = journal.frame[:, 3] - housing.frame[:, 3]
+        arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        out = np.empty((self.rigid_size, 6))
+        n = housing.size
+        out[:n, :3] = -housing.jac[0].T @ A
+        out[:n, 3:] = -housing.jac[1].T @ A
+        out[n:, :3] = journal.jac[0].T @ A - journal.jac[1].T @ (arm @ A)
+        out[n:, 3:] = journal.jac[1].T @ A
+        return out
+
+
+class ModalFilmElement(BoreFilmElement):
+    """Film on a modal bush; see the module's docstring.
+
+    Parameters
+    ----------
+    stiffness : (k,) array
+        Modal stiffness, N/m.
+    """
+
+    def __init__(
+        self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str, stiffness: np.ndarray
+    ) -> None:
+        super().__init__(model, housing, journal, nodes, name)
+        self.stiffness = stiffness
+
+    def _generalized_force(self, trial: Trial) -> np.ndarray:
+        evaluation: Any = trial.evaluation
+        housing, journal = self.sides
+        n = self.rigid_size
+        kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        force = np.empty(len(trial.q))
+        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        force[n:] = evaluation.bore_load - self.stiffness * np.array(trial.q[n:])
+        return force
+
+    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+        evaluation: Any = trial.evaluation
+        T, n, k = evaluation.tangent(), self.rigid_size, self.stiffness.size
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
+        to_sides = self._wrench_map()
+        out = []
+        for block, motion, bore in zip(rigid[:2], rigid[2:], (T[:, SIZE : SIZE + k], T[:, SIZE + k :]), strict=True):
+            whole = np.empty((n + k, n + k))
+            whole[:n, :n] = block
+            whole[:n, n:] = to_sides @ bore[:6]
+            whole[n:, :n] = T[6:, :SIZE] @ motion
+            whole[n:, n:] = bore[6:]
+            out.append(whole)
+        out[0][np.arange(n, n + k), np.arange(n, n + k)] -= self.stiffness
+        return out[0], out[1]

@@ -1,0 +1,165 @@
+"""The film element on the bore nodes of a nodal bush.
+
+The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame; normals are fixed in
+the frame. The pressure's nodal loads are ``S^T (p A)``. What the film's wrench has beyond them (shear, and the small moments of
+pressure on displaced points) is spread over the bore's nodes as ``w (a + b x r)``, with a and b from force and moment, so that journal
+and bush receive exactly opposite forces and moments, at any displacement. The housing itself is loaded through the bush.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.bush_object import FlexibleBush
+from exudyn_ehd.coupling.elastic_film import SIZE, BoreFilmElement
+from exudyn_ehd.coupling.film_element import Trial
+from exudyn_ehd.coupling.sides import Side
+
+
+class NodalFilmElement(BoreFilmElement):
+    """Film on a nodal bush; see the module's docstring.
+
+    The Jacobian is exact but for the change of lever arms with the bore's displacement, which is smaller by displacement
+    over radius.
+
+    Parameters
+    ----------
+    bush : FlexibleBush
+        Its frame in the reference configuration is the joint frame.
+    """
+
+    def __init__(
+        self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str, bush: FlexibleBush
+    ) -> None:
+        super().__init__(model, housing, journal, nodes, name)
+        self.bush = bush
+        self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
+        self.place = bush.mesh.bore.positions
+        self.count = len(self.place)
+        self.arms = np.zeros((self.count, 3))
+        self.drift = np.zeros((self.count, 3))
+
+    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        frame = self.sides[0].frame
+        A = frame[:, :3]
+        self.arms = self.reference + q.reshape(-1, 3) - frame[:, 3]
+        self.drift = q_t.reshape(-1, 3) - frame[:, 4] - np.cross(frame[:, 5], self.arms)
+        d = self.arms @ A - self.place
+        return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
+
+    def _spread(self, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
+        """Nodal forces (count, 3, ...), joint frame, with resultants force and moment (3, ...) about O."""
+        x = self.arms @ self.sides[0].frame[:, :3]
+        mean = x.mean(axis=0)
+        S = np.array([[0.0, -mean[2], mean[1]], [mean[2], 0.0, -mean[0]], [-mean[1], mean[0], 0.0]])
+        inertia = np.eye(3) * np.einsum("ai,ai->", x, x) / self.count - x.T @ x / self.count
+        both = np.linalg.solve(np.block([[np.eye(3), -S], [S, inertia]]), np.concatenate((force, moment)))
+        a, b = both[:3], both[3:]
+        turned = np.stack(
+            [
+                np.multiply.outer(x[:, 2], b[1]) - np.multiply.outer(x[:, 1], b[2]),
+                np.multiply.outer(x[:, 0], b[2]) - np.multiply.outer(x[:, 2], b[0]),
+                np.multiply.outer(x[:, 1], b[0]) - np.multiply.outer(x[:, 0], b[1]),
+            ],
+            axis=1,
+        )
+        return (a + turned) / self.count
+
+    def _complete(self, wrench: np.ndarray, radial: np.ndarray) -> np.ndarray:
+        """Nodal forces (count, 3, ...) of the pressure's (count, 2, ...) and of the rest of minus the wrench (6, ...)."""
+        x = self.arms @ self.sides[0].frame[:, :3]
+        force, moment = -wrench[:3].copy(), -wrench[3:].copy()
+        fx, fy = radial[:, 0], radial[:, 1]
+        force[:2] -= radial.sum(axis=0)
+        moment[0] += np.tensordot(x[:, 2], fy, 1)
+        moment[1] -= np.tensordot(x[:, 2], fx, 1)
+        moment[2] -= np.tensordot(x[:, 0], fy, 1) - np.tensordot(x[:, 1], fx, 1)
+        out = self._spread(force, moment)
+        out[:, :2] += radial
+        return out
+
+    def nodal_forces(self, evaluation: Any) -> np.ndarray:
+        """Forces on the bore's nodes (count, 3), joint frame, N."""
+        return self._complete(evaluation.wrench, evaluation.bore_load.reshape(-1, 2))
+
+    def _generalized_force(self, trial: Trial) -> np.ndarray:
+        evaluation: Any = trial.evaluation
+        housing, journal = self.sides
+        n = self.rigid_size
+        kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        force = np.empty(len(trial.q))
+        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        force[: housing.size] = 0.0
+        force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
+        return force
+
+    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+        evaluation: Any = trial.evaluation
+        T = evaluation.tangent()
+        n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
+        by_place, by_rate = T[:, SIZE : SIZE + k], T[:, SIZE + k :]
+        place, rate_place = self._housing_maps()
+        A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]
+        along = A[:, :2].T
+        # the rate in the turning frame changes with the place as -omega x u
+        turning = along @ -_skew(omega)
+        by_bore = [np.zeros((6 + k, n + 3 * self.count)) for _ in range(2)]
+        by_bore[0][:, :n_h] = by_place @ place + by_rate @ rate_place
+        by_bore[1][:, :n_h] = by_rate @ place
+        by_bore[0][:, n:] = _per_node(by_place, along) + _per_node(by_rate, turning)
+        by_bore[1][:, n:] = _per_node(by_rate, along)
+        stiffness, damping = (
+            self._assemble(b, block, T[:, :SIZE] @ motion)
+            for b, block, motion in zip(by_bore, rigid[:2], rigid[2:], strict=True)
+        )
+        if n_h:
+            force = self.nodal_forces(evaluation) @ A.T
+            turn = np.cross(self.sides[0].jac[1].T, force[:, None, :])
+            stiffness[n:, :n_h] += turn.transpose(0, 2, 1).reshape(-1, n_h)
+        return stiffness, damping
+
+    def _housing_maps(self) -> tuple[np.ndarray, np.ndarray]:
+        """d(d)/dq = d(d_t)/dq_t and d(d_t)/dq (2 count, n_h) of the bore's displacements to the housing's coordinates."""
+        frame, (Jp, Jr, Vq, Wq) = self.sides[0].frame, self.sides[0].jac
+        A, omega = frame[:, :2], frame[:, 5]
+        r, u = self.arms[:, None, :], self.drift[:, None, :]
+        moved = -Jp.T - np.cross(Jr.T, r)
+        first = np.einsum("aci,ij->ajc", moved, A).reshape(2 * self.count, -1)
+        change = -Vq.T - np.cross(Wq.T, r) + np.cross(omega, Jp.T) - np.cross(Jr.T, u)
+        second = np.einsum("aci,ij->ajc", change, A).reshape(2 * self.count, -1)
+        return first, second
+
+    def _assemble(self, by_bore: np.ndarray, rigid: np.ndarray, by_motion: np.ndarray) -> np.ndarray:
+        """dQ/dq or dQ/dq_t (N, N).
+
+        Parameters
+        ----------
+        by_bore : (6 + k, N) array
+            Derivatives of wrench and radial loads through the bore's motion.
+        rigid : (n, n) array
+            Those of the generalized forces on the sides through the journal's motion, with geometric terms.
+        by_motion : (6 + k, n) array
+            Derivatives of wrench and radial loads through the journal's motion.
+        """
+        n, n_h = self.rigid_size, self.sides[0].size
+        size = by_bore.shape[1]
+        whole = np.zeros((size, size))
+        whole[n_h:n] = self._wrench_map()[n_h:] @ by_bore[:6]
+        whole[n_h:n, :n] += rigid[n_h:]
+        by_bore[:, :n] += by_motion
+        nodal = self._complete(by_bore[:6], by_bore[6:].reshape(self.count, 2, size))
+        whole[n:] = np.einsum("ij,ajc->aic", self.sides[0].frame[:, :3], nodal).reshape(-1, size)
+        return whole
+
+
+def _skew(v: np.ndarray) -> np.ndarray:
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+def _per_node(rows: np.ndarray, map_: np.ndarray) -> np.ndarray:
+    """Rows (r, 2 count) times a block diagonal map of (2, 3) blocks, (r, 3 count)."""
+    return (rows.reshape(len(rows), -1, 2) @ map_).reshape(len(rows), -1)

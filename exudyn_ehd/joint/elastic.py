@@ -1,0 +1,159 @@
+"""A bearing whose bore is flexible: the rigid surfaces' model with ``delta = S q`` in the gap.
+
+The motion (10,) of the rigid surfaces is followed by the bore's coordinates and rates,
+
+    motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
+
+the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of this model; only
+`evaluate_steady` knows its stiffness K and finds the q with K q = Q.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.joint.bore import Bore
+from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
+from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.elastic_tangent import elastic_tangent
+from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
+from exudyn_ehd.status import Status
+
+
+@dataclasses.dataclass(eq=False)
+class ElasticEvaluation(Evaluation):
+    """One film evaluation on a flexible bore.
+
+    Attributes
+    ----------
+    bore_load : (k,) array
+        Q, N; nan if there is no film.
+    """
+
+    bore_load: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+
+
+class BoreTerm:
+    """The bore's displacement as a gap term; its field belongs to the motion being evaluated."""
+
+    def __init__(self) -> None:
+        self.displacement = np.zeros((0, 0))
+        self.rate = np.zeros((0, 0))
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled displacement (n, m)."""
+        return self.displacement
+
+
+class ElasticBearingModel(BearingModel):
+    """Film between a rigid journal and a flexible bore.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    bore : function of FilmGrid
+        Makes the bore for the film's grid.
+    elasticity : Elasticity
+        What resists q in a steady state.
+    start_angle, effects
+        As in `BearingModel`.
+    """
+
+    def __init__(
+        self,
+        bearing: JournalBearing,
+        bore: Callable[[FilmGrid], Bore],
+        *,
+        elasticity: Elasticity,
+        start_angle: float = 0.0,
+        effects: Effects | None = None,
+    ) -> None:
+        effects = Effects() if effects is None else effects
+        term = BoreTerm()
+        effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
+        super().__init__(bearing, start_angle=start_angle, effects=effects)
+        self.term = term
+        self.bore = bore(self.grid)
+        self.elasticity = elasticity
+        self.coordinates = np.zeros(self.bore.size)
+        self.bore_load = np.zeros(self.bore.size)
+        self.settling_steps = 0
+
+    def _set_motion(self, motion: np.ndarray) -> None:
+        """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
+        motion = np.asarray(motion, dtype=float)
+        k = self.bore.size
+        if motion.size == MOTION_SIZE:
+            motion = np.concatenate((motion, np.zeros(2 * k)))
+        super()._set_motion(motion)
+        c = self.bearing.radial_clearance
+        self.coordinates = self.motion[MOTION_SIZE : MOTION_SIZE + k]
+        self.rates = self.motion[MOTION_SIZE + k :]
+        self.term.displacement = self.bore.displacement(self.coordinates) / c
+        self.term.rate = self.bore.displacement(self.rates) / c
+
+    def _add_gap_terms(self, history: History | None) -> None:
+        super()._add_gap_terms(history)
+        if self.solver.squeeze:
+            self.solver.H_t += self.term.rate
+
+    def _loads(self) -> np.ndarray:
+        wrench = super()._loads()
+        self.bore_load = self.bore.load(self.pressure_field())
+        return wrench
+
+    def pressure_field(self) -> np.ndarray:
+        """Force of film and contact on the bore at every vertex (n, m), N, outward."""
+        area = self.grid.weight * self.grid.reference_length**2
+        field = self.P * (area * self.pressure_scale)
+        if self.contact_fields is not None:
+            for P in self.contact_fields.P:
+                field = field + P * area
+        return field
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
+        """Evaluate the film; ``motion`` (10 + 2 k,) as in the module's docstring, the rest as in `BearingModel`."""
+        base = super().evaluate(motion, history, step, spin)
+        if base.status is not Status.CONVERGED:
+            self.bore_load = np.full(self.bore.size, np.nan)
+        return ElasticEvaluation(
+            **{f.name: getattr(base, f.name) for f in dataclasses.fields(base)}, bore_load=self.bore_load
+        )
+
+    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> ElasticEvaluation:
+        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0."""
+        return settle(self, motion, history)
+
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of the last evaluation; nan without a film."""
+        if self.status is not Status.CONVERGED:
+            k = self.bore.size
+            return np.full((6 + k, MOTION_SIZE + 2 * k), np.nan)
+        return elastic_tangent(self)
+
+    def bore_fields(self) -> dict[str, np.ndarray]:
+        """Displacement (n, m) and coordinates (k,) of the bore, m."""
+        return {
+            "bore_displacement": self.term.displacement * self.bearing.radial_clearance,
+            "bore_coordinates": self.coordinates.copy(),
+        }
+
+    def steady_tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
+        return condensed_tangent(self)
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
+        out = super().quantities()
+        if self.status is Status.CONVERGED:
+            # what the film does to the bore leaves the film
+            out["power_loss"] -= float(self.bore_load @ self.rates)
+        out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
+        return out

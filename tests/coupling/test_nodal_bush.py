@@ -1,0 +1,110 @@
+"""The nodal bush under a film in Exudyn: forces cancel, exact Jacobian, agreement with the modal bush."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from exudyn.utilities import InertiaCylinder
+from scenes import new_system, rotation, settings
+
+import exudyn_ehd as ehd
+
+SPEED = 3000 * 2 * np.pi / 60
+C = 30e-6
+STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=1, circumferential=12)
+BEARING = ehd.JournalBearing(
+    journal_radius=0.03, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3),
+    film=ehd.FiniteLength(n_theta=48, n_z=8), bush=ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
+)  # fmt: skip
+
+
+def scene(housing, bearing=BEARING, load=15e3):
+    mbs = new_system()
+    A, spin = np.eye(3), np.array([0.0, 0.0, SPEED])
+    if housing == "ground":
+        item = mbs.CreateGround()
+    else:
+        A = rotation([0.4, -0.7, 0.3])
+        inertia = InertiaCylinder(7800, 0.1, 0.08, 2, 0.05)
+        turn = A @ [3.0, -2.0, 5.0]
+        item = mbs.CreateRigidBody(referenceRotationMatrix=A, inertia=inertia, initialAngularVelocity=list(turn))
+        spin = A @ spin + turn
+    journal = mbs.CreateRigidBody(
+        referenceRotationMatrix=A, initialDisplacement=list(A @ [0.4 * C, -0.5 * C, 0.0]),
+        initialAngularVelocity=list(spin), inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
+    )  # fmt: skip
+    if load:
+        mbs.CreateForce(itemNumber=journal, localPosition=[0, 0, 3e-3], loadVector=[0, -load, 0])
+    joint = ehd.CreateLubricatedJoint(
+        mbs, name="b", itemNumbers=[item, journal], position=[0, 0, 0], axis=list(A[:, 2]), bearing=bearing,
+        axial=ehd.Held() if housing == "ground" else ehd.Free(),
+    )  # fmt: skip
+    mbs.Assemble()
+    return mbs, joint
+
+
+def state(mbs, joint, seed=0):
+    places = mbs.systemData.GetObjectLTGODE2(joint.objectNumber)
+    q, q_t = (np.array(f())[places] for f in (mbs.systemData.GetODE2Coordinates, mbs.systemData.GetODE2Coordinates_t))
+    rng, n = np.random.default_rng(seed), joint.element.rigid_size
+    q[n:] += 1e-7 * rng.normal(size=len(q) - n)
+    q_t[n:] += 1e-4 * rng.normal(size=len(q) - n)
+    return q, q_t
+
+
+@pytest.mark.parametrize("housing", ["ground", "body"])
+def test_force_and_moment_on_journal_and_bush_cancel(housing):
+    mbs, joint = scene(housing)
+    element = joint.element
+    q, q_t = state(mbs, joint)
+    force = np.array(element.force(mbs, 0.0, 0, q.tolist(), q_t.tolist()))
+    a, b = element.sides
+    nodal = force[element.rigid_size :].reshape(-1, 3)
+    on_journal, moment = element._loads[2], element._loads[3]
+    arm = b.frame[:, 3] - a.frame[:, 3]
+    # rounding of sums over a hundred nodes
+    assert np.abs(nodal.sum(axis=0) + on_journal).max() < 1e-12 * np.abs(on_journal).max()
+    total = np.cross(element.arms, nodal).sum(axis=0) + moment + np.cross(arm, on_journal)
+    assert np.abs(total).max() < 1e-10 * np.abs(moment).max()
+    assert np.all(force[: a.size] == 0.0)
+
+
+@pytest.mark.parametrize("housing", ["ground", "body"])
+def test_jacobian_is_the_derivative_of_the_force(housing):
+    mbs, joint = scene(housing)
+    element = joint.element
+    q, q_t = state(mbs, joint)
+    exact = [-np.array(element.jacobian(mbs, 0.0, 0, q.tolist(), q_t.tolist(), *f)) for f in ((1.0, 0.0), (0.0, 1.0))]
+    rng = np.random.default_rng(1)
+    n = element.rigid_size
+    for which, step in ((0, 1e-10), (1, 1e-7)):
+        for j in [*range(n), *rng.integers(n, len(q), 12)]:
+            d = np.zeros(len(q))
+            d[j] = step
+            up, down = (
+                np.array(
+                    element.force(mbs, 0.0, 0, (q + s * d * (which == 0)).tolist(), (q_t + s * d * which).tolist())
+                )
+                for s in (1, -1)
+            )
+            numeric = (up - down) / (2 * step)
+            # lever arms change by displacement / radius = 1e-5, which the Jacobian leaves out
+            assert np.abs(numeric - exact[which][:, j]).max() < 3e-5 * np.abs(exact[which]).max()
+
+
+def test_nodal_and_modal_bush_agree_in_a_run():
+    histories = []
+    mesh = dataclasses.replace(CYLINDER, axial=4, circumferential=24)
+    film = ehd.FiniteLength(n_theta=80, n_z=12)
+    for bush in (ehd.ANCFBush(mesh=mesh, material=STEEL), ehd.ModalBush(mesh=mesh, material=STEEL)):
+        mbs, joint = scene("ground", dataclasses.replace(BEARING, bush=bush, film=film))
+        run = ehd.SolveDynamicSparse(mbs, settings(20e-4, 20, tolerance=1e-6))
+        histories.append(joint.history)
+        assert run.rejected == 0
+    nodal, modal = histories
+    # what the modes' default tolerance promises
+    assert np.allclose(nodal.minimum_gap, modal.minimum_gap, rtol=0.01)
+    assert np.allclose(nodal.peak_pressure, modal.peak_pressure, rtol=0.01)

@@ -1,0 +1,164 @@
+"""Steady elastohydrodynamics: limits, closed forms, modal against nodal, condensed stiffness and damping."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+
+SPEED = 3000 * 2 * np.pi / 60
+C = 30e-6
+CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=4, radial=2, circumferential=24)
+
+
+# The load of a film whose vertices are no closer than the mesh's nodes is not smooth on the mesh: fine grid and mesh to compare.
+FINE = dataclasses.replace(CYLINDER, circumferential=40)
+FINE_FILM = ehd.FiniteLength(n_theta=96, n_z=12)
+
+
+def material(modulus=2.1e11):
+    return ehd.SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.3, density=7800.0)
+
+
+def modal(modulus=2.1e11, mesh=CYLINDER, **options):
+    return ehd.ModalBush(mesh=mesh, material=material(modulus), **options)
+
+
+def nodal(modulus=2.1e11, mesh=CYLINDER):
+    return ehd.ANCFBush(mesh=mesh, material=material(modulus))
+
+
+def make_bearing(bush, **options):
+    given = {
+        "journal_radius": 0.03, "length": 0.066, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=9e-3),
+        "film": ehd.FiniteLength(n_theta=64, n_z=8), "bush": bush,
+    }  # fmt: skip
+    return ehd.JournalBearing(**(given | options))
+
+
+def solve(bush, ratio=0.8, tilt=(0.0, 0.0), **options):
+    return ehd.steady(make_bearing(bush, **options), speed=SPEED, eccentricity_ratio=ratio, tilt=tilt)
+
+
+@pytest.mark.parametrize("make", [modal, nodal], ids=["modal", "nodal"])
+def test_rigid_limit_is_reached_at_first_order_in_the_compliance(make):
+    rigid = solve(None)
+    loss = [1.0 - solve(make(E)).peak_pressure / rigid.peak_pressure for E in (2.1e13, 2.1e14, 2.1e15)]
+    # ratio 10 at first order; the next order is the loss itself, 0.25 % at the softest
+    assert loss[0] / loss[1] == pytest.approx(10.0, rel=0.02)
+    assert loss[1] / loss[2] == pytest.approx(10.0, rel=0.02)
+    assert 0.0 < loss[0] < 0.01
+
+
+@pytest.mark.parametrize(("make", "error"), [(modal, 0.03), (nodal, 0.1)], ids=["modal", "nodal"])
+def test_uniform_pressure_opens_the_bore_as_lame_says(make, error):
+    p = 1e7
+    # a pressure that does not vanish at the ends needs a fine axial grid to be carried over to the bush: 12 intervals are 8 % off
+    bearing = make_bearing(make(), end_pressures=(p, p), film=ehd.FiniteLength(n_theta=64, n_z=24))
+    film = ehd.steady(bearing, speed=0.0, eccentricity_ratio=0.0)
+    assert np.allclose(film.pressure, p, rtol=1e-9)
+    # plane strain with the outer surface held: u = B (1/r - r/b^2)
+    E, nu, a, b = 2.1e11, 0.3, 0.03, 0.05
+    lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+    expected = p / (2 * (lam + mu) / b**2 + 2 * mu / a**2) * (1 / a - a / b**2)
+    middle = film.bore_displacement[:, film.z.size // 2]
+    # the ends are free: a length of 3.3 thicknesses leaves 2 % at the mid-plane; on nodes the vertices' loads ripple by 3 % more
+    assert np.allclose(middle, expected, rtol=error)
+
+
+@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.Gumbel()], ids=["swift", "gumbel"])
+@pytest.mark.parametrize("modulus", [2.1e11, 7e10])
+@pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.0, 1e-4)], ids=["aligned", "tilted"])
+def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
+    bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
+    reduced, full = (solve(b, tilt=tilt, film=FINE_FILM, cavitation=cavitation) for b in bushes)
+    # what the default tolerance promises for steel; a bush three times as soft shares three times the error, less what the film evens
+    error = 0.01 if modulus > 1e11 else 0.015
+    assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=error)
+    assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=error)
+    assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=error)
+
+
+def test_many_modes_are_within_a_thousandth_of_the_nodes():
+    bushes = modal(2.1e10, FINE, tolerance=5e-3, tilted=False), nodal(2.1e10, FINE)
+    reduced, full = (solve(b, film=FINE_FILM) for b in bushes)
+    assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=1e-3)
+    assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=1e-3)
+
+
+def test_flexibility_widens_the_film_and_lowers_the_peak():
+    results = [solve(None)] + [solve(modal(E, tilted=False)) for E in (2.1e12, 2.1e11, 2.1e10)]
+    peaks = [r.peak_pressure for r in results]
+    extents = [r.unbroken[:, r.z.size // 2].mean() for r in results]
+    assert peaks == sorted(peaks, reverse=True)
+    assert extents == sorted(extents)
+    assert extents[-1] > extents[0]
+    # the paper's journal (30 um clearance, 24 um eccentricity): 33.1 to 33.3 MPa rigid, 27.1 MPa with a steel bush;
+    # 2 %: grids differ
+    assert peaks[0] == pytest.approx(33.2e6, rel=0.02)
+    assert peaks[2] == pytest.approx(27.1e6, rel=0.02)
+    assert peaks[3] == pytest.approx(12.1e6, rel=0.02)
+
+
+def test_an_aligned_film_deforms_the_bore_symmetrically():
+    film = solve(modal())
+    d = film.bore_displacement
+    # rounding of a mesh that is symmetric itself
+    assert np.allclose(d, d[:, ::-1], atol=1e-9 * d.max())
+
+
+def test_an_eccentricity_beyond_the_clearance_is_reached():
+    film = solve(modal(3e9), ratio=1.3)
+    assert film.minimum_gap > 0.0
+    assert film.peak_pressure > solve(modal(3e9), ratio=0.8).peak_pressure
+
+
+def test_bore_settles_in_few_newton_steps():
+    model = build_model(make_bearing(modal()))
+    model.evaluate_steady(np.array([0.8 * C, 0, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
+    # convex, from the undeformed bore: four steps near the solution and a few on the way
+    assert model.settling_steps <= 10
+    assert np.allclose(model.bore_load, model.elasticity.force(model.coordinates), rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("make", [modal, nodal], ids=["modal", "nodal"])
+def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
+    bearing = make_bearing(make())
+    load = (0.0, -20e3)
+    eq = ehd.equilibrium(bearing, speed=SPEED, load=load)
+    assert np.allclose(eq.film.force[:2], (0.0, 20e3), atol=1e-5)
+    numeric = np.empty((2, 2))
+    for i in range(2):
+        moved = []
+        for sign in (1, -1):
+            step = np.zeros(2)
+            step[i] = sign * 1e-4 * C
+            x, y = eq.position + step
+            moved.append(
+                ehd.steady(
+                    bearing, speed=SPEED, eccentricity_ratio=np.hypot(x, y) / C, direction=np.arctan2(y, x)
+                ).force[:2]
+            )
+        numeric[:, i] = -(moved[0] - moved[1]) / (2e-4 * C)
+    # the active set may change by a vertex within the step
+    assert np.allclose(eq.stiffness, numeric, rtol=0, atol=2e-3 * abs(numeric).max())
+    rigid = ehd.equilibrium(dataclasses.replace(bearing, bush=None), speed=SPEED, load=load)
+    assert eq.stiffness[1, 1] < rigid.stiffness[1, 1]
+    assert eq.eccentricity_ratio > rigid.eccentricity_ratio
+
+
+@pytest.mark.parametrize(
+    ("bush", "message"),
+    [
+        (3, "bush must be ElasticLiner"),
+        (ehd.ANCFBush(mesh=dataclasses.replace(CYLINDER, inner_radius=0.04), material=material()), "bore radius"),
+        (ehd.ANCFBush(mesh=dataclasses.replace(CYLINDER, length=0.03), material=material()), "as long as the film"),
+    ],
+)
+def test_wrong_bushes_are_named(bush, message):
+    with pytest.raises(ehd.InputError, match=message):
+        make_bearing(bush)

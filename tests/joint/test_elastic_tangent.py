@@ -1,0 +1,76 @@
+"""The exact tangent of a film on a flexible bore against central differences in smooth states."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.status import Status
+
+STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=1, circumferential=12)
+BUSHES = {
+    "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
+    "nodal": ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
+}
+OPTIONS = {
+    "swift": {},
+    "gumbel": {"cavitation": ehd.Gumbel(cavity_shear=0.3)},
+    "full": {"cavitation": ehd.FullSommerfeld()},
+    "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+    "ends": {"end_pressures": (3e5, 1e5)},
+    "no squeeze": {"squeeze": False},
+    "wall": {"contact": ehd.RegularisedWall(onset=12e-6, pressure=2e7)},
+}
+C = 30e-6
+
+
+def make_bearing(bush, **options):
+    given = {
+        "journal_radius": 0.03, "length": 0.066, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=9e-3),
+        "film": ehd.FiniteLength(n_theta=32, n_z=6), "bush": bush,
+    }  # fmt: skip
+    return ehd.JournalBearing(**(given | options))
+
+
+def random_motion(k, seed):
+    """Eccentric, tilted and moving journal in a bore that bulges by up to a few micrometres, everything moving."""
+    rng = np.random.default_rng(seed)
+    rigid = [0.6 * C, 0.2 * C, 1e-4, -1.2e-4, 1e-4, -2e-4, 1e-3, 2e-3, 300.0, 0.4]
+    return np.concatenate((rigid, 4e-6 / np.sqrt(k) * rng.normal(size=k), 3e-4 / np.sqrt(k) * rng.normal(size=k)))
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+@pytest.mark.parametrize("bush", BUSHES)
+def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
+    model, probe = (build_model(make_bearing(BUSHES[bush], **OPTIONS[option])) for _ in range(2))
+    k = model.bore.size
+    motion = random_motion(k, 1)
+    history = model.initial_history(0.9 * motion)
+    step = 0.0 if history is None else 1e-4
+    evaluation = model.evaluate(motion, history, step)
+    assert evaluation.status is Status.CONVERGED
+    tangent, active = evaluation.tangent(), model.solver.work.active
+    assert tangent.shape == (6 + k, 10 + 2 * k)
+    unit = np.concatenate(([C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0], np.full(k, C), np.full(k, 0.01)))
+    rows = abs(tangent * unit).max(axis=1)
+    rows[rows < 1e-12 * rows.max()] = np.inf
+    for j in range(0, motion.size, 1 if bush == "modal" else 7):
+        # central differences: the step leaves the active set alone
+        for size in (1e-5, 1e-6, 1e-7):
+            loads, same = [], True
+            for sign in (1.0, -1.0):
+                moved = motion.copy()
+                moved[j] += sign * size * unit[j]
+                e = probe.evaluate(moved, history, step)
+                loads.append(np.concatenate((e.wrench, e.bore_load)))
+                same &= np.array_equal(probe.solver.work.active, active)
+            if same:
+                break
+        else:
+            raise AssertionError("not a smooth state: choose another one")
+        numeric = (loads[0] - loads[1]) / (2.0 * size)
+        # 1e-6: truncation 1e-10 and rounding 1e-16 / 1e-7 with a decade to spare, per largest entry of the row
+        assert abs((tangent[:, j] * unit[j] - numeric) / rows).max() < 1e-6, (j, size)
