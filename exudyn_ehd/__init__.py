@@ -41,8 +41,9 @@ from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, W
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
+from exudyn_ehd.joint.any_gap import FilmResult, solve_film
 from exudyn_ehd.joint.audit import Audit, Finding
-from exudyn_ehd.joint.steady import EquilibriumResult, FilmResult, SteadyResult, equilibrium, solve_film, steady
+from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
 
