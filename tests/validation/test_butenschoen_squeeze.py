@@ -2,7 +2,7 @@
 
 Inlet: periodic film (`Periodic`), Swift-Stieber. eps < 0 means that the journal moves towards the centre. A few printed
 digits of the source are wrong, so the values of an independent solver (within 0.7 % of the printed ones elsewhere) count.
-Grid 96 x 10 (the default).
+Grid 96 x 10 (the default) up to eps 0.95; 192 x 10 above, where the pressure peak is 10 degrees wide.
 """
 
 from __future__ import annotations
@@ -23,13 +23,18 @@ def test_squeeze_force(table, make_bearing, measured, ratio, direction):
     rows = [r for r in table("butenschoen1976_squeeze") if r["B_over_D"] == ratio and r["So_V_own"] != ""]
     assert len(rows) > 20
     unit = bearing.reference_force(RATE)
-    worst = sideways = 0.0
+    fine = make_bearing(ratio, film=ehd.FiniteLength(n_theta=192, n_z=10), inlet=ehd.Periodic())
+    worst = high = sideways = 0.0
     axis = math.cos(direction), math.sin(direction)
     for row in rows:
         eps = row["eps(neg: moving to centre)"]
         v = math.copysign(RATE, eps) * bearing.radial_clearance
         film = ehd.steady(
-            bearing, speed=0.0, eccentricity_ratio=abs(eps), direction=direction, velocity=(v * axis[0], v * axis[1])
+            bearing if abs(eps) <= 0.95 else fine,
+            speed=0.0,
+            eccentricity_ratio=abs(eps),
+            direction=direction,
+            velocity=(v * axis[0], v * axis[1]),
         )
         along = -math.copysign(1.0, eps) * (film.force[0] * axis[0] + film.force[1] * axis[1]) / unit
         across = (-film.force[0] * axis[1] + film.force[1] * axis[0]) / unit
@@ -37,9 +42,9 @@ def test_squeeze_force(table, make_bearing, measured, ratio, direction):
             worst = max(worst, abs(along / row["So_V_own"] - 1.0))
             sideways = max(sideways, abs(across / along))
         else:
-            # One cell spans 3.75 degrees, the pressure peak at eps 0.99 about 10: the error of this grid grows to 3 %.
-            assert along == pytest.approx(row["So_V_own"], rel=0.03)
+            high = max(high, abs(along / row["So_V_own"] - 1.0))
     # Independent solver good to 0.1 %; 1 % leaves room for the film's edge, which snaps to cells.
     measured("So_V up to eps 0.95", worst, 0.01)
+    measured("So_V above eps 0.95", high, 0.01)
     # No force across the motion, apart from the same snapping when the motion is not along a column.
     measured("force across the motion", sideways, 1e-10 if direction == 0.0 else 0.005)
