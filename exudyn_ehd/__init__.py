@@ -7,6 +7,7 @@ film      the oil film: grid, gap, Reynolds equation, cavitation closures, direc
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
 reference closed forms to compare with
 status    outcomes and errors
 
