@@ -8,7 +8,11 @@ joint     one bearing as a pure function of its motion; `steady`, `equilibrium`,
 pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+<<<<<<< HEAD
 studies   many runs: `parameter_study`
+=======
+studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
+>>>>>>> main
 reference closed forms to compare with
 status    outcomes and errors
 
