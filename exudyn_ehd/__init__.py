@@ -5,8 +5,10 @@ Module map
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
+pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -43,6 +45,7 @@ from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.joint.any_gap import FilmResult, solve_film
 from exudyn_ehd.joint.audit import Audit, Finding
+from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
@@ -113,6 +116,7 @@ __all__ = [
     "FactorReuse",
     "FilmEnergy",
     "FilmError",
+    "FilmFields",
     "FilmResult",
     "Finding",
     "FiniteLength",
