@@ -18,6 +18,7 @@ from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import NodeSide
+from exudyn_ehd.coupling.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_vector
 
 if TYPE_CHECKING:
@@ -150,6 +151,7 @@ def CreateLubricatedJoint(
     bearing: Any = None,
     rotationMatrixAxes: Any = None,
     axial: Free | Held = Free(),
+    stepControl: StepControl | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -183,6 +185,8 @@ def CreateLubricatedJoint(
         the axis). Every angle of the film counts from x about z.
     axial : Free or Held
         Whether the journal may slide along the axis.
+    stepControl : StepControl or None
+        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are halved.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
@@ -206,6 +210,8 @@ def CreateLubricatedJoint(
     """
     if not isinstance(axial, (Free, Held)):
         raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
+    if not isinstance(stepControl, (StepControl, type(None))):
+        raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if bearing is None:
@@ -218,6 +224,8 @@ def CreateLubricatedJoint(
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
+    if stepControl is not None:
+        joint.element.watch = GapWatch(stepControl, bearing)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
