@@ -42,3 +42,37 @@ def test_elastic_big_end(example, tmp_path):
     assert abs(elastic["largest_force_kN"] / rigid["largest_force_kN"] - 1) < 0.01
     assert elastic["peak_MPa"] < 0.95 * rigid["peak_MPa"]
     assert abs(elastic["iterations_per_step"] - rigid["iterations_per_step"]) < 2
+
+
+def test_engine_big_end(example, tmp_path):
+    rows = example("engine_big_end").main(quick=True, output=tmp_path)
+    assert (tmp_path / "engine_big_end.png").stat().st_size > 10_000
+    short, finite, gumbel, balance, elastic = (
+        rows[name] for name in ("short", "finite", "Gumbel", "oil balance", "elastic")
+    )
+    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its smallest film
+    assert short["largest_distance_to_reference_orbit"] < 0.003
+    assert short["minimum_film_um"] == pytest.approx(6.448, abs=0.01)
+    # a short bearing is too stiff at L / D = 0.4, by 18 % in the smallest film; clipping makes it thinner, cavities that
+    # have to be refilled much more so
+    assert finite["minimum_film_um"] == pytest.approx(5.29, abs=0.03)
+    assert balance["minimum_film_um"] < gumbel["minimum_film_um"] < finite["minimum_film_um"] < short["minimum_film_um"]
+    # 5 MPa hardly deform a steel bush
+    assert elastic["peak_pressure_MPa"] == pytest.approx(finite["peak_pressure_MPa"], rel=0.03)
+    assert all(row["iterations_per_step"] < 3 for row in rows.values())
+
+
+def test_upgrade_existing_model(example, tmp_path):
+    upgrade = example("upgrade_existing_model")
+    rows = upgrade.main(quick=True, output=tmp_path)
+    assert (tmp_path / "upgrade_existing_model.png").stat().st_size > 10_000
+    # two lines go, and nothing else of the model
+    removed = [line for line in upgrade.difference().splitlines()[2:] if line.startswith("-")]
+    assert len(removed) == 2 and all("CreateRevoluteJoint" in line for line in removed)
+    # the films take what the mechanism lacks: steps of 1 ms, second order
+    assert rows["energy_missing_J"] == pytest.approx(rows["energy_lost_in_films_J"], rel=0.01)
+    assert abs(rows["energy_drift_before_J"]) < 0.01 * rows["energy_missing_J"]
+    # the pins' clearance and tilt (2 c / L over a metre: 0.6 mm) and the brake leave the motion recognisable
+    assert 1e-3 < rows["tip_distance_at_0.3_s_mm"] < 1.2
+    # Petroff at 5 rad/s: 2 pi mu R^3 L omega / c = 0.35 N m; an eccentric pin brakes more, not by an order
+    assert 0.1 < rows["shoulder_largest_friction_torque_Nm"] < 1.0
