@@ -16,6 +16,7 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.results import JointResults
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import NodeSide
 from exudyn_ehd.status import InputError, require_vector
@@ -41,7 +42,7 @@ class Held:
     """
 
 
-class LubricatedJoint:
+class LubricatedJoint(JointResults):
     """Handle of one lubricated joint.
 
     Attributes
