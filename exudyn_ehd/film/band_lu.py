@@ -9,6 +9,8 @@ After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 
@@ -18,7 +20,8 @@ WIDEST_BY_DOTS = 32
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # Without leave to reassociate short dot products are not turned into gathers, which are slower.
 _KEEP_ORDER = {"contract", "nsz", "arcp"}
-_0, _1, _2, _3, _4 = (np.uint64(k) for k in range(5))
+_unsigned: Any = np.uint64
+_0, _1, _2, _3, _4 = (_unsigned(k) for k in range(5))
 
 
 @njit(cache=True)
@@ -37,11 +40,11 @@ def _factor_by_dots(lower, upper, count, width, inv_diag_out):
     """
     up = upper.reshape(-1)
     low = lower.reshape(-1)
-    stride = np.uint64(upper.shape[1])
+    stride = _unsigned(upper.shape[1])
     along = stride - _1
-    w = np.uint64(width)
+    w = _unsigned(width)
     inverse = 1.0
-    for r in range(np.uint64(count)):
+    for r in range(_unsigned(count)):
         row = r * stride
         first = _0
         while first <= w:
@@ -150,10 +153,10 @@ def _forward_backward(column_form, row_form, unit_forward, inv_diag, count, widt
     """Forward with columns ``column_form`` (unit if unit_forward), backward with rows ``row_form``, in place."""
     col = column_form.reshape(-1)
     row = row_form.reshape(-1)
-    stride = np.uint64(column_form.shape[1])
+    stride = _unsigned(column_form.shape[1])
     along = stride - _1
-    w = np.uint64(width)
-    size = np.uint64(count)
+    w = _unsigned(width)
+    size = _unsigned(count)
     for r in range(size):
         reach = min(w, r)
         k = r - reach
@@ -192,10 +195,10 @@ def _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count,
     """As `_forward_backward` for four right-hand sides x (4, count) at once."""
     col = column_form.reshape(-1)
     row = row_form.reshape(-1)
-    stride = np.uint64(column_form.shape[1])
+    stride = _unsigned(column_form.shape[1])
     along = stride - _1
-    w = np.uint64(width)
-    size = np.uint64(count)
+    w = _unsigned(width)
+    size = _unsigned(count)
     x0, x1, x2, x3 = x[0], x[1], x[2], x[3]
     for r in range(size):
         reach = min(w, r)
