@@ -69,7 +69,7 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
-        self._record = Record()
+        self._record = Record(model.bearing)
         self._trial: Trial | None = None
         self._start = np.nan
         self._run: tuple[Any, Any] = (self, self)
@@ -284,11 +284,21 @@ class FilmElement:
         time = mbs.systemData.GetTime(_CURRENT)
         return self._row(time, self._look(mbs, time, _CURRENT))
 
+    def _accepted(self) -> Any:
+        """Configuration that holds the last accepted state."""
+        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        return _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+
+    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial]:
+        """Time of the last accepted state, and the film there; its model then holds that film's fields."""
+        configuration = self._accepted()
+        time = mbs.systemData.GetTime(configuration)
+        return time, self._look(mbs, time, configuration)
+
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""
         final = None
-        # during a run, and after one that an exception has ended, the current state need not be an accepted one
-        configuration = _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        configuration = self._accepted()
         if mbs.systemIsConsistent:
             time = mbs.systemData.GetTime(configuration)
             if time > self._record.last_time:

@@ -259,7 +259,7 @@ class BearingModel:
         if not self.remembers:
             return None
         mass = self.solver.content if self.remembers_mass else None
-        wear = None if self.effects.wear is None else self._worn(self.effects.wear)
+        wear = None if self.effects.wear is None else self.worn(self.effects.wear)
         deflection = None
         if self.remembers_deflection and self.liner_solver is not None:
             deflection = self.liner_solver.deflection
@@ -267,7 +267,7 @@ class BearingModel:
         temperature = None if thermal is None else thermal.advance(self)
         return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
 
-    def _worn(self, wear: Wear) -> np.ndarray:
+    def worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""
         assert self.contact_fields is not None
         history, step = self.start

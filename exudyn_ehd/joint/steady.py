@@ -13,8 +13,10 @@ from exudyn_ehd.joint.audit import Audit, audit_states
 from exudyn_ehd.joint.audit_states import FilmState
 from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.fields import grid_fields
 from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.joint.settle import settle
+from exudyn_ehd.pictures.methods import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
@@ -24,8 +26,8 @@ FORCE_ROUNDING = 1e-16
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyResult:
-    """One position of the journal. Frame and signs as in `exudyn_ehd.joint.model`; SI units.
+class SteadyResult(FilmPictures):
+    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.model`; SI units.
 
     Attributes
     ----------
@@ -52,6 +54,8 @@ class SteadyResult:
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    fill : (n, m) array or None
+        Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         Of the film, K; None for an isothermal bearing.
     bore_displacement : (n, m) array or None
@@ -87,6 +91,7 @@ class SteadyResult:
     attitude_angle: float
     status: Status
     iterations: int
+    fill: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
     bore_displacement: np.ndarray | None = None
     bore_coordinates: np.ndarray | None = None
@@ -208,13 +213,8 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
     if eccentric and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
-    solver, grid = model.solver, model.grid
     return SteadyResult(
-        theta=grid.x.copy(),
-        z=grid.z * grid.reference_length,
-        pressure=model.P * model.pressure_scale,
-        gap=solver.H * model.bearing.radial_clearance,
-        unbroken=solver.work.active.copy(),
+        **grid_fields(model),
         force=wrench[:3].copy(),
         moment=wrench[3:].copy(),
         minimum_gap=q["minimum_gap"],
@@ -234,7 +234,6 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
-        temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
         **model.bore_fields(),
         bearing=model.bearing,
         motion=model.motion.copy(),
