@@ -9,6 +9,7 @@ user function alone, when the start of the step has moved on, so that a rejected
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import exudyn as exu
@@ -279,7 +280,11 @@ class FilmElement:
             return None
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, trial.evaluation.quantities())
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, self._quantities(trial.evaluation))
+
+    def _quantities(self, evaluation: Evaluation) -> Mapping[str, Any]:
+        """Scalars of an evaluation, to which the sides' arrays belong."""
+        return evaluation.quantities()
 
     def current_row(self, mbs: Any) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
