@@ -32,6 +32,10 @@ class FilmFields(FilmPictures):
         K; None for an isothermal bearing.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
+    contact_pressure : (n, m) array or None
+        Of asperities or wall, Pa; None without contact.
+    wear_depth : (n, m) array or None
+        Worn off the bore up to this instant, m; None without wear.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     motion : (10,) array
@@ -48,6 +52,8 @@ class FilmFields(FilmPictures):
     fill: np.ndarray | None
     temperature: float | np.ndarray | None
     bore_displacement: np.ndarray | None
+    contact_pressure: np.ndarray | None
+    wear_depth: np.ndarray | None
     force: np.ndarray
     moment: np.ndarray
     motion: np.ndarray
@@ -71,10 +77,13 @@ def grid_fields(model: BearingModel) -> dict[str, Any]:
 
 def film_fields(model: BearingModel, time: float) -> FilmFields:
     """The film of the model's last evaluation."""
+    wear = model.effects.wear
     return FilmFields(
         time=time,
         **grid_fields(model),
         bore_displacement=model.bore_fields().get("bore_displacement"),
+        contact_pressure=None if model.contact_fields is None else np.sum(model.contact_fields.P, axis=0),
+        wear_depth=None if wear is None else model.worn(wear) * model.bearing.radial_clearance,
         force=model.wrench[:3].copy(),
         moment=model.wrench[3:].copy(),
         motion=model.motion.copy(),
