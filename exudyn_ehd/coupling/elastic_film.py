@@ -120,3 +120,8 @@ class ModalFilmElement(BoreFilmElement):
             out.append(whole)
         out[0][np.arange(n, n + k), np.arange(n, n + k)] -= self.stiffness
         return out[0], out[1]
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last."""
+        model: Any = self.model
+        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)
