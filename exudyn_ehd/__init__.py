@@ -5,8 +5,14 @@ Module map
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
+pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+<<<<<<< HEAD
+studies   many runs: `parameter_study`
+=======
+studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
+>>>>>>> main
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -43,6 +49,7 @@ from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.joint.any_gap import FilmResult, solve_film
 from exudyn_ehd.joint.audit import Audit, Finding
+from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
@@ -58,6 +65,7 @@ _LAZY = {
     "JointHistory": "coupling.history",
     "LubricatedJoint": "coupling.api",
     "Quantity": "coupling.history",
+    "StepControl": "coupling.step_control",
     "CarriedOuter": "coupling.bush_object",
     "CreateFlexibleBush": "coupling.bush_object",
     "FixedOuter": "coupling.bush_object",
@@ -78,6 +86,10 @@ _LAZY = {
     "SurfaceLoad": "solid.loads",
     "mesh_from_arrays": "solid.mesh",
     "mesh_from_fem": "solid.mesh",
+    "EquilibriumPoint": "studies.parameters",
+    "StudyTable": "studies.parameters",
+    "parameter_study": "studies.parameters",
+    "varied": "studies.parameters",
 }
 
 
@@ -109,10 +121,12 @@ __all__ = [
     "EdgeRelief",
     "ElasticLiner",
     "ElrodAdams",
+    "EquilibriumPoint",
     "EquilibriumResult",
     "FactorReuse",
     "FilmEnergy",
     "FilmError",
+    "FilmFields",
     "FilmResult",
     "Finding",
     "FiniteLength",
@@ -153,7 +167,9 @@ __all__ = [
     "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "StepControl",
     "StribeckResult",
+    "StudyTable",
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
@@ -165,8 +181,10 @@ __all__ = [
     "mesh_from_arrays",
     "mesh_from_fem",
     "oil",
+    "parameter_study",
     "slider_grid",
     "solve_film",
     "steady",
     "stribeck",
+    "varied",
 ]

@@ -9,6 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Geometry
+from exudyn_ehd.pictures.methods import HistoryPictures
+
 _SCALARS = (
     "minimum_gap",
     "peak_pressure",
@@ -59,7 +62,7 @@ _COLUMNS: dict[str, Any] = {
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class JointHistory:
+class JointHistory(HistoryPictures):
     """Accepted steps of one joint, first the initial state, last the state now.
 
     All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
@@ -83,6 +86,8 @@ class JointHistory:
         [m], [Pa], [N m], [W], [m3/s], [N].
     contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
         [N m], [m3/s], [K], [K].
+    radial_clearance, journal_radius, length : float
+        Of the bearing [m].
     """
 
     time: np.ndarray
@@ -102,6 +107,9 @@ class JointHistory:
     supply_flow: np.ndarray
     film_temperature: np.ndarray
     peak_temperature: np.ndarray
+    radial_clearance: float
+    journal_radius: float
+    length: float
 
 
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
@@ -137,9 +145,12 @@ def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
 
 
 class Record:
-    """Rows of accepted steps in a growing array."""
+    """Rows of accepted steps of a bearing in a growing array."""
 
-    def __init__(self) -> None:
+    def __init__(self, bearing: Geometry) -> None:
+        self._dimensions: dict[str, Any] = {
+            name: float(getattr(bearing, name)) for name in ("radial_clearance", "journal_radius", "length")
+        }
         self._rows = np.empty((64, _WIDTH))
         self._count = 0
 
@@ -166,4 +177,5 @@ class Record:
         rows = self._rows[: self._count].copy()
         if final is not None:
             rows = np.concatenate([rows, final[None]])
-        return JointHistory(**{name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()})
+        columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
+        return JointHistory(**columns, **self._dimensions)

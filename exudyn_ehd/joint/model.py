@@ -260,7 +260,7 @@ class BearingModel:
         if not self.remembers:
             return None
         mass = self.solver.content if self.remembers_mass else None
-        wear = None if self.effects.wear is None else self._worn(self.effects.wear)
+        wear = None if self.effects.wear is None else self.worn(self.effects.wear)
         deflection = None
         if self.remembers_deflection and self.liner_solver is not None:
             deflection = self.liner_solver.deflection
@@ -268,7 +268,7 @@ class BearingModel:
         temperature = None if thermal is None else thermal.advance(self)
         return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
 
-    def _worn(self, wear: Wear) -> np.ndarray:
+    def worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""
         assert self.contact_fields is not None
         history, step = self.start
@@ -544,6 +544,14 @@ class BearingModel:
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation.
 
+        The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it presses out,
+
+            power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
+
+        with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
+        equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
+        ends' cross section, which the journal's wrench carries. What bends an elastic bore is not in it: that is the bush's.
+
         Returns
         -------
         dict
@@ -551,7 +559,7 @@ class BearingModel:
             ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from parabolas through the largest vertex),
             ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
-            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
+            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that stays in film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
             by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
             of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
@@ -572,6 +580,8 @@ class BearingModel:
         v, f = self.motion, self.wrench
         along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
         power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
+        if self.liner_solver is not None:
+            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
         out |= {
             "peak_pressure": self.refined_peak()[0],
