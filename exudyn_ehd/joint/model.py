@@ -33,6 +33,7 @@ from exudyn_ehd.film.loads import (
     pressure_integrals,
     refined_peak,
 )
+from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
 from exudyn_ehd.joint.effects import (
     Contact,
@@ -340,11 +341,9 @@ class BearingModel:
         fields = [term.field(history) for term in self.effects.gap_terms]
         if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
             self.gap_fields = fields
-            self.extra = np.sum(fields, axis=0)
-            nxt = np.roll(self.extra, -1, axis=0)
-            self.extra_link = 0.5 * (self.extra + nxt)
-            self.extra_slope_x = (nxt - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
-            self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
+            self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+            self.extra_link, self.extra_slope_x, self.extra_slope_z = (np.empty(g.shape) for _ in range(3))
+            gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
 
