@@ -5,8 +5,11 @@ Module map
 bearing   what a scene writes: `JournalBearing` and its options
 film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
 joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
+pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+studies   many runs: `parameter_study`
+studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -43,6 +46,7 @@ from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.joint.any_gap import FilmResult, solve_film
 from exudyn_ehd.joint.audit import Audit, Finding
+from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, Status
@@ -58,6 +62,9 @@ _LAZY = {
     "JointHistory": "coupling.history",
     "LubricatedJoint": "coupling.api",
     "Quantity": "coupling.history",
+    "Revolutions": "coupling.revolutions",
+    "load_history": "coupling.history",
+    "StepControl": "coupling.step_control",
     "CarriedOuter": "coupling.bush_object",
     "CreateFlexibleBush": "coupling.bush_object",
     "FixedOuter": "coupling.bush_object",
@@ -78,6 +85,10 @@ _LAZY = {
     "SurfaceLoad": "solid.loads",
     "mesh_from_arrays": "solid.mesh",
     "mesh_from_fem": "solid.mesh",
+    "EquilibriumPoint": "studies.parameters",
+    "StudyTable": "studies.parameters",
+    "parameter_study": "studies.parameters",
+    "varied": "studies.parameters",
 }
 
 
@@ -109,10 +120,12 @@ __all__ = [
     "EdgeRelief",
     "ElasticLiner",
     "ElrodAdams",
+    "EquilibriumPoint",
     "EquilibriumResult",
     "FactorReuse",
     "FilmEnergy",
     "FilmError",
+    "FilmFields",
     "FilmResult",
     "Finding",
     "FiniteLength",
@@ -146,6 +159,7 @@ __all__ = [
     "Quantity",
     "Rayleigh",
     "RegularisedWall",
+    "Revolutions",
     "ReynoldsTemperature",
     "RoelandsPressure",
     "SaintVenantKirchhoff",
@@ -153,7 +167,9 @@ __all__ = [
     "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "StepControl",
     "StribeckResult",
+    "StudyTable",
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
@@ -162,11 +178,14 @@ __all__ = [
     "bearing_grid",
     "composite_modulus",
     "equilibrium",
+    "load_history",
     "mesh_from_arrays",
     "mesh_from_fem",
     "oil",
+    "parameter_study",
     "slider_grid",
     "solve_film",
     "steady",
     "stribeck",
+    "varied",
 ]

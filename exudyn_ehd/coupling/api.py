@@ -16,8 +16,10 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.results import JointResults
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import MarkerSide, Side
+from exudyn_ehd.coupling.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_vector
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ class Held:
     """
 
 
-class LubricatedJoint:
+class LubricatedJoint(JointResults):
     """Handle of one lubricated joint.
 
     Attributes
@@ -150,6 +152,7 @@ def CreateLubricatedJoint(
     bearing: Any = None,
     rotationMatrixAxes: Any = None,
     axial: Free | Held = Free(),
+    stepControl: StepControl | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -166,7 +169,7 @@ def CreateLubricatedJoint(
     mbs : exudyn.MainSystem
         The system, before Assemble.
     name : str
-        Name of the joint, used in messages too.
+        Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
         Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact beams and
         cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker (MarkerIndex: on any of these,
@@ -186,6 +189,8 @@ def CreateLubricatedJoint(
         the axis). Every angle of the film counts from x about z.
     axial : Free or Held
         Whether the journal may slide along the axis.
+    stepControl : StepControl or None
+        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are halved.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
@@ -209,18 +214,23 @@ def CreateLubricatedJoint(
     """
     if not isinstance(axial, (Free, Held)):
         raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
+    if not isinstance(stepControl, (StepControl, type(None))):
+        raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     if mbs.systemIsConsistent:
         raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
+    name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
     housing, journal = _resolve_pair(mbs, itemNumbers)
     rotation = _joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = _joint_points(housing, journal, position, useGlobalFrame)
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
+    if stepControl is not None:
+        joint.element.watch = GapWatch(stepControl, bearing)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint

@@ -7,25 +7,28 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.joint.audit import Audit, audit_states
 from exudyn_ehd.joint.audit_states import FilmState
 from exudyn_ehd.joint.build import build_study_model
 from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.fields import grid_fields
 from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.joint.settle import settle
+from exudyn_ehd.pictures.methods import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
+STEP_HALVINGS = 8
 LOAD_TOLERANCE = 1e-10
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyResult:
-    """One position of the journal. Frame and signs as in `exudyn_ehd.joint.model`; SI units.
+class SteadyResult(FilmPictures):
+    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.model`; SI units.
 
     Attributes
     ----------
@@ -52,6 +55,8 @@ class SteadyResult:
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
     status, iterations : Status, int
+    fill : (n, m) array or None
+        Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         Of the film, K; None for an isothermal bearing.
     bore_displacement : (n, m) array or None
@@ -87,6 +92,7 @@ class SteadyResult:
     attitude_angle: float
     status: Status
     iterations: int
+    fill: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
     bore_displacement: np.ndarray | None = None
     bore_coordinates: np.ndarray | None = None
@@ -192,7 +198,7 @@ def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {evaluation.status.advice}"
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {advice(evaluation.status, model.bearing)}"
         )
     return evaluation.wrench
 
@@ -208,13 +214,8 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
     if eccentric and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
-    solver, grid = model.solver, model.grid
     return SteadyResult(
-        theta=grid.x.copy(),
-        z=grid.z * grid.reference_length,
-        pressure=model.P * model.pressure_scale,
-        gap=solver.H * model.bearing.radial_clearance,
-        unbroken=solver.work.active.copy(),
+        **grid_fields(model),
         force=wrench[:3].copy(),
         moment=wrench[3:].copy(),
         minimum_gap=q["minimum_gap"],
@@ -234,7 +235,6 @@ def _result(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult
         attitude_angle=attitude,
         status=model.status,
         iterations=model.iterations,
-        temperature=None if model.effects.thermal is None else model.effects.thermal.temperature,
         **model.bore_fields(),
         bearing=model.bearing,
         motion=model.motion.copy(),
@@ -319,14 +319,15 @@ def equilibrium(
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
     residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
+    wrench = _evaluate(model, motion, "equilibrium")
     for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
-        wrench = _evaluate(model, motion, "equilibrium")
         unbalance = wrench[:2] + force
         tangent = model.steady_tangent()
         residual = float(np.max(np.abs(unbalance))) / size
         if residual < max(LOAD_TOLERANCE, rounding):
             break
-        motion[:2] += _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+        step = _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+        wrench = _move(model, motion, step)
     else:
         raise FilmError(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
@@ -384,9 +385,22 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
+def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
+    motion[:2] += step
+    if hasattr(model, "bore"):
+        for _ in range(STEP_HALVINGS):
+            evaluation = model.evaluate_steady(motion, _history_at(model, motion, "equilibrium"))
+            if evaluation.status is Status.CONVERGED:
+                return evaluation.wrench
+            step = 0.5 * step
+            motion[:2] -= step
+    return _evaluate(model, motion, "equilibrium")
+
+
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.effects.contacts:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
+    if model.effects.contacts or hasattr(model, "bore"):
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

@@ -1,0 +1,13 @@
+"""Pictures of films and histories with matplotlib, in one style; no display needed.
+
+Module map
+----------
+style      sizes, colours, fonts; opening and writing a figure
+units      in which unit a quantity is shown, and its label
+methods    ``plot_...`` of what carries a film or a history; draws nothing itself
+maps       unrolled maps of pressure, gap, fill and temperature
+bearing3d  pressure around the bore with the journal in it
+orbit      orbit in the clearance circle
+load       polar diagram of the load on the bush
+traces     quantities over time or angle
+"""

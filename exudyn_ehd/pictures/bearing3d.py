@@ -1,0 +1,143 @@
+"""The bearing in space: pressure around the bore, with the journal in it.
+
+Clearance and pressure are far too small and too large to be drawn to scale beside the radius: the clearance is shown as a fixed
+share of the radius, the peak pressure as a hill of fixed height.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib
+import numpy as np
+from matplotlib.colors import Normalize
+from mpl_toolkits.mplot3d.art3d import Poly3DCollection
+
+from exudyn_ehd.pictures.data import Film
+from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
+from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, open_axes, styled
+from exudyn_ehd.pictures.units import label, unit_for
+from exudyn_ehd.status import InputError
+
+SIZE = (1.35 * COLUMN, 1.15 * COLUMN)
+# Shares of the bore radius.
+CLEARANCE, HILL = 0.22, 0.75
+# Facets around, rows along.
+FACETS, ROWS = 120, 31
+
+
+def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Any:
+    """Draw the pressure as a coloured hill on the bore, the journal at its place in it, and the load on the bush (arrow).
+
+    Parameters
+    ----------
+    film : Film
+    camera : (float, float), optional
+        Elevation and azimuth, degrees, with y upright and x to the right at azimuth -90; by default the hill is in view.
+    ax : matplotlib Axes3D, optional
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    if ax is not None and ax.name != "3d":
+        raise InputError(
+            f"plot_bearing: ax must be 3d, got {ax.name} axes; use subplots(subplot_kw={{'projection': '3d'}})."
+        )
+    theta, p = closed_ring(film.theta, film.pressure)
+    unit = unit_for("pressure", p)
+    low, high = colour_limits(unit(p), PRESSURE)
+    norm, colours = Normalize(low, high), matplotlib.colormaps[PRESSURE.colours]
+    around = np.linspace(0.0, 2.0 * np.pi, FACETS + 1)
+    p = np.stack([np.interp(around, theta, row) for row in p.T], axis=1)
+    along = np.linspace(film.z[0], film.z[-1], ROWS)
+    p = np.stack([np.interp(along, film.z, row) for row in p])
+    z = along / film.bearing.journal_radius
+    hill = pressure_surface(around, z, p)
+    journal = journal_surface(film, around, z)
+    with styled():
+        figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
+        quads, values = _quads(hill), _quads(unit(p)[..., None])[..., 0].mean(axis=1)
+        grey = np.tile([0.72, 0.74, 0.78, 1.0], (len(_quads(journal)), 1))
+        caps = np.tile([0.82, 0.84, 0.87, 1.0], (2, 1))
+        # one collection: matplotlib sorts facets by depth within a collection only
+        polygons = [*quads, *_quads(journal), journal[:-1, 0], journal[:-1, -1]]
+        faces = np.concatenate([colours(norm(values)), grey, caps])
+        ax.add_collection3d(
+            Poly3DCollection(
+                [_turned(q) for q in polygons], facecolors=faces, edgecolors=faces, linewidths=0.2, zorder=1
+            )
+        )
+        ring = np.stack([np.cos(around), np.sin(around)], axis=1)
+        for end, order in ((z[0], 0), (z[-1], 2)):
+            ax.plot(*_turned(np.column_stack([ring, np.full(len(ring), end)])).T, color=BLACK, lw=0.6, zorder=order)
+        peak = float(theta[int(np.argmax(closed_ring(film.theta, film.pressure)[1].max(axis=1)))])
+        _draw_arrows(ax, film, z)
+        _finish_axes(ax, z, 1.0 + HILL, _camera(peak) if camera is None else camera)
+        bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
+        figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02)
+        R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
+        ax.set_title(f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale", y=0.98)
+        return finish(figure, path)
+
+
+def pressure_surface(theta: np.ndarray, z: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Points (k, m, 3) of the hill over the unit bore; pressures below ambient stay on the bore."""
+    largest = float(pressure.max())
+    height = HILL / largest if largest > 0.0 else 0.0
+    r = 1.0 + height * np.maximum(pressure, 0.0)
+    return np.stack([r * np.cos(theta)[:, None], r * np.sin(theta)[:, None], np.broadcast_to(z, r.shape)], axis=-1)
+
+
+def journal_surface(film: Film, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Points (k, m, 3) of the journal, with the clearance enlarged to its share of the radius; z over the radius."""
+    c, R = film.bearing.radial_clearance, film.bearing.journal_radius
+    x, y, bx, by = film.motion[:4]
+    at_x = CLEARANCE / c * (x + bx * z * R)
+    at_y = CLEARANCE / c * (y + by * z * R)
+    r = 1.0 - CLEARANCE
+    X, Y = at_x + r * np.cos(theta)[:, None], at_y + r * np.sin(theta)[:, None]
+    return np.stack([X, Y, np.broadcast_to(z, X.shape)], axis=-1)
+
+
+def _quads(points: np.ndarray) -> np.ndarray:
+    """Quadrilaterals (q, 4, d) of a grid of points (k, m, d)."""
+    corners = [points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]]
+    return np.stack(corners, axis=2).reshape(-1, 4, points.shape[-1])
+
+
+def _turned(points: np.ndarray) -> np.ndarray:
+    """The picture's axes: right x, depth z (positive towards the viewer), up y."""
+    return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)
+
+
+def _draw_arrows(ax: Any, film: Film, z: np.ndarray) -> None:
+    """The joint's x and y, and the load of the journal on the bush, at the end z = L/2 and in front of everything."""
+    start = np.array([0.0, 0.0, z[-1]])
+    box = {"boxstyle": "circle,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
+    for name, way in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0))):
+        ax.quiver(*_turned(start), *_turned(np.array(way)), color=BLACK, lw=0.7, arrow_length_ratio=0.1, zorder=10)
+        ax.text(*_turned(start + 1.12 * np.array(way)), name, ha="center", va="center", zorder=11, bbox=box)
+    load = -film.force[:2]
+    size = float(np.hypot(*load))
+    if size > 0.0:
+        tip = _turned(np.array([*(load / size), 0.0]))
+        ax.quiver(*_turned(start), *tip, color=VERMILION, lw=1.6, arrow_length_ratio=0.15, zorder=12)
+
+
+def _camera(peak: float) -> tuple[float, float]:
+    """Elevation and azimuth, degrees, from which a hill at the angle ``peak`` and the end z = L/2 are in view."""
+    x, y = np.cos(peak), np.sin(peak)
+    elevation = np.degrees(np.arcsin(np.clip(0.8 * y, -0.55, 0.55)))
+    # a hill right above or below is looked at from one side
+    sideways = np.copysign(max(0.45, 0.9 * abs(x)), x)
+    return float(elevation), float(np.degrees(np.arctan2(-1.0, sideways)))
+
+
+def _finish_axes(ax: Any, z: np.ndarray, reach: float, camera: tuple[float, float]) -> None:
+    ax.set_axis_off()
+    box = np.array([[-reach, reach], [-z[-1], -z[0]], [-reach, reach]])
+    ax.set(xlim=box[0], ylim=box[1], zlim=box[2])
+    ax.set_box_aspect(np.ptp(box, axis=1), zoom=1.15)
+    ax.view_init(elev=camera[0], azim=camera[1])

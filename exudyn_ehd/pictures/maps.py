@@ -1,0 +1,204 @@
+"""Unrolled maps: a field of the film over angle and bearing length."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.pictures.data import Film
+from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, styled
+from exudyn_ehd.pictures.units import Unit, label, unit_for
+from exudyn_ehd.status import InputError
+
+TURN = 2.0 * math.pi
+SIZE = (0.75 * PAGE, 0.36 * PAGE)
+# Points of a picture around and along.
+FINE = (721, 121)
+
+
+@dataclass(frozen=True)
+class MapField:
+    """A field of the film and how its map looks.
+
+    Parameters
+    ----------
+    name : str
+        Attribute of the film.
+    text, kind : str
+        Of the colour bar, and of `unit_for`.
+    colours : str
+        Matplotlib's name.
+    absent : str
+        What to do if the film has no such field.
+    """
+
+    name: str
+    text: str
+    kind: str
+    colours: str
+    absent: str = ""
+
+
+PRESSURE = MapField("pressure", "pressure", "pressure", "viridis")
+GAP = MapField("gap", "gap", "length", "cividis")
+FILL = MapField(
+    "fill", "film fraction", "ratio", "Blues", "only a mass-conserving film has one: cavitation=ElrodAdams(...)."
+)
+TEMPERATURE = MapField(
+    "temperature", "film temperature", "temperature", "inferno", "give the bearing thermal=FilmEnergy(...)."
+)
+
+
+def field_values(film: Film, field: MapField) -> np.ndarray:
+    """The field (n, m) of a film; a single temperature fills the whole map.
+
+    Raises
+    ------
+    InputError
+        If the film has none.
+    """
+    values = getattr(film, field.name)
+    if values is None:
+        raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}")
+    return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
+
+
+def closed_ring(theta: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angles 0 .. 2 pi (k,) and values (k, m) of a field on a closed ring, both edges interpolated at 0.
+
+    The ring is a sequence of vertices from any start; linear between them.
+    """
+    angle = np.mod(theta, TURN)
+    # an angle a rounding below a turn is the angle 0
+    angle[angle > TURN * (1.0 - 1e-12)] = 0.0
+    order = np.argsort(angle)
+    angle, values = angle[order], values[order]
+    if angle[0] == 0.0:
+        edge = values[0]
+    else:
+        span = angle[0] + TURN - angle[-1]
+        share = angle[0] / span
+        edge = (1.0 - share) * values[0] + share * values[-1]
+        angle, values = np.concatenate(([0.0], angle)), np.concatenate((edge[None], values))
+    return np.concatenate((angle, [TURN])), np.concatenate((values, edge[None]))
+
+
+def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
+    """Field (n, m) on the uniform grid of a picture, linear between vertices.
+
+    With ``prescribed_ends=False`` the two rows at the bearing's ends take their neighbours' values: there a film fraction is that of
+    the surroundings, not of the film.
+    """
+    theta, values = closed_ring(film.theta, values)
+    if not prescribed_ends and values.shape[1] > 2:
+        values[:, 0], values[:, -1] = values[:, 1], values[:, -2]
+    across = np.linspace(film.z[0], film.z[-1], FINE[1])
+    rows = np.stack([np.interp(across, film.z, row) for row in values])
+    around = np.linspace(0.0, TURN, FINE[0])
+    return np.stack([np.interp(around, theta, column) for column in rows.T], axis=1)
+
+
+def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -> Any:
+    """Draw the unrolled map of a field.
+
+    The dashed line bounds the unbroken film, black lines the supply areas in the housing.
+
+    Parameters
+    ----------
+    film : Film
+    field : MapField
+    ax : matplotlib Axes, optional
+        Where to draw; by default a new figure.
+    path : path, optional
+        Where to write the figure.
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    values = field_values(film, field)
+    unit = unit_for(field.kind, values)
+    with styled():
+        figure, ax = open_axes(ax, SIZE)
+        image = draw_map(ax, film, field, unit)
+        figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02)
+        ax.set_title(_extreme(film, field, values, unit))
+        return finish(figure, path)
+
+
+def draw_map(ax: Any, film: Film, field: MapField, unit: Unit, limits: tuple[float, float] | None = None) -> Any:
+    """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of the colours in the shown unit."""
+    values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
+    low, high = limits or colour_limits(values, field)
+    image = ax.imshow(
+        values.T,
+        origin="lower",
+        aspect="auto",
+        interpolation="bilinear",
+        extent=(0.0, 360.0, 1e3 * film.z[0], 1e3 * film.z[-1]),
+        cmap=field.colours,
+        vmin=low,
+        vmax=high,
+    )
+    draw_rupture(ax, film)
+    _draw_supply(ax, film)
+    ax.set(
+        xlabel="angle θ [°]",
+        ylabel="z [mm]",
+        xlim=(0.0, 360.0),
+        ylim=(1e3 * film.z[0], 1e3 * film.z[-1]),
+        xticks=range(0, 361, 60),
+    )
+    return image
+
+
+def colour_limits(values: np.ndarray, field: MapField) -> tuple[float, float]:
+    """Colour limits: the values' range, 0 to 1 for a fraction; never empty."""
+    if field.name == "fill":
+        return 0.0, 1.0
+    low, high = float(np.min(values)), float(np.max(values))
+    # a uniform field (a single temperature, a concentric journal) to rounding
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        half = 0.5 * max(abs(low), 1.0) * 0.02
+        return low - half, high + half
+    return low, high
+
+
+def draw_rupture(ax: Any, film: Film) -> Any:
+    """Draw the boundary of the unbroken film; None if there is none inside."""
+    # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
+    full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
+    theta, whole = closed_ring(film.theta, full.astype(float))
+    inner = whole[:, 1:-1]
+    if inner.size == 0 or inner.min() == inner.max():
+        return None
+    # prescribed end rows count as neither: the boundary runs straight into the ends
+    whole[:, 0], whole[:, -1] = whole[:, 1], whole[:, -2]
+    return ax.contour(
+        np.degrees(theta), 1e3 * film.z, whole.T, levels=[0.5], colors="white", linewidths=0.9, linestyles="dashed"
+    )
+
+
+def _draw_supply(ax: Any, film: Film) -> None:
+    """Outlines of the supply areas that lie in the housing."""
+    theta = np.linspace(0.0, TURN, FINE[0])
+    z = np.linspace(film.z[0], film.z[-1], FINE[1])
+    for area in film.bearing.supply:
+        if area.rotating:
+            continue
+        inside = area.covers(theta, z, film.bearing.journal_radius).astype(float)
+        # a frame of zeros closes outlines that run along the map's edge
+        ax.contour(np.degrees(theta), 1e3 * z, inside.T, levels=[0.5], colors=BLACK, linewidths=0.8)
+
+
+def _extreme(film: Film, field: MapField, values: np.ndarray, unit: Unit) -> str:
+    """Title: the field's telling value with its place."""
+    lowest = field.name in ("gap", "fill")
+    i, j = np.unravel_index(np.argmin(values) if lowest else np.argmax(values), values.shape)
+    angle = math.degrees(math.fmod(film.theta[i] + TURN, TURN))
+    size = f"{unit(values[i, j]):.4g} {unit.symbol}".removesuffix(" -")
+    word = "smallest" if lowest else "largest"
+    return f"{word} {size} at θ = {angle:.0f}°, z = {1e3 * film.z[j]:.3g} mm"

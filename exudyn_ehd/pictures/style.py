@@ -1,0 +1,92 @@
+"""One style for all pictures: sizes for a journal's column and page, a palette safe for colour-blind readers, small type.
+
+Palette: M. Okabe and K. Ito, Color Universal Design (2008). Maps use matplotlib's perceptually uniform colours.
+"""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import matplotlib
+from cycler import cycler
+from matplotlib.figure import Figure
+
+BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY = (
+    "#0072B2",
+    "#D55E00",
+    "#009E73",
+    "#CC79A7",
+    "#E69F00",
+    "#56B4E9",
+    "#000000",
+    "#808080",
+)
+PALETTE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
+# Width of one column and of the page, inch.
+COLUMN, PAGE = 3.5, 7.2
+RESOLUTION = 200
+
+RC = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.titlesize": 8.0,
+    "axes.labelsize": 8.0,
+    "axes.linewidth": 0.6,
+    "axes.prop_cycle": cycler(color=list(PALETTE)),
+    "axes.grid": False,
+    "grid.linewidth": 0.4,
+    "grid.color": "#D0D0D0",
+    "lines.linewidth": 1.1,
+    "lines.markersize": 4.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.fontsize": 7.0,
+    "legend.frameon": False,
+    "savefig.facecolor": "white",
+    "figure.facecolor": "white",
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Context in which everything drawn has the style; the user's own settings come back after it."""
+    with matplotlib.rc_context(RC):
+        yield
+
+
+def open_axes(ax: Any, size: tuple[float, float], **options: Any) -> tuple[Any, Any]:
+    """Figure and axes to draw into: those given, or new ones of ``size`` (inch); call it inside `styled`.
+
+    Parameters
+    ----------
+    ax : matplotlib Axes or None
+    size : (float, float)
+    **options
+        For ``Figure.add_subplot``.
+    """
+    if ax is not None:
+        return ax.figure, ax
+    figure = Figure(figsize=size, layout="constrained")
+    ax = figure.add_subplot(**options)
+    style_ticks(ax)
+    return figure, ax
+
+
+def style_ticks(ax: Any) -> None:
+    """Give the ticks their style now: matplotlib makes most of them when it draws, outside of `styled`."""
+    ax.tick_params(labelsize=RC["xtick.labelsize"], width=RC["xtick.major.width"])
+
+
+def finish(figure: Any, path: str | pathlib.Path | None) -> Any:
+    """Write the figure if a path is given (its suffix sets the format), and return it."""
+    if path is not None:
+        path = pathlib.Path(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        figure.savefig(path, dpi=RESOLUTION)
+    return figure

@@ -1,0 +1,154 @@
+"""Scenes: a journal at a prescribed position, evaluated with its exact tangent as in the steps of an implicit run.
+
+A scene looks at several directions of the eccentricity, one degree apart, because the rupture line snaps to the grid: errors are the
+worst over the directions, the time is that of one evaluation with tangent, each started from the one before.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.impedance import ImpedanceModel
+from exudyn_ehd.joint.settle import settle
+from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
+from exudyn_ehd.studies.setting import Outcome, QuantityOfInterest, Setting
+
+DEGREE = math.pi / 180.0
+# Shortest measured stretch, s.
+SHORTEST = 5e-3
+
+QUANTITIES = (
+    QuantityOfInterest(name="load", unit="N", text="film force"),
+    QuantityOfInterest(name="attitude", unit="rad", scale=1.0, text="direction of the film force, error in rad"),
+    QuantityOfInterest(name="friction", unit="Nm", text="friction torque on the journal"),
+    QuantityOfInterest(name="peak pressure", unit="Pa", text="peak pressure"),
+    QuantityOfInterest(name="minimum film", unit="m", text="smallest gap"),
+    QuantityOfInterest(name="leakage", unit="m3/s", text="flow out of both ends"),
+    QuantityOfInterest(name="stiffness", unit="N/m", text="stiffness, largest entry"),
+    QuantityOfInterest(name="damping", unit="N s/m", text="damping, largest entry"),
+)
+_FROM_MODEL = {"friction": "friction_torque", "peak pressure": "peak_pressure", "leakage": "leakage", "minimum film": "minimum_gap"}  # fmt: skip
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class SteadyScene:
+    """A journal held at an eccentricity.
+
+    Parameters
+    ----------
+    name, title : str
+    bearing : JournalBearing
+        The rungs replace its options.
+    speed : float
+        rad/s.
+    eccentricity_ratio : float
+        e/c at the mid-plane.
+    tilt_ratio : float
+        Share of the mid-plane's smallest gap that the tilt takes at one end, 0 to 1; the journal tilts in the plane of its
+        eccentricity.
+    directions : int
+        How many directions of the eccentricity, one degree apart.
+    start_direction : float
+        The first one, rad.
+    """
+
+    name: str
+    title: str
+    bearing: JournalBearing
+    speed: float
+    eccentricity_ratio: float
+    tilt_ratio: float = 0.0
+    directions: int = 8
+    start_direction: float = 0.0
+    quantities: tuple[QuantityOfInterest, ...] = QUANTITIES
+    per: str = "evaluation with tangent"
+
+    def __post_init__(self) -> None:
+        require_number("SteadyScene.speed", self.speed, "rad/s")
+        require_integer("SteadyScene.directions", self.directions, at_least=1)
+        for name in ("eccentricity_ratio", "tilt_ratio"):
+            if require_number(f"SteadyScene.{name}", getattr(self, name), at_least=0.0) >= 1.0:
+                raise InputError(f"SteadyScene.{name} must be below 1, got {getattr(self, name)!r}.")
+
+    @property
+    def slope(self) -> float:
+        """Tilt, rad."""
+        gap = self.bearing.radial_clearance * (1.0 - self.eccentricity_ratio)
+        return 2.0 * self.tilt_ratio * gap / self.bearing.length
+
+    def motions(self) -> np.ndarray:
+        """Motions (directions, 10) as in `exudyn_ehd.joint.model`."""
+        out = np.zeros((self.directions, 10))
+        angle = self.start_direction + DEGREE * np.arange(self.directions)
+        radial = np.stack((np.cos(angle), np.sin(angle)), axis=1)
+        out[:, :2] = self.eccentricity_ratio * self.bearing.radial_clearance * radial
+        out[:, 2:4] = self.slope * radial
+        out[:, 8] = self.speed
+        return out
+
+    def prepare(self, setting: Setting) -> Callable[[], Outcome]:
+        """Build the model; the run evaluates all directions, often enough to be measured."""
+        model: Any = build_model(setting.bearing(self.bearing))
+        motions = self.motions()
+        values, iterations, films = _values(model, motions)
+        start = time.process_time()
+        _sweep(model, motions)
+        once = max(time.process_time() - start, 1e-6)
+        rounds = max(1, math.ceil(SHORTEST / once))
+
+        def run() -> Outcome:
+            start = time.process_time()
+            for _ in range(rounds):
+                _sweep(model, motions)
+            seconds = (time.process_time() - start) / (rounds * len(motions))
+            return Outcome(values=values, seconds=seconds, newton=iterations, films=films)
+
+        return run
+
+
+def _evaluate(model: Any, motion: np.ndarray) -> Any:
+    """Steady evaluation; a heated film and a flexible bore settle."""
+    if isinstance(model, ImpedanceModel):
+        return model.evaluate(motion)
+    return model.evaluate_steady(motion, settle(model, motion))
+
+
+def _tangent(model: Any, evaluation: Any) -> np.ndarray:
+    return evaluation.tangent() if isinstance(model, ImpedanceModel) else model.steady_tangent()
+
+
+def _sweep(model: Any, motions: np.ndarray) -> None:
+    for motion in motions:
+        _tangent(model, _evaluate(model, motion))
+
+
+def _values(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarray], float, float]:
+    """Quantities over the directions in the frame of the eccentricity, iterations and film evaluations per position."""
+    columns: dict[str, list[Any]] = {}
+    iterations = films = 0
+    for motion in motions:
+        evaluation = _evaluate(model, motion)
+        if evaluation.status is not Status.CONVERGED:
+            raise FilmError(f"{evaluation.status.name}: {evaluation.status.advice}")
+        iterations += evaluation.iterations
+        films += 1 + getattr(model, "settling_steps", 0)
+        angle = math.atan2(motion[1], motion[0])
+        turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+        radial, tangential = turn @ evaluation.wrench[:2]
+        tangent = _tangent(model, evaluation)
+        known = evaluation.quantities() if isinstance(model, ImpedanceModel) else model.quantities()
+        row: dict[str, Any] = {"load": math.hypot(radial, tangential), "attitude": math.atan2(tangential, -radial)}
+        row |= {name: known[key] for name, key in _FROM_MODEL.items() if key in known}
+        row["stiffness"] = -turn @ tangent[:2, :2] @ turn.T
+        row["damping"] = -turn @ tangent[:2, 4:6] @ turn.T
+        for name, value in row.items():
+            columns.setdefault(name, []).append(value)
+    return {n: np.array(v) for n, v in columns.items()}, iterations / len(motions), films / len(motions)

@@ -1,0 +1,103 @@
+"""Orbit, load and traces show the history's values, with units."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from exudyn_ehd.pictures.load import plot_load
+from exudyn_ehd.pictures.orbit import plot_orbit
+from exudyn_ehd.pictures.traces import plot_traces
+from exudyn_ehd.pictures.units import unit_for
+from exudyn_ehd.status import InputError
+
+
+def line(ax, label):
+    (found,) = [one for one in ax.lines if one.get_label() == label]
+    return np.column_stack(found.get_data())
+
+
+def test_orbit_is_the_history_in_the_clearance_circle(history):
+    figure = plot_orbit(history, ends=True)
+    (ax,) = figure.axes
+    np.testing.assert_allclose(line(ax, "mid-plane"), 1e6 * history.eccentricity, rtol=1e-15)
+    np.testing.assert_allclose(np.hypot(*line(ax, "clearance 20 µm").T), 20.0)
+    np.testing.assert_allclose(
+        line(ax, "at z = +L/2")[:, 0], 1e6 * (history.motion[:, 0] + 0.01 * history.motion[:, 2])
+    )
+    np.testing.assert_allclose(
+        line(ax, "at z = -L/2")[:, 0], 1e6 * (history.motion[:, 0] - 0.01 * history.motion[:, 2])
+    )
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("x [µm]", "y [µm]")
+    assert ax.get_aspect() == 1.0
+
+
+def test_two_orbits_share_a_circle(history):
+    ax = Figure().add_subplot()
+    plot_orbit(history, text="first", ax=ax)
+    plot_orbit(history, text="second", ax=ax)
+    assert sum(one.get_label().startswith("clearance") for one in ax.lines) == 1
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["clearance 20 µm", "first", "second"]
+
+
+def test_load_is_opposite_to_the_force_on_the_journal(history):
+    figure = plot_load(history)
+    (ax,) = figure.axes
+    angle, size = line(ax, "load on the bush").T
+    tips = np.column_stack([size * np.cos(angle), size * np.sin(angle)])
+    np.testing.assert_allclose(tips, -history.force[:, :2], atol=1e-10)
+    assert ax.get_title() == "load of the journal on the bush [N]"
+    with pytest.raises(InputError, match="must be polar"):
+        plot_load(history, ax=Figure().add_subplot())
+
+
+def test_traces_over_time_and_angle(history):
+    figure = plot_traces(history)
+    upper, lower = figure.axes
+    np.testing.assert_allclose(upper.lines[0].get_data(), [1e3 * history.time, 1e6 * history.minimum_gap])
+    np.testing.assert_allclose(lower.lines[0].get_data(), [1e3 * history.time, 1e-6 * history.peak_pressure])
+    assert [ax.get_ylabel() for ax in figure.axes] == ["minimum film [µm]", "peak pressure [MPa]"]
+    assert lower.get_xlabel() == "time [ms]"
+    crank = 2.0 * np.pi * history.time / 0.02
+    figure = plot_traces(history, ["peak_pressure"], angle=crank, angle_text="crank angle")
+    (ax,) = figure.axes
+    np.testing.assert_allclose(ax.lines[0].get_xdata(), np.degrees(crank))
+    assert ax.get_xlabel() == "crank angle [°]"
+    assert list(np.diff(ax.get_xticks())[:3]) == [45.0] * 3
+
+
+def test_traces_refuse_what_can_not_be_drawn(history):
+    with pytest.raises(InputError, match="scalars of a history, got 'force'; known are contact_load"):
+        plot_traces(history, ["force"])
+    with pytest.raises(InputError, match="this film has no supply flow"):
+        plot_traces(history, ["supply_flow"])
+    with pytest.raises(InputError, match=r"shape \(41,\) as history.time, got \(3,\)"):
+        plot_traces(history, angle=np.zeros(3))
+    with pytest.raises(InputError, match="as many as the quantities"):
+        plot_traces(history, axes=[Figure().add_subplot()])
+
+
+@pytest.mark.parametrize(
+    ("kind", "value", "symbol", "shown"),
+    [
+        ("pressure", -3e6, "MPa", -3.0),
+        ("pressure", 2e4, "kPa", 20.0),
+        ("length", 12e-6, "µm", 12.0),
+        ("length", 0.02, "mm", 20.0),
+        ("temperature", 313.15, "°C", 40.0),
+        ("flow", 2e-6, "cm³/s", 2.0),
+        ("force", 0.0, "kN", 0.0),
+        ("power", np.nan, "kW", np.nan),
+    ],
+)
+def test_units(kind, value, symbol, shown):
+    unit = unit_for(kind, value)
+    assert unit.symbol == symbol
+    assert float(unit(value)) == pytest.approx(shown, nan_ok=True)
+
+
+def test_style_leaves_the_users_settings_alone(history):
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    plot_orbit(history)
+    assert dict(matplotlib.rcParams) == before
