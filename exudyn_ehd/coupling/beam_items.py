@@ -27,15 +27,14 @@ ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
 BEYOND_END = 1e-6
 
 
-def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> dict[str, np.ndarray]:
-    """Reference and initial coordinates and initial velocities (n,) of nodes, by the names of an `Item`'s fields."""
+def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Reference and initial coordinates and initial velocities (n,) of nodes."""
     data = [mbs.GetNode(node) for node in nodes]
-    keys = {
-        "reference_coordinates": "referenceCoordinates",
-        "initial_coordinates": "initialCoordinates",
-        "initial_velocities": "initialVelocities",
-    }
-    return {name: np.concatenate([np.array(d[key], dtype=float) for d in data]) for name, key in keys.items()}
+    reference, initial, velocities = (
+        np.concatenate([np.array(d[key], dtype=float) for d in data])
+        for key in ("referenceCoordinates", "initialCoordinates", "initialVelocities")
+    )
+    return reference, initial, velocities
 
 
 def element_nodes(data: dict[str, Any]) -> tuple[Any, ...]:

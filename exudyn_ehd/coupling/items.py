@@ -212,8 +212,7 @@ def _cable_item(
     mbs: Any, where: str, nodes: tuple[Any, ...], dimension: int, length: float | None, x: float | None = None
 ) -> Item:
     """Node (``length`` None) or element of cables; ``x`` is the place of a marker along the element."""
-    own = beam_items.node_coordinates(mbs, nodes)
-    reference = own["reference_coordinates"]
+    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
     place, slope = beam_items.cable_maps(dimension, length, 0.0 if x is None else x)
     return Item(
         position=place @ reference,
@@ -223,7 +222,9 @@ def _cable_item(
         planar=dimension == 2,
         nodes=nodes,
         build=lambda point, rotation: beam_items.cable_side(where, nodes, reference, length, x, point, rotation),
-        **own,
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
     )
 
 
@@ -232,6 +233,7 @@ def _beam_item(
 ) -> Item:
     """Element of a geometrically exact beam; ``transform`` (4, 4) that of a marker in the element's local coordinates."""
     ends = beam_items.beam_ends(mbs, nodes, _NODE_KINDS)
+    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length
     position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
     rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
@@ -248,7 +250,9 @@ def _beam_item(
         planar=ends[0].kind == kinematics.PLANAR,
         nodes=nodes,
         build=lambda point, joint: beam_items.beam_side(where, ends, share, point, joint),
-        **beam_items.node_coordinates(mbs, nodes),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
     )
 
 
