@@ -106,8 +106,7 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full((len(q), len(q)), np.nan)
-        stiffness, damping = self._derivatives(mbs, trial)
-        return -(f_q * stiffness + f_qt * damping)
+        return self._jacobian(mbs, trial, f_q, f_qt)
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
@@ -165,6 +164,11 @@ class FilmElement:
             if isinstance(side, MarkerSide):
                 side.bind(mbs)
         self._bound = True
+
+    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
+        stiffness, damping = self._derivatives(mbs, trial)
+        return -(f_q * stiffness + f_qt * damping)
 
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
