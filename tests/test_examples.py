@@ -120,3 +120,22 @@ def test_start_stop(example, tmp_path):
     assert rows["worn_volume_mm3"] == pytest.approx(rows["worn_volume_by_archard_mm3"], rel=0.01)
     assert rows["worn_volume_mm3"] > rows["worn_volume_by_archard_mm3"]
     assert rows["iterations_per_step"] < 3
+
+
+def test_rotor_oil_whirl(example, tmp_path):
+    n = example("rotor_oil_whirl").main(quick=True, output=tmp_path)
+    assert (tmp_path / "rotor_oil_whirl.png").stat().st_size > 10_000
+    # Rayleigh's frequency of disc and 17/35 of the shaft, 74.2 Hz; four linear beams are 5 % too stiff
+    assert 74.2 < n["first_bending_Hz"] < 1.06 * 74.2
+    # growth in time against the eigenvalues of shaft, K and C; the rotor of one mass leaves out the shaft's own inertia
+    assert n["threshold_simulated_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.01)
+    assert n["threshold_one_mass_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.03)
+    assert n["ratio_at_threshold"] == pytest.approx(0.5, abs=0.02)
+    # half-frequency whirl, far above the threshold and below twice the bending frequency
+    assert 0.45 < n["whirl_ratio_lowest"] < n["whirl_ratio_highest"] < 0.5
+    # whip: near the bending frequency, and no longer half the spin (a change of 0.5 per Hz)
+    assert 0.9 * n["first_bending_Hz"] < n["whip_Hz"] < n["first_bending_Hz"]
+    assert n["whip_ratio"] < 0.47 and n["whip_change_per_Hz"] < 0.3
+    # the shaft bends by several clearances of 0.12 mm, the journals stay inside theirs
+    assert n["largest_disc_amplitude_mm"] > 0.6
+    assert n["largest_eccentricity_ratio"] < 0.97 and n["smallest_film_um"] > 0.5
