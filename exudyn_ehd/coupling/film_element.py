@@ -9,15 +9,18 @@ user function alone, when the start of the step has moved on, so that a rejected
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
+from exudyn_ehd.coupling.step_control import GapWatch
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -68,6 +71,7 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
+        self.watch: GapWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
         self._start = np.nan
@@ -90,6 +94,8 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full(len(q), np.nan)
+        if self.watch is not None and t > start and self.watch.rejects(trial.motion, self._solver):
+            return np.full(len(q), np.nan)
         return self._generalized_force(trial)
 
     def jacobian(
@@ -100,8 +106,7 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full((len(q), len(q)), np.nan)
-        stiffness, damping = self._derivatives(mbs, trial)
-        return -(f_q * stiffness + f_qt * damping)
+        return self._jacobian(mbs, trial, f_q, f_qt)
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
@@ -159,6 +164,11 @@ class FilmElement:
             if isinstance(side, MarkerSide):
                 side.bind(mbs)
         self._bound = True
+
+    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
+        stiffness, damping = self._derivatives(mbs, trial)
+        return -(f_q * stiffness + f_qt * damping)
 
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
@@ -219,7 +229,7 @@ class FilmElement:
                 f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid "
                 f"surfaces {gap:.6g} m; "
             )
-        return where + state + trial.status.advice
+        return where + state + advice(trial.status, bearing)
 
     # --- accepted steps -------------------------------------------------------------------------------------------
 
@@ -239,6 +249,8 @@ class FilmElement:
             self._start = start
             self._memory = self._first_memory(mbs)
         trial = self._look(mbs, start, _START_OF_STEP)
+        if self.watch is not None:
+            self.watch.start(trial.motion)
         row = self._row(start, trial)
         if row is not None:
             self._record.append(row)
@@ -272,7 +284,11 @@ class FilmElement:
             return None
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, trial.evaluation.quantities())
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, self._quantities(trial.evaluation))
+
+    def _quantities(self, evaluation: Evaluation) -> Mapping[str, Any]:
+        """Scalars of an evaluation, to which the sides' arrays belong."""
+        return evaluation.quantities()
 
     def current_row(self, mbs: Any) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

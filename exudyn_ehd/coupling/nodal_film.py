@@ -85,6 +85,14 @@ class NodalFilmElement(BoreFilmElement):
         """Forces on the bore's nodes (count, 3), joint frame, N."""
         return self._complete(evaluation.wrench, evaluation.bore_load.reshape(-1, 2))
 
+    def _quantities(self, evaluation: Any) -> dict[str, Any]:
+        out = dict(evaluation.quantities())
+        # the model knows the work on the radial displacement only, not that of the spread forces
+        rest = self.nodal_forces(evaluation)
+        rest[:, :2] -= evaluation.bore_load.reshape(-1, 2)
+        out["power_loss"] -= float(np.sum(rest * (self.drift @ self.sides[0].frame[:, :3])))
+        return out
+
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation: Any = trial.evaluation
         housing, journal = self.sides

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import pathlib
 from typing import TYPE_CHECKING, Any
 
 from exudyn_ehd.coupling.history import JointHistory
+from exudyn_ehd.coupling.revolutions import Revolutions
 from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.joint.fields import FilmFields, film_fields
@@ -63,6 +65,18 @@ class JointResults:
             model = build_model(dataclasses.replace(model.bearing, film=grid))
             model.evaluate(trial.motion)
         return film_fields(model, time)
+
+    def save(self, path: str | pathlib.Path) -> None:
+        """Write the history to a NumPy file (npz), whole or not at all; `load_history` reads it."""
+        self.history.save(path)
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write the history as text, with units in the first line."""
+        self.history.to_csv(path)
+
+    def revolutions(self, *, period: float | None = None) -> Revolutions:
+        """Table of the whole revolutions up to now; see `JointHistory.revolutions`."""
+        return self.history.revolutions(period=period)
 
     def plot_pressure(self, *, ax: Any = None, path: Any = None) -> Figure:
         """Unrolled map of the pressure at the last accepted state; see `FilmPictures.plot_pressure`."""

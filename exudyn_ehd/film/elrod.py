@@ -25,6 +25,7 @@ from numba import njit
 
 from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation import FilmSystem, SwiftStieber
+from exudyn_ehd.film.columns import ColumnFactor
 from exudyn_ehd.film.direct import PAD, Workspace, number_cells
 from exudyn_ehd.status import Status, require_number
 
@@ -121,6 +122,11 @@ class ElrodAdams:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         lower, upper = _lu_buffers(work)
         solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
+        """Factor of the transposed system of the last solution."""
+        lower, upper = _lu_buffers(work)
+        return ColumnFactor(upper, lower, work.inv_diag, False)
 
 
 def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:

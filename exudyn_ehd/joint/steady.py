@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.joint.audit import Audit, audit_states
 from exudyn_ehd.joint.audit_states import FilmState
@@ -21,6 +21,7 @@ from exudyn_ehd.status import FilmError, InputError, Status, require_number, req
 
 LARGEST_LOAD_STEPS = 100
 LARGEST_CREEP_STEPS = 300
+STEP_HALVINGS = 8
 LOAD_TOLERANCE = 1e-10
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
@@ -198,7 +199,7 @@ def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {evaluation.status.advice}"
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {advice(evaluation.status, model.bearing)}"
         )
     return evaluation.wrench
 
@@ -354,22 +355,20 @@ def _newton(
 ) -> tuple[int, float, np.ndarray]:
     """Newton's method from ``motion`` (changed in place): steps, unbalance over load, tangent at the end."""
     size = float(np.hypot(*force))
-    count, residual, tangent = 0, math.inf, np.zeros((6, 8))
+    count, residual = 0, math.inf
+    wrench = _evaluate(model, motion, "equilibrium")
+    tangent = model.steady_tangent()
     while count < LARGEST_LOAD_STEPS:
         count += 1
-        try:
-            unbalance = _evaluate(model, motion, "equilibrium")[:2] + force
-        except FilmError:  # a step into a position without a film; from the start it is raised again by `_creep`
-            return count, math.inf, tangent
-        tangent = model.steady_tangent()
+        unbalance = wrench[:2] + force
         residual = float(np.max(np.abs(unbalance))) / size
         if residual <= tolerance:
             break
         try:
-            step = np.linalg.solve(tangent[:2, :2], -unbalance)
-        except np.linalg.LinAlgError:  # a film that carries nothing
+            wrench = _move(model, motion, _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance)))
+        except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
             break
-        motion[:2] += _limited_step(model, motion, step)
+        tangent = model.steady_tangent()
     return count, residual, tangent
 
 
@@ -444,9 +443,22 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
+def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
+    motion[:2] += step
+    if hasattr(model, "bore"):
+        for _ in range(STEP_HALVINGS):
+            evaluation = model.evaluate_steady(motion, _history_at(model, motion, "equilibrium"))
+            if evaluation.status is Status.CONVERGED:
+                return evaluation.wrench
+            step = 0.5 * step
+            motion[:2] -= step
+    return _evaluate(model, motion, "equilibrium")
+
+
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.effects.contacts:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
+    if model.effects.contacts or hasattr(model, "bore"):
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

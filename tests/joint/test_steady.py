@@ -320,5 +320,5 @@ def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so(
         journal_radius=0.05, length=0.08, radial_clearance=150e-6, lubricant=ehd.Lubricant(viscosity=0.01),
         cavitation=ehd.ElrodAdams(), supply=(groove,), film=ehd.FiniteLength(n_theta=96, n_z=8),
     )  # fmt: skip
-    with pytest.raises(ehd.FilmError, match="no position found that carries 3000 N.*supply area"):
+    with pytest.raises(ehd.FilmError, match=r"no position found that carries 3000 N.*supply area"):
         ehd.equilibrium(bearing, speed=100.0 * np.pi, load=(0.0, -3000.0))
