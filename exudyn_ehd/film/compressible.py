@@ -25,6 +25,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
+from exudyn_ehd.film.columns import ColumnFactor
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.density_newton import (
     CLIPPED,
@@ -263,13 +264,23 @@ class CompressibleFilmSolver(FilmSolver):
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
         w, b = self.work, self.buffers
-        if not self.exact:
-            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), b)
-            self.exact = True
+        self._make_exact()
         solve_lu_transposed(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs)
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
         return fields
+
+    def adjoint_factor(self) -> ColumnFactor:
+        """Factor of the transposed Newton matrix at the solution."""
+        self._make_exact()
+        b = self.buffers
+        return ColumnFactor(b.upper, b.lower, b.inv_diag, False)
+
+    def _make_exact(self) -> None:
+        """Factor Newton's matrix at the solution, if the last one was before."""
+        if not self.exact:
+            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), self.buffers)
+            self.exact = True
 
     def _unknown_pressure(self) -> np.ndarray:
         return ~self.grid.fixed if self.kind == CLIPPED else self.work.active

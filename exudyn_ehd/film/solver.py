@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation import FilmSystem
+from exudyn_ehd.film.columns import ColumnFactor, solve_columns
 from exudyn_ehd.film.direct import Workspace
 from exudyn_ehd.film.flux import (
     FluxEffect,
@@ -60,6 +61,8 @@ class Closure(Protocol):
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor: ...
 
 
 @dataclass(eq=False)
@@ -262,6 +265,14 @@ class FilmSolver:
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
         return fields
+
+    def adjoint_factor(self) -> ColumnFactor:
+        """Factor of the transposed system of the last solution."""
+        return self.closure.adjoint_factor(self.work)
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        solve_columns(*self.adjoint_factor(), self.work.count, self.work.width, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.joint.audit import Audit, audit_states
 from exudyn_ehd.joint.audit_states import FilmState
@@ -20,6 +20,7 @@ from exudyn_ehd.pictures.methods import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
+STEP_HALVINGS = 8
 LOAD_TOLERANCE = 1e-10
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
@@ -197,7 +198,7 @@ def _evaluate(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray
         gap = evaluation.quantities().get("minimum_gap", math.nan)
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {evaluation.status.advice}"
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {advice(evaluation.status, model.bearing)}"
         )
     return evaluation.wrench
 
@@ -318,14 +319,15 @@ def equilibrium(
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
     residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
+    wrench = _evaluate(model, motion, "equilibrium")
     for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
-        wrench = _evaluate(model, motion, "equilibrium")
         unbalance = wrench[:2] + force
         tangent = model.steady_tangent()
         residual = float(np.max(np.abs(unbalance))) / size
         if residual < max(LOAD_TOLERANCE, rounding):
             break
-        motion[:2] += _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+        step = _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+        wrench = _move(model, motion, step)
     else:
         raise FilmError(
             f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
@@ -383,9 +385,22 @@ def _first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt:
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
+def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
+    motion[:2] += step
+    if hasattr(model, "bore"):
+        for _ in range(STEP_HALVINGS):
+            evaluation = model.evaluate_steady(motion, _history_at(model, motion, "equilibrium"))
+            if evaluation.status is Status.CONVERGED:
+                return evaluation.wrench
+            step = 0.5 * step
+            motion[:2] -= step
+    return _evaluate(model, motion, "equilibrium")
+
+
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall limits nothing."""
-    if model.effects.contacts:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
+    if model.effects.contacts or hasattr(model, "bore"):
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
