@@ -1,5 +1,7 @@
 """Every example runs headless in its quick mode and gives the figures that it is there to show."""
 
+import math
+
 import pytest
 
 
@@ -159,3 +161,20 @@ def test_four_bar_spatial(example, tmp_path):
     assert elastic["right_minimum_gap_um"] < 0.65 * parallel["right_minimum_gap_um"]
     assert elastic["right_peak_pressure_MPa"] > 1.1 * parallel["right_peak_pressure_MPa"]
     assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
+
+
+def test_hydrostatic_or_grooved(example, tmp_path):
+    rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)
+    assert (tmp_path / "hydrostatic_or_grooved.png").stat().st_size > 10_000
+    # another finite-volume code on the same case and grid
+    assert max(abs(value) for key, value in rows.items() if "off the other code" in key) < 5e-3
+    # only the mass-conserving film gives back what it takes
+    assert rows["Elrod-Adams: oil out of nothing, share of the leakage"] < 1e-9
+    for closure in ("Gumbel", "Swift-Stieber"):
+        assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
+        # and only it notices that a groove under the load starves the film
+        assert 20 < rows[f"{closure}: smallest film, groove under the load [um]"] < 30
+    assert math.isnan(rows["Elrod-Adams: smallest film, groove under the load [um]"])
+    # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
+    assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
+    assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60
