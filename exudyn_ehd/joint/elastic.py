@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -39,6 +40,12 @@ class ElasticEvaluation(Evaluation):
     """
 
     bore_load: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+
+    def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
+        """As `ElasticBearingModel.combined_tangent`; RuntimeError if the model has evaluated another state since."""
+        self._require_current()
+        model: Any = self._model
+        return model.combined_tangent(by_place, by_rate)
 
 
 class BoreTerm:
@@ -134,8 +141,8 @@ class ElasticBearingModel(BearingModel):
         c = self.bearing.radial_clearance
         self.coordinates = self.motion[MOTION_SIZE : MOTION_SIZE + k]
         self.rates = self.motion[MOTION_SIZE + k :]
-        self.term.displacement = self.bore.displacement(self.coordinates) / c
-        self.term.rate = self.bore.displacement(self.rates) / c
+        place, rate = self.bore.displacements(self.coordinates, self.rates)
+        self.term.displacement, self.term.rate = place / c, rate / c
 
     def _add_gap_terms(self, history: History | None) -> None:
         super()._add_gap_terms(history)
@@ -166,7 +173,7 @@ class ElasticBearingModel(BearingModel):
         if base.status is not Status.CONVERGED:
             self.bore_load = np.full(self.bore.size, np.nan)
         return ElasticEvaluation(
-            **{f.name: getattr(base, f.name) for f in dataclasses.fields(base)}, bore_load=self.bore_load
+            base.status, base.motion, base.wrench, base.iterations, base._model, base._serial, self.bore_load
         )
 
     def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> ElasticEvaluation:
@@ -178,7 +185,14 @@ class ElasticBearingModel(BearingModel):
         if self.status is not Status.CONVERGED:
             k = self.bore.size
             return np.full((6 + k, MOTION_SIZE + 2 * k), np.nan)
-        return elastic_tangent(self)
+        return elastic_tangent(self, (1.0, 0.0), (0.0, 1.0))
+
+    def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
+        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k): what an integrator needs."""
+        if self.status is not Status.CONVERGED:
+            k = self.bore.size
+            return np.full((6 + k, MOTION_SIZE + k), np.nan)
+        return elastic_tangent(self, (by_place, by_rate))
 
     def bore_fields(self) -> dict[str, np.ndarray]:
         """Displacement (n, m) and coordinates (k,) of the bore, m."""

@@ -185,3 +185,20 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
 def test_wrong_bushes_are_named(bush, message):
     with pytest.raises(ehd.InputError, match=message):
         make_bearing(bush)
+
+
+def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
+    """A rigid bore's clearance is no limit for a journal on a soft bush."""
+    mesh = ehd.HollowCylinder(inner_radius=0.025, thickness=0.01, length=0.025, axial=2, radial=2, circumferential=16)
+    soft = ehd.ModalBush(
+        mesh=mesh, tolerance=0.2, tilted=False,
+        material=ehd.SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=1000.0),
+    )  # fmt: skip
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025, length=0.025, radial_clearance=5e-5, lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=6), bush=soft,
+    )  # fmt: skip
+    eq = ehd.equilibrium(bearing, speed=300.0, load=(0.0, -20.0))
+    assert eq.eccentricity_ratio > 1.2
+    assert eq.film.minimum_gap > 0.0
+    assert np.allclose(eq.film.force[:2], (0.0, 20.0), atol=1e-8 * 20.0)
