@@ -8,7 +8,8 @@ study       scene + ladder + references -> table; repeated in turns, or in paral
 table       the table: text, CSV
 front       Pareto front, cheapest setting within an error, whether an order of times is kept
 steady      scenes: a journal at a prescribed position
-planar      scenes: journals that move in an Exudyn model
+moving      scenes: journals that move in an Exudyn model
+mechanisms  the Exudyn models of these scenes
 ladders     which settings stand on a ladder
 catalogue   all studies
 pictures    work-precision diagrams, one-page summary
