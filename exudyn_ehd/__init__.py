@@ -8,7 +8,11 @@ joint     one bearing as a pure function of its motion; `steady`, `equilibrium`,
 pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
+<<<<<<< HEAD
+studies   many runs: `parameter_study`
+=======
 studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
+>>>>>>> main
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -81,6 +85,10 @@ _LAZY = {
     "SurfaceLoad": "solid.loads",
     "mesh_from_arrays": "solid.mesh",
     "mesh_from_fem": "solid.mesh",
+    "EquilibriumPoint": "studies.parameters",
+    "StudyTable": "studies.parameters",
+    "parameter_study": "studies.parameters",
+    "varied": "studies.parameters",
 }
 
 
@@ -112,6 +120,7 @@ __all__ = [
     "EdgeRelief",
     "ElasticLiner",
     "ElrodAdams",
+    "EquilibriumPoint",
     "EquilibriumResult",
     "FactorReuse",
     "FilmEnergy",
@@ -158,6 +167,7 @@ __all__ = [
     "Status",
     "SteadyResult",
     "StribeckResult",
+    "StudyTable",
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
@@ -169,8 +179,10 @@ __all__ = [
     "mesh_from_arrays",
     "mesh_from_fem",
     "oil",
+    "parameter_study",
     "slider_grid",
     "solve_film",
     "steady",
     "stribeck",
+    "varied",
 ]

@@ -42,3 +42,64 @@ def test_elastic_big_end(example, tmp_path):
     assert abs(elastic["largest_force_kN"] / rigid["largest_force_kN"] - 1) < 0.01
     assert elastic["peak_MPa"] < 0.95 * rigid["peak_MPa"]
     assert abs(elastic["iterations_per_step"] - rigid["iterations_per_step"]) < 2
+
+
+def test_engine_big_end(example, tmp_path):
+    rows = example("engine_big_end").main(quick=True, output=tmp_path)
+    assert (tmp_path / "engine_big_end.png").stat().st_size > 10_000
+    short, finite, gumbel, balance, elastic = (
+        rows[name] for name in ("short", "finite", "Gumbel", "oil balance", "elastic")
+    )
+    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its smallest film
+    assert short["largest_distance_to_reference_orbit"] < 0.003
+    assert short["minimum_film_um"] == pytest.approx(6.448, abs=0.01)
+    # a short bearing is too stiff at L / D = 0.4, by 18 % in the smallest film; clipping makes it thinner, cavities that
+    # have to be refilled much more so
+    assert finite["minimum_film_um"] == pytest.approx(5.29, abs=0.03)
+    assert balance["minimum_film_um"] < gumbel["minimum_film_um"] < finite["minimum_film_um"] < short["minimum_film_um"]
+    # 5 MPa hardly deform a steel bush
+    assert elastic["peak_pressure_MPa"] == pytest.approx(finite["peak_pressure_MPa"], rel=0.03)
+    assert all(row["iterations_per_step"] < 3 for row in rows.values())
+
+
+def test_upgrade_existing_model(example, tmp_path):
+    upgrade = example("upgrade_existing_model")
+    rows = upgrade.main(quick=True, output=tmp_path)
+    assert (tmp_path / "upgrade_existing_model.png").stat().st_size > 10_000
+    # two lines go, and nothing else of the model
+    removed = [line for line in upgrade.difference().splitlines()[2:] if line.startswith("-")]
+    assert len(removed) == 2 and all("CreateRevoluteJoint" in line for line in removed)
+    # the films take what the mechanism lacks: steps of 1 ms, second order
+    assert rows["energy_missing_J"] == pytest.approx(rows["energy_lost_in_films_J"], rel=0.01)
+    assert abs(rows["energy_drift_before_J"]) < 0.01 * rows["energy_missing_J"]
+    # the pins' clearance and tilt (2 c / L over a metre: 0.6 mm) and the brake leave the motion recognisable
+    assert 1e-3 < rows["tip_distance_at_0.3_s_mm"] < 1.2
+    # Petroff at 5 rad/s: 2 pi mu R^3 L omega / c = 0.35 N m; an eccentric pin brakes more, not by an order
+    assert 0.1 < rows["shoulder_largest_friction_torque_Nm"] < 1.0
+
+
+def test_elastic_slider_crank(example, tmp_path):
+    rows = example("elastic_slider_crank").main(quick=True, output=tmp_path)
+    assert (tmp_path / "elastic_slider_crank.png").stat().st_size > 10_000
+    ideal, bent, rigid, elastic = (
+        rows[name]
+        for name in ("ideal pins, rigid rod", "ideal pins, elastic rod", "oil, rigid rod", "oil, elastic rod")
+    )
+    assert ideal["slider_position_um"] == 0.0
+    # with ideal pins the slider leaves the rigid mechanism's path by the rod's stretch (its bow shortens the chord by 0.1 um)
+    theory = rows["beam theory on this mesh"]
+    assert bent["slider_position_um"] == pytest.approx(theory["rod_stretch_um"], rel=0.01)
+    for row in (bent, elastic):
+        assert row["rod_stretch_um"] == pytest.approx(theory["rod_stretch_um"], rel=0.01)
+        # 3 %: quasi-static theory against a first bending frequency of 19 times the crank's, and what is left of the start-up
+        assert row["rod_deflection_um"] == pytest.approx(theory["rod_deflection_um"], rel=0.03)
+    # with oil it leaves it by the eccentricities of both pins at most, along a rod inclined by up to 24.6 degrees, with the
+    # elastic rod by the stretch too
+    eccentricity = 20 * sum(rigid[f"{pin}_eccentricity_ratio"] for pin in ("crank_pin", "gudgeon_pin")) / 0.909
+    assert 20 < rigid["slider_position_um"] < eccentricity
+    assert rigid["slider_position_um"] + 3 < elastic["slider_position_um"] < eccentricity + bent["slider_position_um"]
+    # the mechanism's inertia sets the forces, 0.14 w^2 (r + r^2 / l) on the gudgeon pin at the dead centre: films stay
+    assert rigid["gudgeon_pin_force_N"] == pytest.approx(0.14 * 523.6**2 * 0.05 * (1 + 0.05 / 0.12), rel=2e-3)
+    for pin in ("crank_pin", "gudgeon_pin"):
+        assert elastic[f"{pin}_force_N"] == pytest.approx(rigid[f"{pin}_force_N"], rel=3e-3)
+        assert elastic[f"{pin}_minimum_gap_um"] == pytest.approx(rigid[f"{pin}_minimum_gap_um"], rel=0.08)

@@ -167,7 +167,7 @@ def CreateLubricatedJoint(
     mbs : exudyn.MainSystem
         The system, before Assemble.
     name : str
-        Name of the joint, used in messages too.
+        Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
         Housing, journal: each a rigid body or ground (ObjectIndex), a rigid-body node (NodeIndex) or a rigid marker
         (MarkerIndex).
@@ -213,6 +213,7 @@ def CreateLubricatedJoint(
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     if mbs.systemIsConsistent:
         raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
+    name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
     housing, journal = _resolve_pair(mbs, itemNumbers)
     rotation = _joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = _joint_points(housing, journal, position, useGlobalFrame)

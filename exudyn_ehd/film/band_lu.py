@@ -9,15 +9,79 @@ After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
 from numba import njit
 
 PAD = 4
+# Rows longer than this are worth vector instructions.
+WIDEST_BY_DOTS = 32
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# Without leave to reassociate short dot products are not turned into gathers, which are slower.
+_KEEP_ORDER = {"contract", "nsz", "arcp"}
+_unsigned: Any = np.uint64
+_0, _1, _2, _3, _4 = (_unsigned(k) for k in range(5))
+
+
+@njit(cache=True)
+def factor_lu(lower, upper, count, width, inv_diag_out):
+    """Factor in place; returns False if a pivot vanishes."""
+    if width > WIDEST_BY_DOTS:
+        return _factor_blocked(lower, upper, count, width, inv_diag_out)
+    return _factor_by_dots(lower, upper, count, width, inv_diag_out)
+
+
+@njit(cache=True, fastmath=_KEEP_ORDER)
+def _factor_by_dots(lower, upper, count, width, inv_diag_out):
+    """Crout's order: a row of U and a column of L at a time, four entries of each as dot products that stay in registers.
+
+    Flat unsigned indices spare the slices and sign checks that would outweigh the arithmetic of short rows.
+    """
+    up = upper.reshape(-1)
+    low = lower.reshape(-1)
+    stride = _unsigned(upper.shape[1])
+    along = stride - _1
+    w = _unsigned(width)
+    inverse = 1.0
+    for r in range(_unsigned(count)):
+        row = r * stride
+        first = _0
+        while first <= w:
+            reach = min(w - first, r)
+            column = (r - reach) * stride + reach
+            target = column + first
+            place = row + first
+            u0, u1, u2, u3 = up[place], up[place + _1], up[place + _2], up[place + _3]
+            l0, l1, l2, l3 = low[place], low[place + _1], low[place + _2], low[place + _3]
+            for _ in range(reach):
+                a = low[column]
+                b = up[column]
+                u0 -= a * up[target]
+                u1 -= a * up[target + _1]
+                u2 -= a * up[target + _2]
+                u3 -= a * up[target + _3]
+                l0 -= b * low[target]
+                l1 -= b * low[target + _1]
+                l2 -= b * low[target + _2]
+                l3 -= b * low[target + _3]
+                column += along
+                target += along
+            if first == _0:
+                if not abs(u0) > 1e-300:
+                    return False
+                inverse = 1.0 / u0
+                inv_diag_out[r] = inverse
+            up[place], up[place + _1], up[place + _2], up[place + _3] = u0, u1, u2, u3
+            low[place], low[place + _1] = l0 * inverse, l1 * inverse
+            low[place + _2], low[place + _3] = l2 * inverse, l3 * inverse
+            first += _4
+    return True
 
 
 @njit(cache=True, fastmath=_FAST)
-def factor_lu(lower, upper, count, width, inv_diag_out):
-    """Factor in place, four pivots at a time; returns False if a pivot vanishes."""
+def _factor_blocked(lower, upper, count, width, inv_diag_out):
+    """Four pivots at a time, each row behind them once: long rows that the compiler vectorises."""
     k = 0
     while k < count:
         block = min(4, count - k)
@@ -84,66 +148,89 @@ def factor_lu(lower, upper, count, width, inv_diag_out):
     return True
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_KEEP_ORDER)
 def _forward_backward(column_form, row_form, unit_forward, inv_diag, count, width, x):
     """Forward with columns ``column_form`` (unit if unit_forward), backward with rows ``row_form``, in place."""
-    for k in range(count):
-        if not unit_forward:
-            x[k] *= inv_diag[k]
-        c = x[k]
-        col = column_form[k]
-        reach = min(width, count - 1 - k)
-        for d in range(1, reach + 1):
-            x[k + d] -= c * col[d]
-    for k in range(count - 1, -1, -1):
-        row = row_form[k]
-        reach = min(width, count - 1 - k)
-        s = 0.0
-        for d in range(1, reach + 1):
-            s += row[d] * x[k + d]
-        x[k] -= s
-        if unit_forward:
-            x[k] *= inv_diag[k]
+    col = column_form.reshape(-1)
+    row = row_form.reshape(-1)
+    stride = _unsigned(column_form.shape[1])
+    along = stride - _1
+    w = _unsigned(width)
+    size = _unsigned(count)
+    for r in range(size):
+        reach = min(w, r)
+        k = r - reach
+        at = k * stride + reach
+        s0 = x[r]
+        s1 = 0.0
+        for _ in range(reach >> _1):
+            s1 -= col[at] * x[k]
+            s0 -= col[at + along] * x[k + _1]
+            at += along + along
+            k += _2
+        if reach & _1:
+            s0 -= col[at] * x[k]
+        s0 += s1
+        x[r] = s0 if unit_forward else s0 * inv_diag[r]
+    for q in range(size):
+        r = size - _1 - q
+        reach = min(w, q)
+        k = r + reach
+        at = r * stride + reach
+        s0 = x[r]
+        s1 = 0.0
+        for _ in range(reach >> _1):
+            s1 -= row[at] * x[k]
+            s0 -= row[at - _1] * x[k - _1]
+            at -= _2
+            k -= _2
+        if reach & _1:
+            s0 -= row[at] * x[k]
+        s0 += s1
+        x[r] = s0 * inv_diag[r] if unit_forward else s0
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_KEEP_ORDER)
 def _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count, width, x):
     """As `_forward_backward` for four right-hand sides x (4, count) at once."""
+    col = column_form.reshape(-1)
+    row = row_form.reshape(-1)
+    stride = _unsigned(column_form.shape[1])
+    along = stride - _1
+    w = _unsigned(width)
+    size = _unsigned(count)
     x0, x1, x2, x3 = x[0], x[1], x[2], x[3]
-    for k in range(count):
-        if not unit_forward:
-            inverse = inv_diag[k]
-            x0[k] *= inverse
-            x1[k] *= inverse
-            x2[k] *= inverse
-            x3[k] *= inverse
-        c0, c1, c2, c3 = x0[k], x1[k], x2[k], x3[k]
-        col = column_form[k]
-        reach = min(width, count - 1 - k)
-        for d in range(1, reach + 1):
-            u = col[d]
-            x0[k + d] -= c0 * u
-            x1[k + d] -= c1 * u
-            x2[k + d] -= c2 * u
-            x3[k + d] -= c3 * u
-    for k in range(count - 1, -1, -1):
-        row = row_form[k]
-        reach = min(width, count - 1 - k)
-        s0 = 0.0
-        s1 = 0.0
-        s2 = 0.0
-        s3 = 0.0
-        for d in range(1, reach + 1):
-            u = row[d]
-            s0 += u * x0[k + d]
-            s1 += u * x1[k + d]
-            s2 += u * x2[k + d]
-            s3 += u * x3[k + d]
-        inverse = inv_diag[k] if unit_forward else 1.0
-        x0[k] = (x0[k] - s0) * inverse
-        x1[k] = (x1[k] - s1) * inverse
-        x2[k] = (x2[k] - s2) * inverse
-        x3[k] = (x3[k] - s3) * inverse
+    for r in range(size):
+        reach = min(w, r)
+        k = r - reach
+        at = k * stride + reach
+        s0, s1, s2, s3 = x0[r], x1[r], x2[r], x3[r]
+        for _ in range(reach):
+            f = col[at]
+            s0 -= f * x0[k]
+            s1 -= f * x1[k]
+            s2 -= f * x2[k]
+            s3 -= f * x3[k]
+            at += along
+            k += _1
+        inverse = 1.0 if unit_forward else inv_diag[r]
+        x0[r], x1[r], x2[r], x3[r] = s0 * inverse, s1 * inverse, s2 * inverse, s3 * inverse
+    for q in range(size):
+        r = size - _1 - q
+        reach = min(w, q)
+        k = r + reach
+        at = r * stride + reach
+        s0, s1, s2, s3 = x0[r], x1[r], x2[r], x3[r]
+        for _ in range(reach):
+            f = row[at]
+            s0 -= f * x0[k]
+            s1 -= f * x1[k]
+            s2 -= f * x2[k]
+            s3 -= f * x3[k]
+            at -= _1
+            k -= _1
+        inverse = inv_diag[r] if unit_forward else 1.0
+        x0[r], x1[r], x2[r], x3[r] = s0 * inverse, s1 * inverse, s2 * inverse, s3 * inverse
 
 
 @njit(cache=True)

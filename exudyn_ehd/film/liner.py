@@ -33,20 +33,23 @@ import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
 from exudyn_ehd.film.elrod import _lu_buffers
-from exudyn_ehd.film.flux import LinkFlux, conductances_from, couette_fluxes_from, plain_flux
+from exudyn_ehd.film.flux import LinkFlux, plain_flux
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.liner_newton import (
     CLIPPED,
     COMPLEMENTARY,
     FULL,
     add_bending,
-    deform,
+    deformed_film,
     ends_open,
     factor_liner,
+    liner_link_derivatives,
     solve_liner,
 )
-from exudyn_ehd.film.reynolds import right_hand_side
-from exudyn_ehd.film.solver import Closure, FilmSolver
+from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.reynolds import add_squeeze
+from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.sweep import LinkDerivatives
 from exudyn_ehd.status import InputError, Status, require_number
 
 # Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
@@ -106,8 +109,6 @@ class LinerFilmSolver(FilmSolver):
         Scaled deflection at the start of the step, set by the caller before ``solve``; None: steady.
     """
 
-    plain_links = False
-
     def __init__(self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True) -> None:
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None
@@ -121,9 +122,9 @@ class LinerFilmSolver(FilmSolver):
         self.none = np.zeros(shape)
         self.residual = np.zeros(shape)
         self.trial = np.zeros(shape)
-        self.derivatives = np.zeros((4, *shape))
         self.inverse = 0.0
         self.exact = False
+        self.held = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -222,9 +223,10 @@ class LinerFilmSolver(FilmSolver):
         lower, upper = _lu_buffers(w)
         ok, steps, self.exact, w.count, w.width = solve_liner(
             self.rigid, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
-            self.kind, self.beta, inverse, delta_old, not w.warm, w.active, w.order, w.number, self.derivatives, lower,
-            upper, w.inv_diag, w.unknowns, self.residual, self.trial, P,
+            self.kind, self.beta, inverse, delta_old, not w.warm, self.held and w.warm, w.count, w.width, w.active, w.order,
+            w.number, lower, upper, w.inv_diag, w.unknowns, self.residual, self.trial, P,
         )  # fmt: skip
+        self.held = ok
         return ok, steps
 
     def _pseudo_transient(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
@@ -259,18 +261,21 @@ class LinerFilmSolver(FilmSolver):
         if self.kind == CLIPPED:
             np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=w.active)
-        deform(self.rigid[0], self.rigid[1], s.pressure, self.beta, self.H, self.HF)
-        if self.squeeze and inverse > 0.0:
-            self.H_t += (self.beta * s.pressure - delta_old) * inverse
-        f = self.flux
-        assert f is not None
-        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
-        add_bending(s.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
-        conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-        couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
-        right_hand_side(s.fx, s.fz, s.b)
+        deformed_film(
+            self.rigid, s.pressure, self.beta, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.H, self.HF,
+            s.kx, s.kz, s.fx, s.fz, s.b,
+        )  # fmt: skip
         if self.squeeze:
-            s.b -= self.H_t * self.area
+            if inverse > 0.0:
+                self.H_t += (self.beta * s.pressure - delta_old) * inverse
+            add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
+
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        self.held = False
+        if self.coarse_liner is not None:
+            self.coarse_liner.grid.fixed[:] = self.grid.fixed[::2, ::2]
+            self.coarse_liner.refresh_fixed()
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
@@ -280,11 +285,27 @@ class LinerFilmSolver(FilmSolver):
             active = ~g.fixed if self.kind == CLIPPED else w.active
             factor_liner(
                 self.rigid, s.linear_pressure, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed,
-                s.cavity_pressure, self.kind, self.beta, self.inverse, active, w.order, w.number, self.derivatives, lower,
-                upper, w.inv_diag,
+                s.cavity_pressure, self.kind, self.beta, self.inverse, active, w.order, w.number, lower, upper, w.inv_diag,
             )  # fmt: skip
             self.exact = True
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
-        fields = np.zeros((rhs.shape[0], self.H.size))
-        fields[:, w.order[: w.count]] = rhs
-        return fields.reshape(rhs.shape[0], *self.grid.shape)
+        fields = np.empty((rhs.shape[0], *g.shape))
+        scatter(rhs, w.order, w.count, fields)
+        return fields
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' flows with respect to their gaps and the speeds, at fixed pressure."""
+        g, s, d = self.grid, self.system, self.link_fields
+        liner_link_derivatives(
+            s.linear_pressure, s.pressure, self.H, self.HF, self.beta, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+            g.link_z, d.DX, d.DZ, d.SX, d.SZ,
+        )  # fmt: skip
+        return d
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m)."""
+        f = self.flux
+        assert f is not None
+        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
+        add_bending(self.system.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
+        return super().sensitivities(lam)

@@ -17,6 +17,8 @@ MAX_NEWTON_STEPS = 80
 # Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
 ERROR_TOLERANCE = 1e-13
 STEP_TOLERANCE = 1e-8
+# A factor from so near counts as that of the solution.
+EXACT_STEP = 1e-7
 FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -36,15 +38,69 @@ def ends_open(rigid, P, beta, fixed):
     return True
 
 
-@njit(cache=True)
-def deform(H0, HF0, P, beta, H_out, HF_out):
-    """Gaps on a liner that gives way by ``beta P``."""
-    n, m = H0.shape
+@njit(cache=True, fastmath=_FAST)
+def deformed_film(
+    rigid, P, beta, vx, vz, width_x, width_z, link_x, link_z, H_out, HF_out, kx_out, kz_out, fx_out, fz_out, b_out
+):  # fmt: skip
+    """Gaps on a liner that gives way by ``beta P``, and the coefficients of the film in them without its squeeze."""
+    n, m = P.shape
+    b_out[:] = 0.0
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
         for j in range(m):
-            H_out[i, j] = H0[i, j] + beta * P[i, j]
-            HF_out[i, j] = HF0[i, j] + 0.5 * beta * (P[i, j] + P[nxt, j])
+            H_out[i, j] = rigid[0, i, j] + beta * P[i, j]
+            h = rigid[1, i, j] + 0.5 * beta * (P[i, j] + P[nxt, j])
+            d = 0.5 * beta * (P[nxt, j] - P[i, j])
+            HF_out[i, j] = h
+            kx_out[i, j] = h * (h * h + d * d) * lx * width_z[j]
+            flux = v * h * width_z[j]
+            fx_out[i, j] = flux
+            b_out[i, j] -= flux
+            b_out[nxt, j] += flux
+        for j in range(m - 1):
+            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (P[i, j] + P[i, j + 1]))
+            d = 0.5 * beta * (P[i, j + 1] - P[i, j])
+            kz_out[i, j] = h * (h * h + d * d) * link_z[j] * width_x[i]
+            flux = vz * h * width_x[i]
+            fz_out[i, j] = flux
+            b_out[i, j] -= flux
+            b_out[i, j + 1] += flux
+        kz_out[i, m - 1] = 0.0
+        fz_out[i, m - 1] = 0.0
+
+
+@njit(cache=True, fastmath=_FAST)
+def liner_link_derivatives(P, D, H, HF, beta, vx, vz, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ):
+    """Derivatives of the links' flows with respect to their gaps and the speeds, at fixed pressure, as `sweep.LinkDerivatives`.
+
+    ``P`` drives the flow, ``D`` bends the liner.
+    """
+    n, m = H.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            h = HF[i, j]
+            d = 0.5 * beta * (D[nxt, j] - D[i, j])
+            DX[i, j] = (linked * vx - (3.0 * h * h + d * d) * link_x[i] * (P[nxt, j] - P[i, j])) * width_z[j]
+            SX[i, j] = linked * h * width_z[j]
+        for j in range(m - 1):
+            h = 0.5 * (H[i, j] + H[i, j + 1])
+            d = 0.5 * beta * (D[i, j + 1] - D[i, j])
+            DZ[i, j] = (vz - (3.0 * h * h + d * d) * link_z[j] * (P[i, j + 1] - P[i, j])) * width_x[i]
+            SZ[i, j] = h * width_x[i]
+
+
+@njit(cache=True)
+def liner_shear_rhs(order, count, weight, H, active, beta, rhs_out):
+    """Derivative of ``sum weight / H`` through the liner's answer to the pressure at the unknowns: rhs_out (count,)."""
+    m = H.shape[1]
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        rhs_out[r] = -weight[i, j] * beta / (H[i, j] * H[i, j]) if active[i, j] else 0.0
 
 
 @njit(cache=True)
@@ -113,89 +169,84 @@ def liner_residual(
     return np.sqrt(total), smallest
 
 
-@njit(cache=True, fastmath=_FAST)
-def flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, out):
-    """Derivatives of the links' fluxes a -> b: out (4, n, m) = theta by P_a, theta by P_b, z by P_a, z by P_b."""
-    n, m = P.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        lx = link_x[i]
-        v = vx if lx != 0.0 else 0.0
-        for j in range(m):
-            pa = P[i, j]
-            pb = P[nxt, j]
-            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
-            db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
-            h = rigid[1, i, j] + 0.5 * beta * (da + db)
-            d = 0.5 * beta * (db - da)
-            drop = lx * (pb - pa)
-            k = width_z[j] * h * (h * h + d * d) * lx
-            by_h = 0.5 * width_z[j] * beta * (v - (3.0 * h * h + d * d) * drop)
-            by_d = width_z[j] * beta * h * d * drop
-            out[0, i, j] = k + (by_h + by_d if da == pa else 0.0)
-            out[1, i, j] = -k + (by_h - by_d if db == pb else 0.0)
-        for j in range(m - 1):
-            pa = P[i, j]
-            pb = P[i, j + 1]
-            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
-            db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
-            h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
-            d = 0.5 * beta * (db - da)
-            drop = link_z[j] * (pb - pa)
-            k = width_x[i] * h * (h * h + d * d) * link_z[j]
-            by_h = 0.5 * width_x[i] * beta * (vz - (3.0 * h * h + d * d) * drop)
-            by_d = width_x[i] * beta * h * d * drop
-            out[2, i, j] = k + (by_h + by_d if da == pa else 0.0)
-            out[3, i, j] = -k + (by_h - by_d if db == pb else 0.0)
+@njit(cache=True)
+def _add_link(a, b, out_a, out_b, lower, upper):
+    """Derivatives ``out_a``, ``out_b`` of the flux a -> b to the pressures of its ends; a, b are unknowns or -1."""
+    if a >= 0:
+        upper[a, 0] += out_a
+        if b > a:
+            upper[a, b - a] += out_b
+            lower[a, b - a] -= out_a
+        elif b >= 0:
+            lower[b, a - b] += out_b
+            upper[b, a - b] -= out_a
+    if b >= 0:
+        upper[b, 0] -= out_b
 
 
 @njit(cache=True)
 def assemble_liner(
-    derivatives, P, pc, kind, storage, width_x, width_z, number, order, count, width, lower, upper
+    rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width, lower,
+    upper,
 ):  # fmt: skip
-    """d(balance)/dP of the numbered vertices into the two bands; ``storage`` = beta / dt."""
+    """d(balance)/dP of the numbered vertices into the two bands."""
     n, m = P.shape
     for r in range(count):
         for d in range(width + 1 + PAD):
             lower[r, d] = 0.0
             upper[r, d] = 0.0
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        prv = i - 1 if i > 0 else n - 1
+    storage = beta * inverse_step
+    for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
-        diagonal = derivatives[0, i, j] - derivatives[1, prv, j]
-        if storage != 0.0 and (kind != CLIPPED or P[i, j] > pc):
-            diagonal += storage * width_x[i] * width_z[j]
-        if j > 0:
-            diagonal -= derivatives[3, i, j - 1]
-        if j + 1 < m:
-            diagonal += derivatives[2, i, j]
+        lx = link_x[i]
+        v = vx if lx != 0.0 else 0.0
+        for j in range(m):
+            a = number[i, j]
+            b = number[nxt, j]
+            pa = P[i, j]
+            da = pa if (kind != CLIPPED or fixed[i, j]) else max(pa, pc)
+            if a >= 0 and storage != 0.0 and da == pa:
+                upper[a, 0] += storage * width_x[i] * width_z[j]
+            if (a >= 0 or b >= 0) and lx != 0.0:
+                pb = P[nxt, j]
+                db = pb if (kind != CLIPPED or fixed[nxt, j]) else max(pb, pc)
+                h = rigid[1, i, j] + 0.5 * beta * (da + db)
+                d = 0.5 * beta * (db - da)
+                drop = lx * (pb - pa)
+                k = width_z[j] * h * (h * h + d * d) * lx
+                by_h = 0.5 * width_z[j] * beta * (v - (3.0 * h * h + d * d) * drop)
+                by_d = width_z[j] * beta * h * d * drop
+                _add_link(
+                    a, b, k + (by_h + by_d if da == pa else 0.0), -k + (by_h - by_d if db == pb else 0.0), lower, upper
+                )
+            if j + 1 == m:
+                continue
             b = number[i, j + 1]
-            if b >= 0:
-                upper[r, b - r] += derivatives[3, i, j]
-                lower[r, b - r] -= derivatives[2, i, j]
-        upper[r, 0] += diagonal
-        b = number[nxt, j]
-        if b > r:
-            upper[r, b - r] += derivatives[1, i, j]
-            lower[r, b - r] -= derivatives[0, i, j]
-        elif b >= 0:
-            lower[b, r - b] += derivatives[1, i, j]
-            upper[b, r - b] -= derivatives[0, i, j]
+            if a >= 0 or b >= 0:
+                pb = P[i, j + 1]
+                db = pb if (kind != CLIPPED or fixed[i, j + 1]) else max(pb, pc)
+                h = 0.5 * (rigid[0, i, j] + rigid[0, i, j + 1] + beta * (da + db))
+                d = 0.5 * beta * (db - da)
+                drop = link_z[j] * (pb - pa)
+                k = width_x[i] * h * (h * h + d * d) * link_z[j]
+                by_h = 0.5 * width_x[i] * beta * (vz - (3.0 * h * h + d * d) * drop)
+                by_d = width_x[i] * beta * h * d * drop
+                _add_link(
+                    a, b, k + (by_h + by_d if da == pa else 0.0), -k + (by_h - by_d if db == pb else 0.0), lower, upper
+                )
 
 
 @njit(cache=True)
 def factor_liner(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
-    active, order, number, derivatives, lower, upper, inv_diag,
+    active, order, number, lower, upper, inv_diag,
 ):  # fmt: skip
     """Newton's matrix at P, factored; returns (ok, count, width)."""
     count, width = number_cells(active, links, order, number)
-    flux_derivatives(rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, derivatives)
     assemble_liner(
-        derivatives, P, pc, kind, beta * inverse_step, width_x, width_z, number, order, count, width, lower, upper
-    )
+        rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width,
+        lower, upper,
+    )  # fmt: skip
     return factor_lu(lower, upper, count, width, inv_diag), count, width
 
 
@@ -243,12 +294,12 @@ def _take(P, x, share, order, count, pc, kind, trial_out):
 @njit(cache=True)
 def solve_liner(
     rigid, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step, delta_old,
-    cold, active, order, number, derivatives, lower, upper, inv_diag, x, r, trial, P,
+    cold, held, count, width, active, order, number, lower, upper, inv_diag, x, r, trial, P,
 ):  # fmt: skip
     """Newton from P, ``cold`` from all free vertices; returns (ok, steps, exact, count, width).
 
-    A factor serves further steps as long as the set stays and each step is five times smaller than the last; ``exact`` says that
-    the last factor belongs to the solution.
+    A factor serves further steps as long as the set stays and each step is five times smaller than the last; the first step takes
+    that of the last film (``count``, ``width``) if there is one (``held``). ``exact`` says that the last factor belongs to the solution.
     """
     n, m = P.shape
     if kind == COMPLEMENTARY:
@@ -264,23 +315,23 @@ def solve_liner(
     if cold:
         # Vertices leave all at once but join one row per step: start from all of them.
         active[:] = np.logical_not(fixed)
-    else:
+    elif not held:
         _select(P, r, fixed, pc, kind, active)
     reference = pc if kind != FULL else 0.0
-    count, width = 0, 1
-    last = 0.0
-    factored = False
+    last = moved = 0.0
+    factored = held
     for step in range(MAX_NEWTON_STEPS):
         fresh = not factored
         if fresh:
             ok, count, width = factor_liner(
                 rigid, P, vx, vz, width_x, width_z, link_x, link_z, links, fixed, pc, kind, beta, inverse_step,
-                active, order, number, derivatives, lower, upper, inv_diag,
+                active, order, number, lower, upper, inv_diag,
             )  # fmt: skip
             if not ok:
                 return False, step + 1, False, count, width
             if count == 0 or norm == 0.0:
                 return True, step + 1, True, count, width
+            moved = 0.0
         peak = 0.0
         for k in range(count):
             i = order[k] // m
@@ -293,42 +344,39 @@ def solve_liner(
             largest = max(largest, abs(x[k]))
         if not largest < 1e300:
             return False, step + 1, False, count, width
-        if not fresh and largest > 0.2 * last:
+        borrowed = held and step == 0
+        standing = largest <= ERROR_TOLERANCE * peak
+        if not fresh and not borrowed and not standing and largest > 0.2 * last:
             factored = False
             continue
         share = _longest_step(rigid[0], P, order, count, x, beta) if kind != CLIPPED else 1.0
         before = norm
-        for _ in range(12):
+        for _ in range(1 if borrowed else 12):
             _take(P, x, share, order, count, pc, kind, trial)
             norm, smallest = liner_residual(
-                rigid,
-                trial,
-                vx,
-                vz,
-                width_x,
-                width_z,
-                link_x,
-                link_z,
-                fixed,
-                pc,
-                kind,
-                beta,
-                inverse_step,
-                delta_old,
+                rigid, trial, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old,
                 r,
-            )
+            )  # fmt: skip
             if smallest > 0.0 and (norm < before or largest <= STEP_TOLERANCE * peak):
                 break
             share *= 0.5
+        if borrowed and not (smallest > 0.0 and (norm < before or standing)):
+            norm, smallest = liner_residual(
+                rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
+            )
+            _select(P, r, fixed, pc, kind, active)
+            factored = False
+            continue
         if not smallest > 0.0:
             return False, step + 1, False, count, width
         P[:] = trial
+        moved += share * largest
         changes = _select(P, r, fixed, pc, kind, active)
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
             rest, unit = (10.0 * largest * largest, peak) if fresh else (largest * largest, last)
-            if rest <= ERROR_TOLERANCE * peak * unit:
-                return True, step + 1, fresh, count, width
+            if standing or (not borrowed and rest <= ERROR_TOLERANCE * peak * unit):
+                return True, step + 1, not borrowed and moved <= EXACT_STEP * peak, count, width
         last = largest
     return False, MAX_NEWTON_STEPS, False, count, width

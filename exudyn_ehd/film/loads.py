@@ -96,13 +96,26 @@ def couette_integral_ratio(H, weight, ratio, share, whole):
 
 
 @njit(cache=True)
-def couette_adjoint_rhs(order, count, weight, H, active, rhs_out):
-    """dC/dfill at the cavitated unknowns: rhs_out (count,)."""
+def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
+    """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills: rhs_out (count,).
+
+    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
+    """
     m = H.shape[1]
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
-        rhs_out[r] = 0.0 if active[i, j] else weight[i, j] / H[i, j]
+        rhs_out[r] = weight[i, j] / H[i, j] * (by_pressure[i, j] if active[i, j] else by_fill[i, j])
+
+
+@njit(cache=True)
+def weigh_rows(order, count, factor, rows):
+    """Multiply rows (k, count) of the unknowns by a field (n, m), in place."""
+    flat = factor.reshape(-1)
+    for r in range(count):
+        f = flat[order[r]]
+        for k in range(rows.shape[0]):
+            rows[k, r] *= f
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -122,11 +135,12 @@ def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
 @njit(cache=True)
 def scatter(values, order, count, out):
     """Unknowns (k, count) -> fields (k, n, m), zero elsewhere."""
-    out[:] = 0.0
-    m = out.shape[2]
+    flat = out.reshape(out.shape[0], -1)
     for k in range(values.shape[0]):
+        row = flat[k]
+        row[:] = 0.0
         for r in range(count):
-            out[k, order[r] // m, order[r] % m] = values[k, r]
+            row[order[r]] = values[k, r]
 
 
 @njit(cache=True)

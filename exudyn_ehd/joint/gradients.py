@@ -14,7 +14,8 @@ import numpy as np
 
 from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
+from exudyn_ehd.film.liner_newton import liner_shear_rhs
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import pose_gradient, wrench_gradient
 
 if TYPE_CHECKING:
@@ -138,31 +139,38 @@ def shear_needs_adjoint(model: BearingModel) -> bool:
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
-    s, g, w = model.solver, model.grid, model.solver.work
+    g, w = model.grid, model.solver.work
     shear = shear_needs_adjoint(model)
     rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
-    at = w.order[: w.count]
-    full = w.active.ravel()[at]
     P_q = None
     if model.effects.pressure_law is not None:
         assert model.P_q is not None
-        P_q = model.P_q.ravel()[at]
-        rows[:4] *= P_q
-    weight = g.weight.ravel()[at]
+        P_q = model.P_q
+        weigh_rows(w.order, w.count, P_q, rows[:4])
     if shear:
-        ratio = 1.0 if model.ratio is None else model.ratio.ravel()[at]
-        per_gap = weight / s.H.ravel()[at]
-        by_pressure = 0.0 if model.ratio_q is None else per_gap * model.ratio_q.ravel()[at]
-        if model.liner_solver is not None:
-            by_pressure = -per_gap / s.H.ravel()[at] * model.liner_solver.gap_by_pressure.ravel()[at]
-        rows[4] = np.where(full, by_pressure, per_gap * ratio if s.closure.conserves_mass else 0.0)
+        _shear_row(model, rows[4])
     if model.extra_slope_x is not None and model.extra_slope_z is not None:
+        at = w.order[: w.count]
+        weight = np.where(w.active, g.weight, 0.0).ravel()[at]
         for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
-            row[:] = np.where(full, weight * slope.ravel()[at], 0.0)
+            row[:] = weight * slope.ravel()[at]
             if P_q is not None:
-                row *= P_q
+                row *= P_q.ravel()[at]
     return rows
+
+
+def _shear_row(model: BearingModel, row: np.ndarray) -> None:
+    """Weights of the Couette integral at the unknowns: through pressure where they are pressures, through fill elsewhere."""
+    s, g, w = model.solver, model.grid, model.solver.work
+    if model.liner_solver is not None:
+        liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, model.liner_solver.beta, row)
+        return
+    by_pressure = s.nothing if model.ratio_q is None else model.ratio_q
+    by_fill = s.nothing
+    if s.closure.conserves_mass:
+        by_fill = s.ones if model.ratio is None else model.ratio
+    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
 
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:

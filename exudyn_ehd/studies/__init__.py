@@ -15,6 +15,7 @@ catalogue   all studies
 pictures    work-precision diagrams, one-page summary
 cells       measured errors over (eps, L/D, tilt, elasticity)
 advice      `recommend`
+parameters  apart from all that: `parameter_study`, a function over lists of parameters
 
 ``python -m exudyn_ehd.studies`` redoes everything that is shipped in ``data``; ``--quick`` takes about a minute.
 """

@@ -45,9 +45,9 @@ def make(laws, thermal, cavitation):
 
 
 def timed(call):
-    begin = time.perf_counter()
+    begin = time.process_time()
     result = call()
-    return time.perf_counter() - begin, result
+    return time.process_time() - begin, result
 
 
 def step_time(model, history):

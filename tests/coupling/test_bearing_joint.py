@@ -149,3 +149,16 @@ def test_vanishing_gap_names_the_joint_and_the_remedy():
     assert "rotor" in text
     assert "RegularisedWall" in text
     assert joint.history.minimum_gap.min() > 0.0
+
+
+def test_joints_without_names_live_side_by_side():
+    mbs = scenes.new_system()
+    ground, one, two = (scenes.add_body(mbs, kind) for kind in ("ground", "EP", "EP"))
+    joints = [
+        CreateLubricatedJoint(
+            mbs, itemNumbers=pair, position=[0, 0, 0], axis=[0, 0, 1], bearing=BEARING, axial=ehd.Held()
+        )
+        for pair in ([ground, one], [one, two])
+    ]
+    assert joints[0].name != joints[1].name and all(joint.name.startswith("lubricated joint") for joint in joints)
+    mbs.Assemble()

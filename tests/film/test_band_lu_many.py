@@ -6,7 +6,7 @@ import pytest
 from exudyn_ehd.film.band_lu import PAD, factor_lu, solve_lu, solve_lu_transposed
 
 
-@pytest.mark.parametrize("count, width", [(1, 1), (7, 3), (30, 5), (41, 12)])
+@pytest.mark.parametrize("count, width", [(1, 1), (7, 3), (30, 5), (41, 12), (90, 40)])
 @pytest.mark.parametrize("sides", [1, 3, 4, 9])
 def test_twin(count, width, sides):
     rng = np.random.default_rng(count + sides)

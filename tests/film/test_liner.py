@@ -85,16 +85,14 @@ def test_balance_and_matrix(closure):
     )
     np.testing.assert_allclose(r, twin(P), atol=1e-12)
     solver = LinerFilmSolver(GRID, closure)
-    w, derivatives = solver.work, np.zeros((4, *GRID.shape))
+    w = solver.work
     lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
     active = ~g.fixed
     count, width = liner_newton.number_cells(active, solver.links, w.order, w.number)
-    liner_newton.flux_derivatives(
-        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, derivatives
-    )
     liner_newton.assemble_liner(
-        derivatives, P, pc, kind, beta * inverse, g.width_x, g.width_z, w.number, w.order, count, width, lower, upper
-    )
+        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, inverse, w.number, count,
+        width, lower, upper,
+    )  # fmt: skip
     A = np.zeros((count, count))
     for k in range(count):
         for d in range(min(width, count - 1 - k) + 1):

@@ -1,0 +1,360 @@
+"""Studies over parameters with Exudyn's `ParameterVariation`: in this process, in several, under MPI, on a cluster of hosts.
+
+The same call serves all four; what differs is how the script is started:
+
+=============  ==========================================  =======================================================
+where          call                                        start
+=============  ==========================================  =======================================================
+this process   ``parameter_study(f, parameters)``          ``python study.py``
+processes      ``..., processes=4``                        ``python study.py``; under ``if __name__ == "__main__":``
+MPI            ``..., mpi=True``                           ``mpiexec -n 5 python -m mpi4py.futures study.py``: one rank leads, four
+                                                           compute; needs mpi4py and an MPI library; under
+                                                           ``if __name__ == "__main__":``
+hosts          ``..., hosts=("10.0.0.2", "10.0.0.3")``     ``python study.py``, with ``dispynode.py`` of the package dispy running on
+                                                           every host and this package installed there
+=============  ==========================================  =======================================================
+
+Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: every worker has its own linear algebra.
+"""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import importlib.util
+import math
+import numbers
+import pathlib
+import pickle
+import time
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.files import replacing
+from exudyn_ehd.joint.steady import equilibrium
+from exudyn_ehd.status import EHDError, InputError, require_integer
+
+_WHERE = "parameter_study"
+_INDEX = "computationIndex"
+# SI units of names that studies commonly use; others are given by the argument ``units``.
+UNITS = {
+    "journal_radius": "m",
+    "length": "m",
+    "radial_clearance": "m",
+    "viscosity": "Pa s",
+    "speed": "rad/s",
+    "load": "N",
+    "eccentricity_ratio": "-",
+    "attitude_angle": "rad",
+    "minimum_gap": "m",
+    "peak_pressure": "Pa",
+    "friction_torque": "N m",
+    "power_loss": "W",
+    "leakage": "m3/s",
+    "sommerfeld_number": "-",
+    "whirl_ratio": "-",
+    "critical_mass": "kg",
+    "seconds": "s",
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class StudyTable:
+    """Results of a study, one row per combination of the parameters; the last parameter changes fastest.
+
+    ``table["minimum_gap"]`` is a column, ``len(table)`` the number of rows, ``print(table)`` shows it.
+
+    Attributes
+    ----------
+    columns : dict of (n,) arrays
+        Parameters, results, ``seconds`` (wall time of the row), by name; nan where a row failed.
+    parameters : tuple of str
+        Which columns are parameters.
+    shape : tuple of int
+        Number of values of every parameter.
+    errors : tuple of str
+        Why a row failed; empty for one that did not.
+    units : dict
+        Unit of a column, where known.
+    """
+
+    columns: dict[str, np.ndarray]
+    parameters: tuple[str, ...]
+    shape: tuple[int, ...]
+    errors: tuple[str, ...]
+    units: dict[str, str]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.columns[name]
+
+    def __len__(self) -> int:
+        return len(self.errors)
+
+    def grid(self, name: str) -> np.ndarray:
+        """A column as an array over the parameters, in their order, for contour plots and the like."""
+        return self.columns[name].reshape(self.shape)
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write the table: a header of names with units, a row per combination, the reason of a failure last."""
+        with replacing(path) as file:
+            writer = csv.writer(file)
+            writer.writerow([self._head(name) for name in self.columns] + ["error"])
+            for k in range(len(self)):
+                writer.writerow([repr(float(v[k])) for v in self.columns.values()] + [self.errors[k]])
+
+    def _head(self, name: str) -> str:
+        return f"{name} [{self.units[name]}]" if name in self.units else name
+
+    def __str__(self) -> str:
+        heads = [self._head(name) for name in self.columns]
+        rows = [[f"{v[k]:.5g}" for v in self.columns.values()] for k in range(len(self))]
+        widths = [max(len(head), *(len(row[i]) for row in rows)) for i, head in enumerate(heads)]
+        lines = ["  ".join(head.rjust(w) for head, w in zip(heads, widths, strict=True))]
+        for row, error in zip(rows, self.errors, strict=True):
+            line = "  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True))
+            lines.append(f"{line}  {error}".rstrip())
+        return "\n".join(lines)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class EquilibriumPoint:
+    """A function for `parameter_study`: equilibrium of a bearing under a load, with parameters replaced by name.
+
+    Parameters that it knows: the bearing's ``journal_radius``, ``length``, ``radial_clearance``; ``viscosity`` of its lubricant; ``speed``;
+    ``load`` (its size; the direction stays).
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    speed : float
+        Relative spin, rad/s.
+    load : (float, float)
+        Force on the journal, N.
+    """
+
+    bearing: JournalBearing
+    speed: float
+    load: tuple[float, float]
+
+    def __call__(self, parameters: Mapping[str, float]) -> dict[str, float]:
+        """Figures of the equilibrium, SI units."""
+        own = dict(parameters)
+        speed, load = own.pop("speed", self.speed), np.array(self.load)
+        if "load" in own:
+            load = load / np.hypot(*load) * own.pop("load")
+        bearing = varied(self.bearing, own)
+        eq = equilibrium(bearing, speed=speed, load=(float(load[0]), float(load[1])))
+        names = ("minimum_gap", "peak_pressure", "friction_torque", "power_loss", "leakage", "sommerfeld_number")
+        return {
+            "eccentricity_ratio": eq.eccentricity_ratio,
+            "attitude_angle": eq.attitude_angle,
+            **{name: float(getattr(eq.film, name)) for name in names},
+            "whirl_ratio": eq.whirl_ratio,
+            "critical_mass": eq.critical_mass,
+        }
+
+
+def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalBearing:
+    """The bearing with dimensions and ``viscosity`` (of its lubricant) replaced by name.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    parameters : dict
+        ``journal_radius``, ``length``, ``radial_clearance`` (m), ``viscosity`` (Pa s), or some of them.
+
+    Raises
+    ------
+    InputError
+        For names that it does not have.
+    """
+    values: dict[str, Any] = dict(parameters)
+    known = ("journal_radius", "length", "radial_clearance", "viscosity")
+    unknown = sorted(set(values) - set(known))
+    if unknown:
+        raise InputError(
+            f"varied: parameters must be among {', '.join(known)}, got {', '.join(unknown)}; write a function of your own."
+        )
+    if "viscosity" in values:
+        lubricant = dataclasses.replace(bearing.lubricant, viscosity=values.pop("viscosity"))
+        bearing = dataclasses.replace(bearing, lubricant=lubricant)
+    return dataclasses.replace(bearing, **values)
+
+
+def parameter_study(
+    function: Callable[[dict[str, Any]], Any],
+    parameters: Mapping[str, Sequence[float]],
+    *,
+    processes: int = 1,
+    mpi: bool = False,
+    hosts: Sequence[str] = (),
+    units: Mapping[str, str] | None = None,
+    show_progress: bool = True,
+) -> StudyTable:
+    """Evaluate a function at every combination of parameters; see the module's docstring for where it runs.
+
+    Parameters
+    ----------
+    function : callable
+        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For processes and MPI it must be
+        importable: a function or an instance of a class defined at the top of a module. Hosts get the source of a plain function alone:
+        let it import what it needs.
+    parameters : dict
+        Name: sequence of numbers.
+    processes : int
+        Number of processes on this machine.
+    mpi : bool
+        Compute on the ranks of an MPI run.
+    hosts : sequence of str
+        Names or addresses of hosts that run dispy's node server.
+    units : dict, optional
+        Units of parameters and results by name, for print and CSV; common names have theirs.
+    show_progress : bool
+        Print a line for every finished row.
+
+    Returns
+    -------
+    StudyTable
+        A row that fails does not end the study: it holds nan and says why in ``errors``.
+
+    Raises
+    ------
+    InputError
+        For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at once, missing
+        packages.
+    EHDError
+        If every row failed.
+    """
+    from exudyn.processing import ParameterVariation
+
+    lists = _checked_parameters(parameters)
+    where = _checked_place(processes, mpi, hosts)
+    count = math.prod(len(values) for values in lists.values())
+    entry: Any = _Entry(function, count, show_progress)
+    if where == "hosts":
+        # dispy sends the source of a function; an instance has none
+        entry = function
+    elif where != "here":
+        _check_picklable(function)
+    options: dict[str, Any] = {"useMPI": True} if mpi else {}
+    places, values = ParameterVariation(
+        entry,
+        lists,
+        addComputationIndex=where != "hosts",
+        useMultiProcessing=where != "here",
+        numberOfThreads=processes,
+        clusterHostNames=list(hosts),
+        showProgress=where == "hosts" and show_progress,
+        **options,
+    )
+    rows = [value if isinstance(value, _Row) else _Row(_as_numbers(value), "", math.nan) for value in values]
+    return _table({name: np.asarray(places[name], dtype=float) for name in lists}, lists, rows, dict(units or {}))
+
+
+@dataclasses.dataclass(frozen=True)
+class _Row:
+    """What came back from one call."""
+
+    results: dict[str, float]
+    error: str
+    seconds: float
+
+
+def _evaluated(call: Callable[[], Any]) -> _Row:
+    start = time.perf_counter()
+    results, error = {}, ""
+    # a failed point must not take the others with it: its error is reported in the table
+    try:
+        results = _as_numbers(call())
+    except Exception as caught:
+        error = " ".join(f"{type(caught).__name__}: {caught}".split())
+    return _Row(results, error, time.perf_counter() - start)
+
+
+@dataclasses.dataclass(frozen=True)
+class _Entry:
+    """What runs in a worker; picklable if the function is."""
+
+    function: Callable[[dict[str, Any]], Any]
+    count: int
+    show_progress: bool
+
+    def __call__(self, parameters: dict[str, Any]) -> _Row:
+        own = dict(parameters)
+        index = own.pop(_INDEX)
+        row = _evaluated(lambda: self.function(own))
+        if self.show_progress:
+            given = ", ".join(f"{name} = {value:.5g}" for name, value in own.items())
+            print(f"[{index + 1}/{self.count}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)", flush=True)
+        return row
+
+
+def _as_numbers(value: Any) -> dict[str, float]:
+    results = value if isinstance(value, Mapping) else {"value": value}
+    for name, number in results.items():
+        if not isinstance(name, str) or not isinstance(number, numbers.Real):
+            raise InputError(
+                f"{_WHERE}.function must return a number or a dict of numbers, got {name!r}: {type(number).__name__}."
+            )
+    return {name: float(number) for name, number in results.items()}
+
+
+def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, list[float]]:
+    lists: dict[str, list[float]] = {}
+    for name, values in dict(parameters).items():
+        numbers_only = np.ndim(values) == 1 and all(isinstance(v, numbers.Real) for v in values)
+        if not isinstance(name, str) or name in (_INDEX, "seconds", "error") or not numbers_only or len(values) == 0:
+            raise InputError(
+                f"{_WHERE}.parameters must be a dict of names and lists of numbers, got {name!r}: {values!r}."
+            )
+        lists[name] = [v if isinstance(v, int) else float(v) for v in values]
+    if not lists:
+        raise InputError(f"{_WHERE}.parameters is empty; give at least one list, e.g. {{'speed': [100.0, 200.0]}}.")
+    return lists
+
+
+def _checked_place(processes: int, mpi: bool, hosts: Sequence[str]) -> str:
+    require_integer(f"{_WHERE}: processes", processes, at_least=1)
+    places = [name for name, asked in (("processes", processes > 1), ("mpi", mpi), ("hosts", len(hosts) > 0)) if asked]
+    if len(places) > 1:
+        raise InputError(f"{_WHERE}: only one of processes, mpi and hosts can be given, got {' and '.join(places)}.")
+    for place, package in (("mpi", "mpi4py"), ("hosts", "dispy")):
+        if place in places and importlib.util.find_spec(package) is None:
+            raise InputError(
+                f"{_WHERE}: {place} needs the package {package}, which is not installed; pip install {package}."
+            )
+    return places[0] if places else "here"
+
+
+def _check_picklable(function: Any) -> None:
+    try:
+        pickle.dumps(function)
+    except (pickle.PicklingError, AttributeError, TypeError) as error:
+        raise InputError(
+            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a lambda or inside "
+            "another function."
+        ) from None
+
+
+def _table(
+    places: dict[str, np.ndarray], lists: dict[str, list[float]], rows: list[_Row], units: dict[str, str]
+) -> StudyTable:
+    if all(row.error for row in rows):
+        raise EHDError(f"{_WHERE}: all {len(rows)} rows failed, the first with {rows[0].error}")
+    names = list(dict.fromkeys(name for row in rows for name in row.results))
+    shared = sorted(set(names) & set(places))
+    if shared:
+        raise InputError(f"{_WHERE}.function must not return results named as parameters, got {', '.join(shared)}.")
+    columns = places | {name: np.array([row.results.get(name, math.nan) for row in rows]) for name in names}
+    columns["seconds"] = np.array([row.seconds for row in rows])
+    known = {name: unit for name, unit in (UNITS | units).items() if name in columns}
+    return StudyTable(
+        columns=columns,
+        parameters=tuple(lists),
+        shape=tuple(len(values) for values in lists.values()),
+        errors=tuple(row.error for row in rows),
+        units=known,
+    )
