@@ -80,12 +80,11 @@ class MovingScene:
             mbs.SolveDynamic(settings, solverType=solver)
             seconds = time.process_time() - start
             explicit = setting.integration.runge_kutta
-            used = mbs.sys["explicitSolver" if explicit else "dynamicSolver"]
             values = self.observe(joint.history, self.instants())
             return Outcome(
                 values={name: np.asarray(v, dtype=float) for name, v in values.items() if np.all(np.isfinite(v))},
                 seconds=seconds,
-                newton=0.0 if explicit else used.it.newtonStepsCount / steps,
+                newton=0.0 if explicit else mbs.sys["dynamicSolver"].it.newtonStepsCount / steps,
                 films=(element.evaluations - before) / steps,
             )
 

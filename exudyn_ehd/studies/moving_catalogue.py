@@ -47,7 +47,7 @@ def step_load_orbit() -> MovingScene:
 
 
 def slider_pin() -> MovingScene:
-    """Gudgeon pin of a slider-crank at 5000 rpm, R = 10 mm, L = 20 mm, c = 20 um, 0.02 Pa s; the second turn counts."""
+    """Gudgeon pin of a slider-crank at 5000 rpm, R = 10 mm, L = 20 mm, c = 20 um, 0.02 Pa s; what follows the first half turn counts."""
     spin = 5000.0 * 2.0 * math.pi / 60.0
     bearing = JournalBearing(
         journal_radius=0.010, length=0.020, radial_clearance=20e-6, lubricant=Lubricant(viscosity=0.02)
@@ -57,7 +57,7 @@ def slider_pin() -> MovingScene:
         build=partial(
             mechanisms.slider_crank, crank=0.05, rod=0.12, masses=(0.30, 0.21, 0.14), inertias=(8.5e-4, 2.5e-4), spin=spin
         ),
-        end=2.0 * 2.0 * math.pi / spin, steps=720, samples=72, start=0.5,
+        end=1.5 * 2.0 * math.pi / spin, steps=540, samples=54, start=1.0 / 3.0,
         observe=extremes, quantities=extremes_quantities(20e-6),
     )  # fmt: skip
 
@@ -225,7 +225,7 @@ def closure_study(scene: MovingScene) -> Study:
         name=f"{scene.name}_closure", title=f"{scene.title}: cavitation", scene=scene,
         settings=tuple(s for s in settings if s.model != "full Sommerfeld"),
         references=tuple(
-            r for r in ladders.closure_references(((64, 6), (128, 12), (256, 24))) if r.model != "full Sommerfeld"
+            r for r in ladders.closure_references(((48, 4), (96, 8), (192, 16))) if r.model != "full Sommerfeld"
         ),
     )  # fmt: skip
 
@@ -275,7 +275,7 @@ def moving_catalogue() -> dict[str, Callable[[], Study]]:
         },
         "slider_pin": {"film": film_study, "integration": integration_study},
         "big_end": {"bush": bush_study, "integration": integration_study},
-        "whirl": {"film": film_study, "integration": partial(integration_study, runge_kutta=4)},
+        "whirl": {"film": film_study, "integration": integration_study},
         "start_stop": {"film": film_study, "integration": integration_study, "effects": mixed_effects_study},
     }
     return {
