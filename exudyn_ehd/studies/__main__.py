@@ -38,7 +38,7 @@ def main(arguments: list[str] | None = None) -> None:
     for k, name in enumerate(names):
         print(f"[{k + 1}/{len(names)}] {name}, {time.perf_counter() - start:.0f} s so far", flush=True)
         study = studies[name]()
-        rows = run_study(study, repeats=options.repeats, budget=8.0, processes=options.processes, progress=_say)
+        rows = run_study(study, repeats=options.repeats, budget=4.0, processes=options.processes, progress=_say)
         notes = [
             study.title,
             f"time per {study.scene.per}; {machine()}; median and quartiles of up to {options.repeats} runs in turns",
