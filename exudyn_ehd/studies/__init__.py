@@ -15,6 +15,8 @@ catalogue   all studies
 pictures    work-precision diagrams, one-page summary
 cells       measured errors over (eps, L/D, tilt, elasticity)
 advice      `recommend`
+growth      cost over grid, modes and joints
+moving_catalogue  the moving scenes and their ladders
 parameters  apart from all that: `parameter_study`, a function over lists of parameters
 
 ``python -m exudyn_ehd.studies`` redoes everything that is shipped in ``data``; ``--quick`` takes about a minute.

@@ -18,6 +18,8 @@ from exudyn_ehd.coupling.api import CreateLubricatedJoint, LubricatedJoint
 from exudyn_ehd.joint.steady import equilibrium
 
 Built = tuple[Any, LubricatedJoint]
+# Friction changes the spin by less than 1e-6 of it in any scene, kg m2.
+HUGE_INERTIA = 1e4
 OfTime = Callable[[float], float]
 
 
@@ -45,20 +47,43 @@ def _prescribe(mbs: Any, origin: Any, node: Any, coordinate: int, value: OfTime 
 
 def rotor(
     bearing: JournalBearing, *, mass: float, load: tuple[float, float], angle: OfTime, spin: OfTime,
-    position: tuple[float, float] = (0.0, 0.0),
+    position: tuple[float, float] = (0.0, 0.0), driven: bool = True,
 ) -> Built:  # fmt: skip
-    """A disc of ``mass`` (kg) with prescribed rotation (rad, rad/s), free in x and y under ``load`` (N), in a bearing fixed to ground."""
+    """A disc of ``mass`` (kg) with prescribed rotation (rad, rad/s), free in x and y under ``load`` (N), in a bearing fixed to ground.
+
+    Without ``driven`` it keeps its first spin by a huge inertia: explicit integrators know no constraints.
+    """
+    mbs, joints = rotors(bearing, 1, mass=mass, load=load, angle=angle, spin=spin, position=position, driven=driven)
+    return mbs, joints[0]
+
+
+def rotors(
+    bearing: JournalBearing, count: int, *, mass: float, load: tuple[float, float], angle: OfTime, spin: OfTime,
+    position: tuple[float, float] = (0.0, 0.0), driven: bool = True,
+) -> tuple[Any, list[LubricatedJoint]]:  # fmt: skip
+    """``count`` independent rotors in one model, parameters as for `rotor`."""
     mbs, origin = _new()
     ground = mbs.AddObject(eii.ObjectGround())
-    node, body = _body(mbs, mass, 1.0, 0.0, (0.0, 0.0, spin(0.0)), initialCoordinates=[*position, 0.0])
-    _prescribe(mbs, origin, node, 2, angle, spin)
-    centre = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
-    mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[*load, 0.0]))
-    joint = CreateLubricatedJoint(
-        mbs, name="bearing", itemNumbers=[ground, body], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing
-    )
+    joints = []
+    for k in range(count):
+        inertia = 1.0 if driven else HUGE_INERTIA
+        node, body = _body(mbs, mass, inertia, 0.0, (0.0, 0.0, spin(0.0)), initialCoordinates=[*position, 0.0])
+        if driven:
+            _prescribe(mbs, origin, node, 2, angle, spin)
+        centre = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
+        mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[*load, 0.0]))
+        joints.append(
+            CreateLubricatedJoint(
+                mbs,
+                name=f"bearing {k}",
+                itemNumbers=[ground, body],
+                position=[0, 0, 0],
+                axis=[0, 0, 1],
+                bearing=bearing,
+            )
+        )
     mbs.Assemble()
-    return mbs, joint
+    return mbs, joints
 
 
 def slider_crank(

@@ -41,7 +41,7 @@ def step_load_orbit() -> MovingScene:
     )
     return MovingScene(
         name="orbit", title="journal under a step load", bearing=bearing,
-        build=partial(mechanisms.rotor, mass=2.0, load=(0.0, -2000.0), angle=motion.angle, spin=motion.spin_at),
+        build=partial(mechanisms.rotor, mass=2.0, load=(0.0, -2000.0), angle=motion.angle, spin=motion.spin_at, driven=False),
         end=0.04, steps=400, samples=40, observe=extremes, quantities=extremes_quantities(50e-6),
     )  # fmt: skip
 
@@ -256,7 +256,7 @@ def mixed_effects_study(scene: MovingScene) -> Study:
     off: dict[str, dict[str, Any]] = {
         "all": {},
         "no roughness": {"roughness": None},
-        "wall for asperities": {"asperity": None, "contact": RegularisedWall(onset=1e-6)},
+        "wall for rough surfaces": {"asperity": None, "roughness": None, "contact": RegularisedWall(onset=1e-6)},
         "no squeeze": {"squeeze": False},
         "Gumbel": {"cavitation": Gumbel()},
         "mass conserving": {"cavitation": ElrodAdams(cavity_pressure=-1e5)},
@@ -271,7 +271,7 @@ def moving_catalogue() -> dict[str, Callable[[], Study]]:
         "orbit": {
             "film": film_study,
             "closure": closure_study,
-            "integration": partial(integration_study, runge_kutta=10),
+            "integration": partial(integration_study, runge_kutta=24),
         },
         "slider_pin": {"film": film_study, "integration": integration_study},
         "big_end": {"bush": bush_study, "integration": integration_study},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import pathlib
 import re
@@ -84,7 +85,7 @@ def draw_points(axes: Axes, rows: Sequence[Row], per: str) -> None:
     times = [row.seconds for row in points]
     axes.set_xlim(0.5 * min(times), 2.5 * max(times))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: format_seconds(value)))
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:.3g} %"))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:.4g} %"))
     axes.grid(True, which="major")
     axes.figure.legend(loc="outside lower center", ncols=4)
 
@@ -118,7 +119,7 @@ def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
         left, right = (to_screen((t, 1.0))[0] for t in (row.low, row.high))
         taken.append((left, y - scale, right, y + scale))
     front = [place[k] for k in pareto_front([row.seconds for row in points], [_error(row) for row in points])]
-    for (x0, y0), (x1, y1) in zip(front, front[1:], strict=False):
+    for (x0, y0), (x1, y1) in itertools.pairwise(front):
         taken += [(x0, y0 - scale, x1, y0 + scale), (x1 - scale, y1, x1 + scale, y0)]
     order = np.argsort(place[:, 0] + 0.3 * place[:, 1])
     for k in order:
