@@ -8,11 +8,8 @@ joint     one bearing as a pure function of its motion; `steady`, `equilibrium`,
 pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
 solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
 coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
-<<<<<<< HEAD
 studies   many runs: `parameter_study`
-=======
 studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
->>>>>>> main
 reference closed forms to compare with
 status    outcomes and errors
 
@@ -65,6 +62,9 @@ _LAZY = {
     "JointHistory": "coupling.history",
     "LubricatedJoint": "coupling.api",
     "Quantity": "coupling.history",
+    "Revolutions": "coupling.revolutions",
+    "load_history": "coupling.history",
+    "StepControl": "coupling.step_control",
     "CarriedOuter": "coupling.bush_object",
     "CreateFlexibleBush": "coupling.bush_object",
     "FixedOuter": "coupling.bush_object",
@@ -162,6 +162,7 @@ __all__ = [
     "Rayleigh",
     "Recommendation",
     "RegularisedWall",
+    "Revolutions",
     "ReynoldsTemperature",
     "RoelandsPressure",
     "SaintVenantKirchhoff",
@@ -169,6 +170,7 @@ __all__ = [
     "SolveDynamicSparse",
     "Status",
     "SteadyResult",
+    "StepControl",
     "StribeckResult",
     "StudyTable",
     "Support",
@@ -179,6 +181,7 @@ __all__ = [
     "bearing_grid",
     "composite_modulus",
     "equilibrium",
+    "load_history",
     "mesh_from_arrays",
     "mesh_from_fem",
     "oil",

@@ -23,7 +23,7 @@ from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.film.supply import SupplyArea, check_supply
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.wear import ArchardWear
-from exudyn_ehd.status import InputError, require_number, require_vector
+from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush
@@ -223,6 +223,16 @@ class JournalBearing:
         """L D mu |omega| / psi^2 in N, the unit of the Sommerfeld number, for a spin ``speed`` in rad/s."""
         area = 2.0 * self.journal_radius * self.length
         return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
+
+
+def advice(status: Status, bearing: object) -> str:
+    """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
+    if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
+        return (
+            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not give way; it knows "
+            "no contact: use ModalBush(...) with contact=RegularisedWall(onset=...), or reduce the load or the step size."
+        )
+    return status.advice
 
 
 def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None:

@@ -1,5 +1,7 @@
 """Every example runs headless in its quick mode and gives the figures that it is there to show."""
 
+import math
+
 import pytest
 
 
@@ -103,3 +105,37 @@ def test_elastic_slider_crank(example, tmp_path):
     for pin in ("crank_pin", "gudgeon_pin"):
         assert elastic[f"{pin}_force_N"] == pytest.approx(rigid[f"{pin}_force_N"], rel=3e-3)
         assert elastic[f"{pin}_minimum_gap_um"] == pytest.approx(rigid[f"{pin}_minimum_gap_um"], rel=0.08)
+
+
+def test_start_stop(example, tmp_path):
+    rows = example("start_stop").main(quick=True, output=tmp_path)
+    assert (tmp_path / "start_stop.png").stat().st_size > 10_000
+    # at rest the asperities carry the load; the boundary friction of 0.1 acts while they do
+    assert rows["contact_share_at_rest"] == pytest.approx(1.0, abs=0.005)
+    assert 0.07 < rows["friction_coefficient_at_start"] < 0.1
+    # the film has to be drawn in when starting and to be squeezed out when stopping: both leave the steady curve
+    assert rows["touch_down_speed"] < 0.5 * rows["touch_down_speed_of_the_steady_curve"] < rows["lift_off_speed_up"]
+    # work and energy: steps of 1 ms
+    assert rows["friction_work_coasting_J"] == pytest.approx(rows["kinetic_energy_lost_coasting_J"], rel=0.005)
+    # Archard: worn volume = k x normal load x sliding distance; the resultant load is smaller than the sum of the
+    # pressures on the arc by below a per cent
+    assert rows["worn_volume_mm3"] == pytest.approx(rows["worn_volume_by_archard_mm3"], rel=0.01)
+    assert rows["worn_volume_mm3"] > rows["worn_volume_by_archard_mm3"]
+    assert rows["iterations_per_step"] < 3
+
+
+def test_hydrostatic_or_grooved(example, tmp_path):
+    rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)
+    assert (tmp_path / "hydrostatic_or_grooved.png").stat().st_size > 10_000
+    # another finite-volume code on the same case and grid
+    assert max(abs(value) for key, value in rows.items() if "off the other code" in key) < 5e-3
+    # only the mass-conserving film gives back what it takes
+    assert rows["Elrod-Adams: oil out of nothing, share of the leakage"] < 1e-9
+    for closure in ("Gumbel", "Swift-Stieber"):
+        assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
+        # and only it notices that a groove under the load starves the film
+        assert 20 < rows[f"{closure}: smallest film, groove under the load [um]"] < 30
+    assert math.isnan(rows["Elrod-Adams: smallest film, groove under the load [um]"])
+    # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
+    assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
+    assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60

@@ -18,7 +18,8 @@ from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.results import JointResults
 from exudyn_ehd.coupling.sensors import add_sensor
-from exudyn_ehd.coupling.sides import NodeSide
+from exudyn_ehd.coupling.sides import MarkerSide, Side
+from exudyn_ehd.coupling.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_vector
 
 if TYPE_CHECKING:
@@ -151,6 +152,7 @@ def CreateLubricatedJoint(
     bearing: Any = None,
     rotationMatrixAxes: Any = None,
     axial: Free | Held = Free(),
+    stepControl: StepControl | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -169,8 +171,11 @@ def CreateLubricatedJoint(
     name : str
         Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
-        Housing, journal: each a rigid body or ground (ObjectIndex), a rigid-body node (NodeIndex) or a rigid marker
-        (MarkerIndex).
+        Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact beams and
+        cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker (MarkerIndex: on any of these,
+        on a link of a kinematic tree, on a superelement). Beams are joined where ``position`` lies along the element. A cable turns
+        with its slope; it has no roll: spatial ones take joints along the cable, without spin of their own, and across it, for motion
+        in the plane normal to the axis.
     position : (3,) [m]
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
@@ -184,6 +189,8 @@ def CreateLubricatedJoint(
         the axis). Every angle of the film counts from x about z.
     axial : Free or Held
         Whether the journal may slide along the axis.
+    stepControl : StepControl or None
+        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are halved.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
@@ -207,6 +214,8 @@ def CreateLubricatedJoint(
     """
     if not isinstance(axial, (Free, Held)):
         raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
+    if not isinstance(stepControl, (StepControl, type(None))):
+        raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if bearing is None:
@@ -220,6 +229,8 @@ def CreateLubricatedJoint(
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
+    if stepControl is not None:
+        joint.element.watch = GapWatch(stepControl, bearing)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
@@ -256,14 +267,14 @@ def attach(
         As in `CreateLubricatedJoint`.
     """
     for item in (housing, journal):
-        if item.kind == kinematics.PLANAR and abs(rotation[2, 2]) < 1.0 - 1e-12:
+        if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
-    if isinstance(sides[0], NodeSide) and isinstance(sides[1], NodeSide):
+    if not any(isinstance(side, MarkerSide) for side in sides):
         _check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
-    flat = (kinematics.GROUND, kinematics.PLANAR)
     # planar bodies can't move axially: the constraint would be empty, and singular
-    held = isinstance(axial, Held) and not (housing.kind in flat and journal.kind in flat)
+    flat = all(item.planar or item.kind == kinematics.GROUND for item in (housing, journal))
+    held = isinstance(axial, Held) and not flat
     element = FilmElement(model, *sides, name)
     nodes, more = [node for side in sides for node in side.nodes], {}
     if hasattr(model, "bore"):
@@ -294,7 +305,8 @@ def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    if shared:
+    # Exudyn adds up what an object hands to a node that it lists twice
+    if shared and not (housing.inner and journal.inner and int(housing.marker) != int(journal.marker)):
         raise InputError(
             f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
         )
@@ -360,7 +372,7 @@ def _joint_points(housing: Item, journal: Item, position: Any, use_global: bool)
     return point, point.copy()
 
 
-def _check_start(bearing: Any, housing: tuple[Item, NodeSide], journal: tuple[Item, NodeSide]) -> None:
+def _check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
     """Refuse an initial state in which the journal isn't inside the bore."""
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
@@ -394,6 +406,11 @@ def _hold_axially(
     markers = []
     for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
         if item.kind is None:
+            if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
+                raise InputError(
+                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none exists on spatial "
+                    "cables; use axial=Free(), with a constraint of your own if one is needed."
+                )
             if abs(axial_offset) > 0.0:
                 raise InputError(
                     f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "

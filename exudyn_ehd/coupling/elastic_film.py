@@ -68,15 +68,8 @@ class BoreFilmElement(FilmElement):
     def _wrench_map(self) -> np.ndarray:
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
         housing, journal = self.sides
-        A = housing.frame[:, :3]
-        x, y, z = journal.frame[:, 3] - housing.frame[:, 3]
-        arm = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         out = np.empty((self.rigid_size, 6))
-        n = housing.size
-        out[:n, :3] = -housing.jac[0].T @ A
-        out[:n, 3:] = -housing.jac[1].T @ A
-        out[n:, :3] = journal.jac[0].T @ A - journal.jac[1].T @ (arm @ A)
-        out[n:, 3:] = journal.jac[1].T @ A
+        kinematics.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
         return out
 
 
@@ -105,18 +98,20 @@ class ModalFilmElement(BoreFilmElement):
         force[n:] = evaluation.bore_load - self.stiffness * np.array(trial.q[n:])
         return force
 
-    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         evaluation: Any = trial.evaluation
-        T, n, k = evaluation.tangent(), self.rigid_size, self.stiffness.size
+        T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
-        to_sides = self._wrench_map()
-        out = []
-        for block, motion, bore in zip(rigid[:2], rigid[2:], (T[:, SIZE : SIZE + k], T[:, SIZE + k :]), strict=True):
-            whole = np.empty((n + k, n + k))
-            whole[:n, :n] = block
-            whole[:n, n:] = to_sides @ bore[:6]
-            whole[n:, :n] = T[6:, :SIZE] @ motion
-            whole[n:, n:] = bore[6:]
-            out.append(whole)
-        out[0][np.arange(n, n + k), np.arange(n, n + k)] -= self.stiffness
-        return out[0], out[1]
+        stiffness, damping, by_place, by_rate = rigid
+        whole = np.empty((n + k, n + k))
+        whole[:n, :n] = f_q * stiffness + f_qt * damping
+        whole[:n, n:] = self._wrench_map() @ T[:6, SIZE:]
+        whole[n:, :n] = T[6:, :SIZE] @ (f_q * by_place + f_qt * by_rate)
+        whole[n:, n:] = T[6:, SIZE:]
+        whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
+        return np.negative(whole, out=whole)
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last."""
+        model: Any = self.model
+        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)

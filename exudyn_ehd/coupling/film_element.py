@@ -9,15 +9,20 @@ user function alone, when the start of the step has moved on, so that a rejected
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
+from exudyn_ehd.coupling.film_record import FilmRecorder
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
+from exudyn_ehd.coupling.step_control import GapWatch
+from exudyn_ehd.joint.fields import FilmFields, film_fields
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -68,6 +73,8 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
+        self.recorder: FilmRecorder | None = None
+        self.watch: GapWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
         self._start = np.nan
@@ -90,6 +97,8 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full(len(q), np.nan)
+        if self.watch is not None and t > start and self.watch.rejects(trial.motion, self._solver):
+            return np.full(len(q), np.nan)
         return self._generalized_force(trial)
 
     def jacobian(
@@ -100,8 +109,7 @@ class FilmElement:
         if trial.status != Status.CONVERGED:
             self._fail(t, trial)
             return np.full((len(q), len(q)), np.nan)
-        stiffness, damping = self._derivatives(mbs, trial)
-        return -(f_q * stiffness + f_qt * damping)
+        return self._jacobian(mbs, trial, f_q, f_qt)
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         """Q (n,) at the trial, to which the sides' arrays belong."""
@@ -159,6 +167,11 @@ class FilmElement:
             if isinstance(side, MarkerSide):
                 side.bind(mbs)
         self._bound = True
+
+    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
+        stiffness, damping = self._derivatives(mbs, trial)
+        return -(f_q * stiffness + f_qt * damping)
 
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
@@ -219,7 +232,7 @@ class FilmElement:
                 f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid "
                 f"surfaces {gap:.6g} m; "
             )
-        return where + state + trial.status.advice
+        return where + state + advice(trial.status, bearing)
 
     # --- accepted steps -------------------------------------------------------------------------------------------
 
@@ -239,9 +252,13 @@ class FilmElement:
             self._start = start
             self._memory = self._first_memory(mbs)
         trial = self._look(mbs, start, _START_OF_STEP)
+        if self.watch is not None:
+            self.watch.start(trial.motion)
         row = self._row(start, trial)
         if row is not None:
             self._record.append(row)
+            if self.recorder is not None:
+                self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
             if self._uses_memory and start > self._start:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
@@ -272,7 +289,11 @@ class FilmElement:
             return None
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, trial.evaluation.quantities())
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, self._quantities(trial.evaluation))
+
+    def _quantities(self, evaluation: Evaluation) -> Mapping[str, Any]:
+        """Scalars of an evaluation, to which the sides' arrays belong."""
+        return evaluation.quantities()
 
     def current_row(self, mbs: Any) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
@@ -284,11 +305,20 @@ class FilmElement:
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
         return _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
 
-    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial]:
-        """Time of the last accepted state, and the film there; its model then holds that film's fields."""
+    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial, Any]:
+        """Time of the last accepted state, the film there, and the configuration; the model then holds that film's fields."""
         configuration = self._accepted()
         time = mbs.systemData.GetTime(configuration)
-        return time, self._look(mbs, time, configuration)
+        return time, self._look(mbs, time, configuration), configuration
+
+    def fields(self, mbs: Any, time: float, configuration: Any) -> FilmFields:
+        """Fields of the film that was evaluated last, at the state in ``configuration``."""
+        model: Any = self.model
+        return film_fields(model, time, self.bush_displacement(mbs, configuration))
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+        """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
+        return None
 
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""

@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import pathlib
+import zipfile
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Geometry
+from exudyn_ehd.coupling.revolutions import Revolutions, revolutions
+from exudyn_ehd.files import replacing
 from exudyn_ehd.pictures.methods import HistoryPictures
+from exudyn_ehd.status import InputError
+from exudyn_ehd.tables import write_csv
 
 _SCALARS = (
     "minimum_gap",
@@ -23,9 +29,19 @@ _SCALARS = (
     "supply_flow",
     "film_temperature",
     "peak_temperature",
+    "minimum_gap_angle",
+    "minimum_gap_z",
+    "peak_angle",
 )
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 _WIDTH = _FIRST_SCALAR + len(_SCALARS)
+_FORMAT = "exudyn_ehd JointHistory 1"
+_PARTS = {
+    "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
+    "force": ("force_x", "force_y", "force_z"),
+    "moment": ("moment_x", "moment_y", "moment_z"),
+}
+_MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "m/s")
 
 
 class Quantity(enum.Enum):
@@ -47,6 +63,9 @@ class Quantity(enum.Enum):
     SUPPLY_FLOW = "supply_flow"
     FILM_TEMPERATURE = "film_temperature"
     PEAK_TEMPERATURE = "peak_temperature"
+    MINIMUM_GAP_ANGLE = "minimum_gap_angle"
+    MINIMUM_GAP_Z = "minimum_gap_z"
+    PEAK_ANGLE = "peak_angle"
 
 
 _COLUMNS: dict[str, Any] = {
@@ -86,6 +105,8 @@ class JointHistory(HistoryPictures):
         [m], [Pa], [N m], [W], [m3/s], [N].
     contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
         [N m], [m3/s], [K], [K].
+    minimum_gap_angle, minimum_gap_z, peak_angle : ndarray (n,)
+        Place of the smallest gap [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
     """
@@ -107,9 +128,82 @@ class JointHistory(HistoryPictures):
     supply_flow: np.ndarray
     film_temperature: np.ndarray
     peak_temperature: np.ndarray
+    minimum_gap_angle: np.ndarray
+    minimum_gap_z: np.ndarray
+    peak_angle: np.ndarray
     radial_clearance: float
     journal_radius: float
     length: float
+
+    def save(self, path: str | pathlib.Path) -> None:
+        """Write everything to a NumPy file (npz); it appears whole or not at all. `load_history` reads it.
+
+        Parameters
+        ----------
+        path : path
+            Ending in ``.npz``.
+        """
+        if pathlib.Path(path).suffix != ".npz":
+            raise InputError(f"JointHistory.save: path must end in .npz, got '{path}'; use to_csv for text.")
+        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        with replacing(path, binary=True) as file:
+            np.savez_compressed(file, format=_FORMAT, **fields)
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write all columns as text, names and SI units in the first line; vectors by their components."""
+        columns: dict[str, np.ndarray] = {}
+        for name in _COLUMNS:
+            values = getattr(self, name)
+            # the eccentricity is the motion's x and y
+            if name in _PARTS:
+                columns |= dict(zip(_PARTS[name], values.T, strict=True))
+            elif name != "eccentricity":
+                columns[name] = values
+        write_csv(path, columns, more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
+
+    def revolutions(self, *, period: float | None = None) -> Revolutions:
+        """Smallest film with its place, peak pressure, mean loss and leakage of every whole revolution; print it for a table.
+
+        Parameters
+        ----------
+        period : float, optional
+            Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the journal against
+            the housing are counted.
+
+        Raises
+        ------
+        InputError
+            If there is no whole revolution or period.
+        """
+        return revolutions(self, period)
+
+
+def load_history(path: str | pathlib.Path) -> JointHistory:
+    """Read what `JointHistory.save` has written.
+
+    Parameters
+    ----------
+    path : path
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it holds something else.
+    """
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            known = "format" in data.files and str(data["format"]) == _FORMAT
+            values: dict[str, Any] = {name: data[name] for name in data.files if name != "format"} if known else {}
+    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
+        known = False
+    if not known:
+        raise InputError(
+            f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
+        )
+    fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
+    return JointHistory(**fields)
 
 
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:

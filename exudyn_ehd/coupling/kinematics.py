@@ -403,6 +403,26 @@ def generalized_force(jac_h, jac_j, loads, force_out):
 
 
 @njit(cache=True)
+def wrench_map(frame_h, frame_j, jac_h, jac_j, map_out):
+    """Map (n, 6) from the wrench on the journal, joint frame, to the generalized forces of `generalized_force`."""
+    n_h = jac_h.shape[2]
+    x, y, z = frame_j[0, 3] - frame_h[0, 3], frame_j[1, 3] - frame_h[1, 3], frame_j[2, 3] - frame_h[2, 3]
+    for c in range(3):
+        a0, a1, a2 = frame_h[0, c], frame_h[1, c], frame_h[2, c]
+        # moment about the journal's point of a force along axis c at O
+        m0, m1, m2 = z * a1 - y * a2, x * a2 - z * a0, y * a0 - x * a1
+        for k in range(n_h):
+            map_out[k, c] = -(jac_h[0, 0, k] * a0 + jac_h[0, 1, k] * a1 + jac_h[0, 2, k] * a2)
+            map_out[k, 3 + c] = -(jac_h[1, 0, k] * a0 + jac_h[1, 1, k] * a1 + jac_h[1, 2, k] * a2)
+        for k in range(jac_j.shape[2]):
+            r0, r1, r2 = jac_j[1, 0, k], jac_j[1, 1, k], jac_j[1, 2, k]
+            map_out[n_h + k, c] = (
+                jac_j[0, 0, k] * a0 + jac_j[0, 1, k] * a1 + jac_j[0, 2, k] * a2 + r0 * m0 + r1 * m1 + r2 * m2
+            )
+            map_out[n_h + k, 3 + c] = r0 * a0 + r1 * a1 + r2 * a2
+
+
+@njit(cache=True)
 def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
     """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
 

@@ -81,9 +81,23 @@ class NodalFilmElement(BoreFilmElement):
         out[:, :2] += radial
         return out
 
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
+        frame = self.sides[0].frame
+        positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
+        return (positions - frame[:, 3]) @ frame[:, :3] - self.bush.mesh.nodes
+
     def nodal_forces(self, evaluation: Any) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
         return self._complete(evaluation.wrench, evaluation.bore_load.reshape(-1, 2))
+
+    def _quantities(self, evaluation: Any) -> dict[str, Any]:
+        out = dict(evaluation.quantities())
+        # the model knows the work on the radial displacement only, not that of the spread forces
+        rest = self.nodal_forces(evaluation)
+        rest[:, :2] -= evaluation.bore_load.reshape(-1, 2)
+        out["power_loss"] -= float(np.sum(rest * (self.drift @ self.sides[0].frame[:, :3])))
+        return out
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation: Any = trial.evaluation

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.columns import ColumnFactor
 from exudyn_ehd.film.direct import (
     Workspace,
     assemble_band,
@@ -52,6 +53,10 @@ class FullSommerfeld:
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
+        """Factor of the (symmetric) transposed system of the last solution."""
+        return ColumnFactor(work.band, work.band, work.inv_diag, True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,6 +93,10 @@ class Gumbel:
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
+        """Factor of the (symmetric) transposed system of the last solution."""
+        return ColumnFactor(work.band, work.band, work.inv_diag, True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -128,6 +137,10 @@ class SwiftStieber:
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
+        """Factor of the (symmetric) transposed system of the last solution."""
+        return ColumnFactor(work.band, work.band, work.inv_diag, True)
 
 
 def solve_symmetric(work: Workspace, rhs: np.ndarray) -> None:

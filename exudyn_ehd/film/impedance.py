@@ -21,27 +21,21 @@ eps = 0 hold exactly), so that their derivatives are exact.
 
 from __future__ import annotations
 
-import hashlib
-import io
 import math
-import os
-import pathlib
-import tempfile
-import warnings
 from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
+from exudyn_ehd.cache import cached_arrays
 from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
 
-FORMAT = 1
-CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
+FORMAT = 2
 SAMPLES = 1000
 # Below this eccentricity ratio the direction of e is that of V; forces change by as much.
 SMALLEST_ECCENTRICITY = 1e-9
@@ -330,55 +324,23 @@ def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
     return 0
 
 
-def cache_folder() -> pathlib.Path:
-    """Where built maps are kept: ``EXUDYN_EHD_CACHE``, else ``exudyn_ehd`` in the user's cache folder."""
-    chosen = os.environ.get(CACHE_VARIABLE)
-    if chosen:
-        return pathlib.Path(chosen)
-    return pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "exudyn_ehd"
-
-
 def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
-    """The map from the disk, or built and stored there.
+    """The map from the disk, or built and stored there; see `exudyn_ehd.cache`."""
 
-    The file's name is a digest of everything that determines the table; its content carries a digest of itself. A damaged file
-    warns and is replaced. Files appear under their name only when complete, so that runs side by side don't disturb each other. A
-    folder that can't be written costs the build time of every run and nothing else.
-    """
-    content = repr((FORMAT, film, type(closure).__name__, float(length_to_radius), SAMPLES))
-    path = cache_folder() / f"impedance_{hashlib.sha256(content.encode()).hexdigest()[:24]}.bin"
-    stored = _read(path)
-    if stored is not None:
-        return stored
-    table = build_table(film, closure, length_to_radius)
-    _write(path, table)
-    return table
+    def compute() -> dict[str, np.ndarray]:
+        t = build_table(film, closure, length_to_radius)
+        scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
+        return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
 
-
-def _read(path: pathlib.Path) -> ImpedanceTable | None:
-    try:
-        raw = path.read_bytes()
-    except OSError:
-        return None
-    if hashlib.sha256(raw[32:]).digest() != raw[:32]:
-        warnings.warn(f"ImpedanceMap: the cache file {path.name} is damaged; it is built again.", stacklevel=3)
-        return None
-    data = np.load(io.BytesIO(raw[32:]), allow_pickle=False)
+    key = repr((FORMAT, film, type(closure).__name__, float(length_to_radius), SAMPLES))
+    data = cached_arrays("impedance", key.encode(), compute)
     v = data["scalars"]
-    return ImpedanceTable(data["nodes"], float(v[0]), float(v[1]), float(v[2]), float(v[3]), float(v[4]), int(v[5]))
-
-
-def _write(path: pathlib.Path, t: ImpedanceTable) -> None:
-    buffer = io.BytesIO()
-    scalars = [
-        t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
-    ]  # fmt: skip
-    np.savez(buffer, nodes=t.nodes, scalars=np.array(scalars, dtype=float))
-    payload = buffer.getvalue()
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=path.parent, suffix=".part", delete=False) as file:
-            file.write(hashlib.sha256(payload).digest() + payload)
-        os.replace(file.name, path)
-    except OSError:
-        return
+    return ImpedanceTable(
+        nodes=data["nodes"],
+        step_s=float(v[0]),
+        step_alpha=float(v[1]),
+        largest_eccentricity_ratio=float(v[2]),
+        worst_error=float(v[3]),
+        median_error=float(v[4]),
+        samples=int(v[5]),
+    )

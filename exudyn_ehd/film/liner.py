@@ -141,6 +141,13 @@ class LinerFilmSolver(FilmSolver):
         """dH/dP at the vertices (n, m) of the last solution."""
         return np.where(self.grid.fixed | ~self.work.active, 0.0, self.beta)
 
+    def stored_power(self) -> float:
+        """Scaled power ``sum p d(beta p)/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
+        if self.inverse == 0.0:
+            return 0.0
+        old = self.none if self.delta_old is None else self.delta_old
+        return float(np.sum(self.system.pressure * (self.deflection - old) * self.grid.weight)) * self.inverse
+
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:

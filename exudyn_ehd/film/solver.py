@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation import FilmSystem
+from exudyn_ehd.film.columns import ColumnFactor, solve_columns
 from exudyn_ehd.film.direct import Workspace
 from exudyn_ehd.film.flux import (
     FluxEffect,
@@ -60,6 +61,8 @@ class Closure(Protocol):
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def adjoint_factor(self, work: Workspace) -> ColumnFactor: ...
 
 
 @dataclass(eq=False)
@@ -190,11 +193,7 @@ class FilmSolver:
         """
         g, s = self.grid, self.system
         self.vx, self.vz = vx, vz
-        if self.flux is None:
-            conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-            couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
-        else:
-            self._apply_flux_effects(self.flux)
+        self._set_links()
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -212,6 +211,15 @@ class FilmSolver:
             steps += fine_steps + self._guess_from_coarse(mass_old, step)
             status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
+
+    def _set_links(self) -> None:
+        """Conductances and Couette fluxes of the links."""
+        g, s = self.grid, self.system
+        if self.flux is not None:
+            self._apply_flux_effects(self.flux)
+            return
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
         g, s = self.grid, self.system
@@ -257,6 +265,14 @@ class FilmSolver:
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
         return fields
+
+    def adjoint_factor(self) -> ColumnFactor:
+        """Factor of the transposed system of the last solution."""
+        return self.closure.adjoint_factor(self.work)
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        solve_columns(*self.adjoint_factor(), self.work.count, self.work.width, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""

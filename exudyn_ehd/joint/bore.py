@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.stencil import add_modes, combine_rows, weighted_rows
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
 
@@ -32,8 +33,14 @@ class Bore(Protocol):
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k) for (r, n, m)."""
 
-    def rows(self, places: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Rows of S^T at flat vertices ``places`` (count,), times ``weight`` (count,): (k, count), contiguous."""
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into out (count, >= first + k) from column ``first`` on."""
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
+        """``X^T B S`` (r, k) for X = ``fields`` (count, r) and B with five weights at five flat vertices per row, both (count, 5)."""
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -53,9 +60,11 @@ class ModalBore:
         S.
     stiffness : (k,) array
         Modal stiffness, N/m.
+    modes : BoreModes
     """
 
     def __init__(self, modes: BoreModes, grid: FilmGrid) -> None:
+        self.modes = modes
         self.grid_shape = grid.shape
         self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
         self.transposed = np.ascontiguousarray(self.shapes.T)
@@ -78,9 +87,21 @@ class ModalBore:
         """Every field's S^T f, (r, k)."""
         return fields.reshape(len(fields), -1) @ self.shapes
 
-    def rows(self, places: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Rows of S^T at vertices, weighted: (k, count)."""
-        return self.transposed[:, places] * weight
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+        place, rate = np.zeros(len(self.shapes)), np.zeros(len(self.shapes))
+        add_modes(self.transposed, q, q_t, place, rate)
+        return place.reshape(self.grid_shape), rate.reshape(self.grid_shape)
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at vertices, weighted, into columns of out."""
+        weighted_rows(self.shapes, places, weight, first, out)
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
+        """X^T B S (r, k)."""
+        rows = np.empty((len(weight), self.size))
+        combine_rows(weight, places, self.shapes, rows)
+        return fields.T @ rows
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -130,9 +151,20 @@ class NodalBore:
         """Every field's S^T f, (r, k)."""
         return fields.reshape(len(fields), -1) @ self.shapes
 
-    def rows(self, places: np.ndarray, weight: np.ndarray) -> np.ndarray:
-        """Rows of S^T at vertices, weighted: (k, count)."""
-        return np.ascontiguousarray((self.transposed[:, places].multiply(weight)).toarray())
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+        return self.displacement(q), self.displacement(q_t)
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at vertices, weighted, into columns of out."""
+        out[:, first : first + self.size] = diags(weight).dot(self.shapes[places]).toarray()
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
+        """X^T B S (r, k)."""
+        stencil = csr_matrix(
+            (weight.ravel(), places.ravel(), 5 * np.arange(len(weight) + 1)), shape=(len(weight), self.shapes.shape[0])
+        )
+        return ((stencil @ self.shapes).T @ fields).T
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""

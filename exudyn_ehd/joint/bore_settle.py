@@ -120,7 +120,7 @@ def _newton(
         # stop at the tolerance, or where rounding keeps a converged residual from falling
         if error <= SETTLING_TOLERANCE * scale or (error <= 1e-8 * scale and error > 0.5 * last):
             return evaluation
-        softening = model.tangent()[6:, MOTION_SIZE : MOTION_SIZE + k]
+        softening = model.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
         step = elasticity.solve(q, softening, residual)
         last = error
         for _ in range(12):

@@ -1,8 +1,9 @@
 """Exact tangent of a film on a flexible bore: the journal's wrench and the bore's loads to motion, q and q_t.
 
-The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each gives their gradients to gap
-and gap rate, which S^T contracts to q and q_t. The gap on a link is the mean of its two columns, so that its gradient is shared
-by both.
+The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in one sweep over the
+factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point stencil on S, since the gap on a link is
+the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination of the derivatives to
+q and q_t, which costs as much as one of them.
 """
 
 from __future__ import annotations
@@ -11,67 +12,82 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.gap_sweep import gap_gradient
+from exudyn_ehd.film.stencil import gap_stencil, motion_columns, transposed_slopes
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
-    field_gradient,
     friction_rows,
     shear_needs_adjoint,
-    swept_gradient,
+    swept_derivatives,
     wrench_tangent,
 )
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.elastic import ElasticBearingModel
 
+# Columns of right-hand sides come in whole vectors of the processor.
+VECTOR = 8
 
-def elastic_tangent(model: ElasticBearingModel) -> np.ndarray:
-    """d (wrench, Q) / d (motion, q, q_t), (6 + k, 10 + 2 k), SI units, for the last evaluation of ``model``."""
-    bore, c = model.bore, model.bearing.radial_clearance
-    k = bore.size
-    integrals = adjoint_rows(model)
-    count = len(integrals)
-    lam = model.solver.adjoint(np.concatenate((integrals, _bore_rows(model))))
-    gradient = np.empty((count + k, SIZE))
-    cell, rate = _gap_gradients(model, lam, gradient)
-    by_q = bore.contract(cell) / c
-    by_rate = np.zeros_like(by_q) if rate is None else bore.contract(rate) / c
-    out = np.empty((6 + k, SIZE + 2 * k))
+
+def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, float]) -> np.ndarray:
+    """Tangent of wrench and bore loads of the last evaluation of ``model``, SI units.
+
+    Parameters
+    ----------
+    model : ElasticBearingModel
+    combinations : pairs of float
+        Factors (a, b), each of which asks for the k columns ``a d/dq + b d/dq_t``.
+
+    Returns
+    -------
+    (6 + k, 10 + k * combinations) array
+        d/d motion, then the combinations.
+    """
+    k, c = model.bore.size, model.bearing.radial_clearance
+    lam, count = _adjoints(model)
+    places = model.solver.work.order[: len(lam)]
+    links, slope, AR, AC = swept_derivatives(model)
+    balance = np.empty((len(lam), SIZE))
+    motion_columns(
+        places, len(lam), links.DX, links.DZ, links.SX, links.SZ, links.SZX, slope, AR, AC, model.cos_x, model.sin_x,
+        model.cos_f, model.sin_f, model.grid.z, balance,
+    )  # fmt: skip
+    gradient = -(lam.T @ balance)
+    out = np.empty((6 + k, SIZE + k * len(combinations)))
     out[:6, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
-    out[:6, SIZE : SIZE + k] = _wrench_by_bore(model, by_q[:count], _Direct(model))
-    out[:6, SIZE + k :] = _wrench_by_bore(model, by_rate[:count], None)
-    out[6:, :SIZE] = _scaled(model, gradient[count:])
-    out[6:, SIZE : SIZE + k] = model.force_scale * by_q[count:]
-    out[6:, SIZE + k :] = model.force_scale * by_rate[count:]
+    out[6:, :SIZE] = _scaled(model, gradient[count : count + k])
+    weights = _wrench_weights(model)
+    direct = _direct(model, weights)
+    by_integral = weights[:, :count] if shear_needs_adjoint(model) else weights[:, [0, 1, 2, 3, 5, 6]]
+    weight, vertices = np.empty((len(lam), 5)), np.empty((len(lam), 5), dtype=np.int64)
+    for i, (by_gap, by_rate) in enumerate(combinations):
+        block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
+        gap_stencil(places, len(lam), links.DX, links.DZ, slope, AR, AC, -by_gap / c, -by_rate / c, weight, vertices)
+        by_bore = model.bore.project(weight, vertices, lam)
+        block[:6] = by_integral @ by_bore[:count] + by_gap * direct
+        np.multiply(by_bore[count : count + k], model.force_scale, out=block[6:])
+        if model.contact_fields is not None:
+            _add_contact_loads(model, block[6:], by_gap)
     if model.contact_fields is not None:
-        _add_contact_loads(model, out)
+        _add_contact_motion(model, out[6:, :4])
     return out
 
 
-def _gap_gradients(
-    model: ElasticBearingModel, lam: np.ndarray, gradient: np.ndarray
-) -> tuple[np.ndarray, np.ndarray | None]:
-    """Gradients of adjoint functionals to the gap at the vertices and to its rate, (k, n, m); those to the motion in ``gradient``."""
-    if model.solver.plain_links:
-        cell, rate = np.empty_like(lam), np.empty_like(lam)
-        gap_gradient(lam, *swept_gradient(model, lam, gradient), cell, rate)
-        return cell, rate if model.solver.storage_weights()[0].any() else None
-    sens = field_gradient(model, lam, gradient)
-    sens.cell += 0.5 * sens.face
-    sens.cell[:, 1:] += 0.5 * sens.face[:, :-1]
-    sens.cell[:, 0] += 0.5 * sens.face[:, -1]
-    return sens.cell, sens.rate
-
-
-def _bore_rows(model: ElasticBearingModel) -> np.ndarray:
-    """Weights of the bore's loads at the film's unknowns, (k, count)."""
-    w = model.solver.work
+def _adjoints(model: ElasticBearingModel) -> tuple[np.ndarray, int]:
+    """Adjoint solutions (count, >= integrals + k) of the integrals and the bore's loads at the unknowns, and the number of integrals."""
+    w, k = model.solver.work, model.bore.size
+    integrals = adjoint_rows(model)
+    count = len(integrals)
     at = w.order[: w.count]
     weight = np.where(w.active.ravel()[at], model.grid.weight.ravel()[at], 0.0)
     if model.P_q is not None:
-        weight = weight * model.P_q.ravel()[at]
-    return model.bore.rows(at, weight)
+        weight *= model.P_q.ravel()[at]
+    lam = np.empty((w.count, -(-(count + k) // VECTOR) * VECTOR))
+    lam[:, :count] = integrals.T
+    lam[:, count + k :] = 0.0
+    model.bore.fill_rows(at, weight, count, lam)
+    model.solver.adjoint_columns(lam)
+    return lam, count
 
 
 def _scaled(model: ElasticBearingModel, gradient: np.ndarray) -> np.ndarray:
@@ -84,18 +100,14 @@ def _scaled(model: ElasticBearingModel, gradient: np.ndarray) -> np.ndarray:
     return out
 
 
-class _Direct:
-    """What the wrench owes to q at fixed film pressure: gap, slopes and contacts."""
-
-    def __init__(self, model: ElasticBearingModel) -> None:
-        g, c = model.grid, model.bearing.radial_clearance
-        pressure = model.P * g.weight
-        # transposed of the central differences that give the slopes of the gap terms
-        along_x = (np.roll(pressure, 1, axis=0) - np.roll(pressure, -1, axis=0)) / (2.0 * g.width_x[0])
-        along_z = pressure @ np.gradient(np.eye(g.z.size), g.z, axis=0)
-        rows = model.bore.contract(np.stack([_couette_field(model), along_x, along_z, _end_field(model)])) / c
-        self.couette, self.slopes, self.ends = rows[0], rows[1:3], rows[3]
-        self.contact = _contact_wrench(model)
+def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
+    """What the wrench owes to q at fixed film pressure (6, k): gap, slopes and contacts."""
+    g = model.grid
+    fields = np.empty((4, *g.shape))
+    fields[0], fields[3] = _couette_field(model), _end_field(model)
+    transposed_slopes(model.P * g.weight, g.width_x[0], g.z, fields[1], fields[2])
+    out = (weights[:, 4:] / model.bearing.radial_clearance) @ model.bore.contract(fields)
+    return out if model.contact_fields is None else out + _contact_wrench(model)
 
 
 def _couette_field(model: ElasticBearingModel) -> np.ndarray:
@@ -120,40 +132,24 @@ def _end_field(model: ElasticBearingModel) -> np.ndarray:
     return field
 
 
-def _wrench_by_bore(model: ElasticBearingModel, gradient: np.ndarray, direct: _Direct | None) -> np.ndarray:
-    """Columns (6, k) of the wrench from gradients of the integrals (4 + ..., k)."""
-    ds, at = gradient[:4], 4
-    dc = np.zeros(gradient.shape[1])
-    if shear_needs_adjoint(model):
-        dc, at = gradient[4], 5
-    slopes = gradient[at : at + 2]
-    ends, contact = np.zeros_like(dc), np.zeros((6, dc.size))
-    if direct is not None:
-        dc, slopes, ends, contact = dc + direct.couette, slopes + direct.slopes, direct.ends, direct.contact
-    x, y, bx, by = model.pose
+def _wrench_weights(model: ElasticBearingModel) -> np.ndarray:
+    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench."""
+    x, y, bx, by = model.pose.tolist()
     R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
-    ds_theta = x * ds[1] - y * ds[0] + bx * ds[3] - by * ds[2] - slopes[0]
-    ds_z = -(bx * ds[0] + by * ds[1]) - slopes[1] - ends
-    out = np.stack(
-        [
-            -fs * ds[0],
-            -fs * ds[1],
-            -c0 * (6.0 * R * ds_z + model.axial_speed * dc),
-            fs * R * ds[3],
-            -fs * R * ds[2],
-            -c0 * R**2 * (6.0 * ds_theta + model.omega * dc),
-        ]
-    )
-    return out + contact
+    out = np.zeros((6, 8))
+    out[0, 0] = out[1, 1] = -fs
+    out[3, 3], out[4, 2] = fs * R, -fs * R
+    out[2] = -6.0 * c0 * R * np.array([-bx, -by, 0.0, 0.0, model.axial_speed / (6.0 * R), 0.0, -1.0, -1.0])
+    out[5] = -6.0 * c0 * R**2 * np.array([-y, x, -by, bx, model.omega / 6.0, -1.0, 0.0, 0.0])
+    return out
 
 
 def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
     """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
     g, R = model.grid, model.grid.reference_length
-    out = np.zeros((6, model.bore.size))
     f = model.contact_fields
-    if f is None:
-        return out
+    assert f is not None
+    out = np.zeros((6, model.bore.size))
     x, y, bx, by = model.motion[:4].tolist()
     theta, axial = friction_rows(R)
     for i, contact in enumerate(model.effects.contacts):
@@ -169,12 +165,20 @@ def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
     return out
 
 
-def _add_contact_loads(model: ElasticBearingModel, out: np.ndarray) -> None:
-    """Add the gradient of the contacts' part of the bore's loads to pose and q."""
+def _contact_slope(model: ElasticBearingModel) -> np.ndarray:
+    """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
     f, g = model.contact_fields, model.grid
     assert f is not None
-    k = model.bore.size
-    slope = np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
+    return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
+
+
+def _add_contact_motion(model: ElasticBearingModel, block: np.ndarray) -> None:
+    """Add the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
+    slope, z = _contact_slope(model), model.grid.z
     cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-    out[6:, :4] -= model.bore.contract(np.stack([cos, sin, cos * g.z, sin * g.z])).T * model.pose_scale
-    out[6:, SIZE : SIZE + k] += model.bore.product(slope) / model.bearing.radial_clearance
+    block -= model.bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * model.pose_scale
+
+
+def _add_contact_loads(model: ElasticBearingModel, block: np.ndarray, by_gap: float) -> None:
+    """Add ``by_gap`` times the gradient of the contacts' part of the bore's loads to q, (k, k)."""
+    block += model.bore.product(_contact_slope(model)) * (by_gap / model.bearing.radial_clearance)

@@ -32,11 +32,17 @@ class FilmFields(FilmPictures):
         K; None for an isothermal bearing.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
+    contact_pressure : (n, m) array or None
+        Of asperities or wall, Pa; None without contact.
+    wear_depth : (n, m) array or None
+        Worn off the bore up to this instant, m; None without wear.
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.model`; with a flexible bore followed by its coordinates and rates.
     bearing : JournalBearing
+    bush_displacement : (k, 3) array or None
+        Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
     """
 
     time: float
@@ -48,10 +54,13 @@ class FilmFields(FilmPictures):
     fill: np.ndarray | None
     temperature: float | np.ndarray | None
     bore_displacement: np.ndarray | None
+    contact_pressure: np.ndarray | None
+    wear_depth: np.ndarray | None
     force: np.ndarray
     moment: np.ndarray
     motion: np.ndarray
     bearing: JournalBearing = field(repr=False)
+    bush_displacement: np.ndarray | None = None
 
 
 def grid_fields(model: BearingModel) -> dict[str, Any]:
@@ -69,14 +78,18 @@ def grid_fields(model: BearingModel) -> dict[str, Any]:
     }
 
 
-def film_fields(model: BearingModel, time: float) -> FilmFields:
+def film_fields(model: BearingModel, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
     """The film of the model's last evaluation."""
+    wear = model.effects.wear
     return FilmFields(
         time=time,
         **grid_fields(model),
         bore_displacement=model.bore_fields().get("bore_displacement"),
+        contact_pressure=None if model.contact_fields is None else np.sum(model.contact_fields.P, axis=0),
+        wear_depth=None if wear is None else model.worn(wear) * model.bearing.radial_clearance,
         force=model.wrench[:3].copy(),
         moment=model.wrench[3:].copy(),
         motion=model.motion.copy(),
         bearing=model.bearing,
+        bush_displacement=bush_displacement,
     )

@@ -16,7 +16,7 @@ from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, coue
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
-from exudyn_ehd.film.sweep import pose_gradient, wrench_gradient
+from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import LinerFilmSolver
@@ -85,16 +85,17 @@ def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate:
     return out
 
 
-def swept_gradient(
-    model: BearingModel, lam: np.ndarray, gradient: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links.
+def swept_gradient(model: BearingModel, lam: np.ndarray, gradient: np.ndarray) -> None:
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
+    d, slope, by_rate, by_gap = swept_derivatives(model)
+    pose_gradient(
+        lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, model.cos_x, model.sin_x, model.cos_f, model.sin_f,
+        model.grid.z, gradient,
+    )  # fmt: skip
 
-    Returns
-    -------
-    DX, DZ, slope, AR, AC : (n, m) arrays
-        Derivatives of links and storage, as `sweep.pose_gradient` takes them.
-    """
+
+def swept_derivatives(model: BearingModel) -> tuple[LinkDerivatives, np.ndarray, np.ndarray, np.ndarray]:
+    """Derivatives to the true gap: of the links, and slope, AR, AC (n, m) as `sweep.pose_gradient` takes them."""
     s = model.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
@@ -104,11 +105,7 @@ def swept_gradient(
         slope = f.slope
         by_gap = by_gap * f.slope + by_rate * f.curvature
         by_rate = by_rate * f.slope
-    pose_gradient(
-        lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, model.cos_x, model.sin_x, model.cos_f, model.sin_f,
-        model.grid.z, gradient,
-    )  # fmt: skip
-    return d.DX, d.DZ, slope, by_rate, by_gap
+    return d, slope, by_rate, by_gap
 
 
 def field_gradient(

@@ -124,6 +124,8 @@ class ImpedanceModel:
         eps = math.hypot(x, y) / self.bearing.radial_clearance
         out = {
             "minimum_gap": self.bearing.radial_clearance * (1.0 - eps),
+            "minimum_gap_angle": math.atan2(y, x) % (2.0 * math.pi),
+            "minimum_gap_z": 0.0,
             "eccentricity_ratio": eps,
             "largest_eccentricity_ratio": eps,
         }

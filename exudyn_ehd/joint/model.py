@@ -21,7 +21,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.contact_loads import contact_integrals
+from exudyn_ehd.film.contact_loads import contact_integrals, couette_integral_law
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
@@ -33,6 +33,7 @@ from exudyn_ehd.film.loads import (
     pressure_integrals,
     refined_peak,
 )
+from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
 from exudyn_ehd.joint.effects import (
     Contact,
@@ -259,7 +260,7 @@ class BearingModel:
         if not self.remembers:
             return None
         mass = self.solver.content if self.remembers_mass else None
-        wear = None if self.effects.wear is None else self._worn(self.effects.wear)
+        wear = None if self.effects.wear is None else self.worn(self.effects.wear)
         deflection = None
         if self.remembers_deflection and self.liner_solver is not None:
             deflection = self.liner_solver.deflection
@@ -267,7 +268,7 @@ class BearingModel:
         temperature = None if thermal is None else thermal.advance(self)
         return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
 
-    def _worn(self, wear: Wear) -> np.ndarray:
+    def worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""
         assert self.contact_fields is not None
         history, step = self.start
@@ -340,11 +341,9 @@ class BearingModel:
         fields = [term.field(history) for term in self.effects.gap_terms]
         if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
             self.gap_fields = fields
-            self.extra = np.sum(fields, axis=0)
-            nxt = np.roll(self.extra, -1, axis=0)
-            self.extra_link = 0.5 * (self.extra + nxt)
-            self.extra_slope_x = (nxt - np.roll(self.extra, 1, axis=0)) / (2.0 * g.width_x[0])
-            self.extra_slope_z = np.gradient(self.extra, g.z, axis=1)
+            self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+            self.extra_link, self.extra_slope_x, self.extra_slope_z = (np.empty(g.shape) for _ in range(3))
+            gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
 
@@ -399,18 +398,22 @@ class BearingModel:
                 self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
             return Status.CONVERGED
-        ratio, ratio_q = np.ones(shape), np.zeros(shape)
-        ratio_h, ratio_v = np.zeros(shape), np.zeros(shape)
+        ratio, ratio_q = np.empty(shape), np.empty(shape)
+        ratio_h = ratio_v = s.nothing
         self.P_q = None
-        if self.effects.pressure_law is not None:
+        if self.compressible is not None:
+            self.P, self.P_q = np.empty(shape), np.empty(shape)
+            if not self.compressible.viscosity(self.P, ratio, ratio_q, self.P_q):
+                return Status.NO_PRESSURE
+        elif self.effects.pressure_law is not None:
             self.P = np.empty(shape)
             if not self.effects.pressure_law.inverse(s.pressure * self.pressure_scale, self.P, ratio, ratio_q):
                 return Status.NO_PRESSURE
             self.P /= self.pressure_scale
             ratio_q *= self.pressure_scale
-            self.P_q = ratio.copy() if self.compressible is None else ratio / self.compressible.rho
+            self.P_q = ratio.copy()
         if self.effects.shear_factor is not None:
-            factor = np.empty(shape)
+            factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
             if self.P_q is not None:
                 ratio_h *= ratio
@@ -430,9 +433,10 @@ class BearingModel:
 
     def _couette(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
+        if self.ratio is not None and s.closure.conserves_mass:
+            return couette_integral_ratio(s.H, g.weight, self.ratio, s.fill, s.fill >= 1.0)
         if self.ratio is not None:
-            unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-            return couette_integral_ratio(s.H, g.weight, self.ratio, self.share(), unbroken)
+            return couette_integral_law(s.H, g.weight, self.ratio, s.work.active, g.fixed, s.closure.cavity_shear)
         if s.closure.conserves_mass:
             return couette_integral_fill(s.H, g.weight, s.fill)
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
@@ -545,14 +549,23 @@ class BearingModel:
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation.
 
+        The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it presses out,
+
+            power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
+
+        with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
+        equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
+        ends' cross section, which the journal's wrench carries. What bends an elastic bore is not in it: that is the bush's.
+
         Returns
         -------
         dict
-            ``minimum_gap`` (m, over the whole bearing with its edges), ``eccentricity_ratio`` (at the mid-plane),
-            ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from parabolas through the largest vertex),
+            ``minimum_gap`` (m, over the whole bearing with its edges), ``minimum_gap_angle`` and ``minimum_gap_z`` (its place, rad and m),
+            ``eccentricity_ratio`` (at the mid-plane), ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from
+            parabolas through the largest vertex) at ``peak_angle`` (rad),
             ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
             ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
-            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that enters film and
+            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that stays in film and
             contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
             by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
             of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
@@ -565,6 +578,7 @@ class BearingModel:
         }
         if self.status is not Status.CONVERGED:
             return out
+        out["minimum_gap_angle"], out["minimum_gap_z"] = self.minimum_place()
         R = self.grid.reference_length
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
@@ -573,9 +587,13 @@ class BearingModel:
         v, f = self.motion, self.wrench
         along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
         power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
+        if self.liner_solver is not None:
+            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
+        peak, peak_angle, _ = self.refined_peak()
         out |= {
-            "peak_pressure": self.refined_peak()[0],
+            "peak_pressure": peak,
+            "peak_angle": peak_angle % (2.0 * math.pi),
             "friction_torque": friction,
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
@@ -618,6 +636,22 @@ class BearingModel:
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
         fx, fz, rate = s.couette_flows()
         return end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed)
+
+    def minimum_place(self) -> tuple[float, float]:
+        """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.
+
+        Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a profile, wear or
+        an elastic bore the vertex of the smallest gap.
+        """
+        R, half = self.grid.reference_length, self.half_length
+        if self.effects.gap_terms or self.liner_solver is not None:
+            i, j = np.unravel_index(int(np.argmin(self.solver.H)), self.grid.shape)
+            return float(self.grid.x[i] % (2.0 * math.pi)), float(self.grid.z[j] * R)
+        x, y, bx, by = self.pose.tolist()
+        # |e|^2 at either end differs by 4 half (x bx + y by)
+        lean = x * bx + y * by
+        end = math.copysign(half, lean) if lean != 0.0 or bx != 0.0 or by != 0.0 else 0.0
+        return math.atan2(y + end * by, x + end * bx) % (2.0 * math.pi), end * R
 
     def refined_peak(self) -> tuple[float, float, float]:
         """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""

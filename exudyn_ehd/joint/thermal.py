@@ -86,9 +86,17 @@ class OilFlows(Exchange):
 
 
 def heat_power(model: BearingModel, flows: Exchange) -> float:
-    """Power that the film and its contacts turn into heat, W: the mechanical power and the work of the oil pressed through."""
-    work = model.pressure_scale * model.flow_scale * float(np.vdot(model.P, flows.outside))
-    return model.quantities()["power_loss"] + work
+    """Power that the film and its contacts turn into heat, W: `BearingModel.quantities` power_loss less the work on the oil."""
+    s, g, b = model.solver, model.grid, model.bearing
+    cavity = b.cavitation.cavity_pressure / model.pressure_scale
+    cavity = cavity if math.isfinite(cavity) else 0.0
+    work = float(np.vdot(model.P - cavity, flows.outside))
+    if cavity != 0.0 and s.squeeze:
+        work += cavity * float(np.vdot(s.area, s.H_t))
+    if model.axial_speed != 0.0:
+        ends = model.P[:, -1] * s.H[:, -1] - model.P[:, 0] * s.H[:, 0]
+        work += model.axial_speed / g.reference_length * float(np.sum(g.width_x * ends))
+    return model.quantities()["power_loss"] + model.pressure_scale * model.flow_scale * work
 
 
 class LumpedTemperature:

@@ -31,11 +31,14 @@ from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 from scipy.sparse.linalg import splu
 
+from exudyn_ehd.cache import cached_arrays
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature, face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError, require_number
 
+# Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
+FORMAT = 1
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 LARGEST_WAVE, LARGEST_AXIAL = 24, 10
 # Share of the energy below which a combination of pressures adds nothing but rounding.
@@ -136,7 +139,7 @@ class BoreModes:
 
 
 def bore_modes(bush: ModalBush) -> BoreModes:
-    """Compute the modes of a bush: one factorisation of its stiffness, one solve per pressure.
+    """The modes of a bush from the disk (see `exudyn_ehd.cache`), or computed and stored there.
 
     Raises
     ------
@@ -144,6 +147,34 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         If the tolerance takes more waves than the search allows.
     """
     mesh = bush.build_mesh()
+
+    def compute() -> dict[str, np.ndarray]:
+        modes = compute_modes(bush, mesh)
+        return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
+
+    data = cached_arrays("bush_modes", _content(bush, mesh), compute)
+    return BoreModes(
+        mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
+    )
+
+
+def _content(bush: ModalBush, mesh: BushMesh) -> bytes:
+    """Everything that determines the modes."""
+    material, quadrature = bush.material, bush.quadrature
+    numbers = (
+        FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, LARGEST_WAVE, LARGEST_AXIAL,
+        DEPENDENT, SAMPLE_ECCENTRICITIES, SAMPLE_DIRECTIONS, SAMPLE_TILTS, SAMPLE_DECAY, AXIAL_FROM,
+    )  # fmt: skip
+    arrays = (
+        mesh.nodes, mesh.elements, mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes, quadrature.points, quadrature.weights,
+    )  # fmt: skip
+    return b"".join(
+        [repr(numbers).encode(), *(repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)]
+    )
+
+
+def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
+    """Compute the modes of a bush on its mesh: one factorisation of its stiffness, one solve per pressure."""
     bore, size = mesh.bore, len(mesh.nodes)
     solid = TotalLagrange(mesh=mesh, material=bush.material, quadrature=bush.quadrature)
     free = np.ones(3 * size, dtype=bool)

@@ -19,7 +19,6 @@ Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: ev
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import importlib.util
 import math
@@ -33,32 +32,12 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.files import replacing
 from exudyn_ehd.joint.steady import equilibrium
 from exudyn_ehd.status import EHDError, InputError, require_integer
+from exudyn_ehd.tables import text_table, write_csv
 
 _WHERE = "parameter_study"
 _INDEX = "computationIndex"
-# SI units of names that studies commonly use; others are given by the argument ``units``.
-UNITS = {
-    "journal_radius": "m",
-    "length": "m",
-    "radial_clearance": "m",
-    "viscosity": "Pa s",
-    "speed": "rad/s",
-    "load": "N",
-    "eccentricity_ratio": "-",
-    "attitude_angle": "rad",
-    "minimum_gap": "m",
-    "peak_pressure": "Pa",
-    "friction_torque": "N m",
-    "power_loss": "W",
-    "leakage": "m3/s",
-    "sommerfeld_number": "-",
-    "whirl_ratio": "-",
-    "critical_mass": "kg",
-    "seconds": "s",
-}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,7 +57,7 @@ class StudyTable:
     errors : tuple of str
         Why a row failed; empty for one that did not.
     units : dict
-        Unit of a column, where known.
+        Units by name, of columns whose unit the package does not know.
     """
 
     columns: dict[str, np.ndarray]
@@ -99,24 +78,10 @@ class StudyTable:
 
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write the table: a header of names with units, a row per combination, the reason of a failure last."""
-        with replacing(path) as file:
-            writer = csv.writer(file)
-            writer.writerow([self._head(name) for name in self.columns] + ["error"])
-            for k in range(len(self)):
-                writer.writerow([repr(float(v[k])) for v in self.columns.values()] + [self.errors[k]])
-
-    def _head(self, name: str) -> str:
-        return f"{name} [{self.units[name]}]" if name in self.units else name
+        write_csv(path, self.columns, more=self.units, remarks={"error": self.errors})
 
     def __str__(self) -> str:
-        heads = [self._head(name) for name in self.columns]
-        rows = [[f"{v[k]:.5g}" for v in self.columns.values()] for k in range(len(self))]
-        widths = [max(len(head), *(len(row[i]) for row in rows)) for i, head in enumerate(heads)]
-        lines = ["  ".join(head.rjust(w) for head, w in zip(heads, widths, strict=True))]
-        for row, error in zip(rows, self.errors, strict=True):
-            line = "  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True))
-            lines.append(f"{line}  {error}".rstrip())
-        return "\n".join(lines)
+        return text_table(self.columns, more=self.units, remarks=self.errors)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -350,11 +315,10 @@ def _table(
         raise InputError(f"{_WHERE}.function must not return results named as parameters, got {', '.join(shared)}.")
     columns = places | {name: np.array([row.results.get(name, math.nan) for row in rows]) for name in names}
     columns["seconds"] = np.array([row.seconds for row in rows])
-    known = {name: unit for name, unit in (UNITS | units).items() if name in columns}
     return StudyTable(
         columns=columns,
         parameters=tuple(lists),
         shape=tuple(len(values) for values in lists.values()),
         errors=tuple(row.error for row in rows),
-        units=known,
+        units=units,
     )

@@ -60,6 +60,10 @@ def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
     assert evaluation.status is Status.CONVERGED
     tangent, active = evaluation.tangent(), model.solver.work.active
     assert tangent.shape == (6 + k, 10 + 2 * k)
+    combined = evaluation.combined_tangent(2.0, -0.03)
+    assert np.array_equal(combined[:, :10], tangent[:, :10])
+    both = 2.0 * tangent[:, 10 : 10 + k] - 0.03 * tangent[:, 10 + k :]
+    assert abs(combined[:, 10:] - both).max() < 1e-12 * abs(both).max()
     unit = np.concatenate(([C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0], np.full(k, C), np.full(k, 0.01)))
     rows = abs(tangent * unit).max(axis=1)
     rows[rows < 1e-12 * rows.max()] = np.inf

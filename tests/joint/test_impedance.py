@@ -215,6 +215,11 @@ def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_pa
         with pytest.warns(UserWarning, match="damaged"):
             np.testing.assert_array_equal(impedance_table(film, closure, 2.0).nodes, first.nodes)
         assert path.read_bytes() == raw
+    other = impedance_table(film, ehd.Gumbel(), 2.0)
+    (foreign,) = set((tmp_path / "new").iterdir()) - {path}
+    foreign.write_bytes(raw)
+    with pytest.warns(UserWarning, match="damaged"):
+        np.testing.assert_array_equal(impedance_table(film, ehd.Gumbel(), 2.0).nodes, other.nodes)
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("EXUDYN_EHD_CACHE", str(blocked))

@@ -292,3 +292,36 @@ def test_only_journals_that_may_move_are_built(make_bearing):
     with pytest.raises(ehd.InputError, match="MaximumGap"):
         build_model(make_bearing(1.0, inlet=ehd.MaximumGap()))
     assert isinstance(build_model(make_bearing(1.0)), BearingModel)
+
+
+@pytest.mark.parametrize(
+    ("eccentricity", "tilt", "end"),
+    [
+        ((0.4, 0.3), (0.0, 0.0), 0.0),
+        ((0.4, 0.3), (0.2, 0.1), 1.0),
+        ((-0.4, 0.3), (0.2, 0.1), -1.0),
+        ((0.0, 0.0), (0.3, -0.2), 1.0),
+    ],
+)
+def test_place_of_the_smallest_gap(make_bearing, make_motion, eccentricity, tilt, end):
+    """Against the smallest of the closed form h = c - x cos - y sin on a fine grid."""
+    bearing = make_bearing(film=ehd.FiniteLength(n_theta=48, n_z=6))
+    motion = make_motion(bearing, eccentricity, tilt)
+    q = build_model(bearing).evaluate(motion).quantities()
+    x, y, bx, by = motion[:4]
+    theta, z = np.linspace(0.0, 2.0 * np.pi, 3601), np.linspace(-0.5, 0.5, 21) * bearing.length
+    h = bearing.radial_clearance - np.outer(np.cos(theta), x + bx * z) - np.outer(np.sin(theta), y + by * z)
+    assert q["minimum_gap_z"] == pytest.approx(end * 0.5 * bearing.length, abs=1e-15)
+    place = np.argmin(np.abs(z - q["minimum_gap_z"]))
+    # half a fine interval
+    assert q["minimum_gap_angle"] == pytest.approx(theta[np.argmin(h[:, place])], abs=1e-3)
+    assert q["minimum_gap"] == pytest.approx(h.min(), rel=1e-6)
+
+
+def test_place_of_the_smallest_gap_with_a_profile(make_bearing, make_motion):
+    """A bore that is out of round by more than the journal is eccentric is narrowest where its wave is."""
+    bearing = make_bearing(profile=ehd.OutOfRound(order=2, amplitude=5e-6), film=ehd.FiniteLength(n_theta=96, n_z=6))
+    q = build_model(bearing).evaluate(make_motion(bearing, (0.0, 0.05))).quantities()
+    theta = np.arange(96) * 2.0 * np.pi / 96
+    h = 25e-6 - 0.05 * 25e-6 * np.sin(theta) + 5e-6 * np.cos(2.0 * theta)
+    assert q["minimum_gap_angle"] == pytest.approx(theta[np.argmin(h)], abs=1e-12)

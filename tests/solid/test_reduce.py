@@ -1,8 +1,11 @@
 """Modes of a bush's bore: what they must span, and what the tolerance promises."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
+from exudyn_ehd.solid import reduce
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.reduce import ModalBush, bore_modes, pressure_loads
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
@@ -125,3 +128,38 @@ def test_wrong_values_are_named(wrong):
     given = {"mesh": CYLINDER, "material": STEEL} | wrong
     with pytest.raises(InputError, match=f"ModalBush.{next(iter(wrong))}"):
         ModalBush(**given)
+
+
+def test_modes_are_kept_on_disk_by_content(monkeypatch, tmp_path):
+    monkeypatch.setenv("EXUDYN_EHD_CACHE", str(tmp_path))
+    bush = ModalBush(
+        mesh=dataclasses.replace(CYLINDER, axial=1, circumferential=12), material=STEEL, tolerance=0.2, tilted=False
+    )
+    first = bore_modes(bush)
+    (path,) = tmp_path.iterdir()
+    raw = path.read_bytes()
+    built = []
+    exact = reduce.compute_modes
+    monkeypatch.setattr(reduce, "compute_modes", lambda *a: built.append(a) or exact(*a))
+    again = bore_modes(bush)
+    assert not built and again.error == first.error
+    assert np.array_equal(again.displacements, first.displacements) and np.array_equal(again.stiffness, first.stiffness)
+    # what only the mass needs does not count, everything else does
+    bore_modes(dataclasses.replace(bush, material=dataclasses.replace(STEEL, density=1.0)))
+    bore_modes(dataclasses.replace(bush, mesh=bush.build_mesh()))
+    assert not built
+    moved = bush.build_mesh()
+    moved = dataclasses.replace(moved, nodes=moved.nodes * (1.0 + 1e-12))
+    for other in (
+        dataclasses.replace(bush, material=dataclasses.replace(STEEL, youngs_modulus=2.0e11)),
+        dataclasses.replace(bush, tolerance=0.15),
+        dataclasses.replace(bush, tilted=True),
+        dataclasses.replace(bush, mesh=moved),
+    ):
+        built.clear()
+        bore_modes(other)
+        assert len(built) == 1
+    path.write_bytes(raw[:-1])
+    with pytest.warns(UserWarning, match="damaged"):
+        assert np.array_equal(bore_modes(bush).stiffness, first.stiffness)
+    assert path.read_bytes() == raw

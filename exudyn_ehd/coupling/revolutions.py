@@ -1,0 +1,146 @@
+"""Summary of a history by revolutions of the journal, or by periods."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import pathlib
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.tables import text_table, write_csv
+
+TURN = 2.0 * np.pi
+_UNITS = {"start": "s", "end": "s"}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class Revolutions:
+    """One row per revolution; SI units, nan where the film does not provide a quantity. ``print`` shows a table.
+
+    Attributes
+    ----------
+    start, end : (k,) arrays
+        s.
+    minimum_gap, minimum_gap_time, minimum_gap_angle, minimum_gap_z : (k,) arrays
+        Smallest film of the revolution (m), when (s) and where (rad, m).
+    peak_pressure, peak_pressure_time, peak_angle : (k,) arrays
+        Largest pressure (Pa), when (s) and at which angle (rad).
+    largest_eccentricity_ratio : (k,) array
+        Along the whole length.
+    largest_load : (k,) array
+        Of the force in the plane normal to the axis, N.
+    mean_power_loss, mean_leakage, mean_friction_torque : (k,) arrays
+        Means over time, W, m3/s and N m.
+    """
+
+    start: np.ndarray
+    end: np.ndarray
+    minimum_gap: np.ndarray
+    minimum_gap_time: np.ndarray
+    minimum_gap_angle: np.ndarray
+    minimum_gap_z: np.ndarray
+    peak_pressure: np.ndarray
+    peak_pressure_time: np.ndarray
+    peak_angle: np.ndarray
+    largest_eccentricity_ratio: np.ndarray
+    largest_load: np.ndarray
+    mean_power_loss: np.ndarray
+    mean_leakage: np.ndarray
+    mean_friction_torque: np.ndarray
+
+    def __len__(self) -> int:
+        return self.start.size
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+
+    def __str__(self) -> str:
+        return text_table(self._columns(), more=_UNITS)
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write the table with units in its header."""
+        write_csv(path, self._columns(), more=_UNITS)
+
+
+def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Instants (k + 1,) at which the journal has turned by 0, 1, ... k whole revolutions against the housing, one way or the other.
+
+    The angle is the integral of the relative spin, by the trapezoidal rule; linear between steps.
+    """
+    angle = np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / TURN
+    # a journal that swings back counts when it comes by for the first time
+    reached = np.maximum.accumulate(np.abs(angle))
+    # a run of whole revolutions ends a rounding short of the last one
+    whole = int(np.floor(reached[-1] + 1e-9))
+    first = np.concatenate(([True], np.diff(reached) > 0.0))
+    return np.interp(np.arange(whole + 1.0), reached[first], time[first])
+
+
+def revolutions(history: Any, period: float | None = None) -> Revolutions:
+    """Summarise the whole revolutions of a history; see `JointHistory.revolutions`."""
+    time = history.time
+    if time.size < 2:
+        raise InputError("JointHistory.revolutions: the history has no steps; run a solver first.")
+    if period is None:
+        edges = revolution_times(time, history.motion[:, 8])
+        if edges.size < 2:
+            raise InputError(
+                "JointHistory.revolutions: the journal has not turned once against the housing; give period=..., the duration of "
+                "one cycle in s."
+            )
+    else:
+        length = require_number("JointHistory.revolutions: period", period, "s", above=0.0)
+        # 1e-9: a run of whole periods ends a rounding short of the last one
+        whole = int(np.floor((time[-1] - time[0]) / length + 1e-9))
+        if whole == 0:
+            raise InputError(
+                f"JointHistory.revolutions: period must not exceed the history's {time[-1] - time[0]:g} s, got {length:g} s."
+            )
+        edges = np.minimum(time[0] + length * np.arange(whole + 1.0), time[-1])
+    rows = [_summary(history, a, b) for a, b in itertools.pairwise(edges)]
+    return Revolutions(**{name: np.array([row[name] for row in rows]) for name in rows[0]})
+
+
+def _summary(history: Any, start: float, end: float) -> dict[str, float]:
+    time = history.time
+    # edges are sums of many steps: a step on an edge belongs to both sides, to rounding
+    slack = 1e-9 * (end - start)
+    inside = np.flatnonzero((time >= start - slack) & (time <= end + slack))
+    if inside.size == 0:
+        raise InputError(
+            f"JointHistory.revolutions: no recorded step between {start:g} s and {end:g} s; the steps are longer than a revolution."
+        )
+    # the recorded steps within, and both ends by linear interpolation
+    along = np.concatenate(([start], time[(time > start) & (time < end)], [end]))
+
+    def mean(values: np.ndarray) -> float:
+        v = np.interp(along, time, values)
+        return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(along)) / (end - start))
+
+    thinnest = _place(history.minimum_gap, inside, np.nanargmin)
+    highest = _place(history.peak_pressure, inside, np.nanargmax)
+    return {
+        "start": start,
+        "end": end,
+        "minimum_gap": history.minimum_gap[thinnest],
+        "minimum_gap_time": time[thinnest],
+        "minimum_gap_angle": history.minimum_gap_angle[thinnest],
+        "minimum_gap_z": history.minimum_gap_z[thinnest],
+        "peak_pressure": history.peak_pressure[highest],
+        "peak_pressure_time": time[highest],
+        "peak_angle": history.peak_angle[highest],
+        "largest_eccentricity_ratio": float(history.largest_eccentricity_ratio[inside].max()),
+        "largest_load": float(np.hypot(history.force[inside, 0], history.force[inside, 1]).max()),
+        "mean_power_loss": mean(history.power_loss),
+        "mean_leakage": mean(history.leakage),
+        "mean_friction_torque": mean(history.friction_torque),
+    }
+
+
+def _place(values: np.ndarray, inside: np.ndarray, find: Any) -> int:
+    """Row of the extreme value among those inside; the first of them if the film does not provide the quantity."""
+    among = values[inside]
+    return int(inside[0] if np.isnan(among).all() else inside[find(among)])

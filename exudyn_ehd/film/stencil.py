@@ -1,0 +1,182 @@
+"""Derivatives of the film's balances at its unknowns, as a stencil for gaps whose links are the mean of their columns.
+
+With the derivatives of every link's flow to its gap (symbols as in `sweep`) the balance of vertex (i, j) changes with the true gap by
+
+    dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF, HZ means over the two ends of a link.
+
+An adjoint functional's gradient is ``-lam . dr``.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True)
+def gap_stencil(order, count, DX, DZ, slope, AR, AC, by_gap, by_rate, weight_out, place_out):
+    """Rows of ``by_gap dr/dH + by_rate dr/dH_t`` at the unknowns for elastic gaps.
+
+    Parameters
+    ----------
+    order, count
+        Flat vertices of the unknowns.
+    DX, DZ, slope, AR, AC : (n, m) arrays
+        As `gradients.swept_derivatives` returns them.
+    by_gap, by_rate : float
+        Factors.
+    weight_out, place_out : (count, 5) float and int arrays
+        Weight and flat vertex: itself, next and last in theta, next and last in z.
+    """
+    n, m = DX.shape
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        place_out[r, 0] = order[r]
+        place_out[r, 1] = nxt * m + j
+        place_out[r, 2] = prv * m + j
+        weight_out[r, 1] = 0.5 * by_gap * DX[i, j]
+        weight_out[r, 2] = -0.5 * by_gap * DX[prv, j]
+        own = 0.5 * (DX[i, j] - DX[prv, j]) + AC[i, j]
+        for q in range(3, 5):
+            weight_out[r, q] = 0.0
+            place_out[r, q] = order[r]
+        if j + 1 < m:
+            own += 0.5 * DZ[i, j] * slope[i, j]
+            weight_out[r, 3] = 0.5 * by_gap * DZ[i, j] * slope[i, j + 1]
+            place_out[r, 3] = order[r] + 1
+        if j > 0:
+            own -= 0.5 * DZ[i, j - 1] * slope[i, j]
+            weight_out[r, 4] = -0.5 * by_gap * DZ[i, j - 1] * slope[i, j - 1]
+            place_out[r, 4] = order[r] - 1
+        weight_out[r, 0] = by_gap * own + by_rate * AR[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_modes(transposed, q, q_t, place_out, rate_out):
+    """Add sums of the rows of ``transposed`` (k, n m) with the weights q and with q_t (k,) to two fields (n m,), in one pass, by fours."""
+    k, size = transposed.shape
+    whole = k - k % 4
+    for a in range(0, whole, 4):
+        s0, s1, s2, s3 = transposed[a], transposed[a + 1], transposed[a + 2], transposed[a + 3]
+        p0, p1, p2, p3 = q[a], q[a + 1], q[a + 2], q[a + 3]
+        r0, r1, r2, r3 = q_t[a], q_t[a + 1], q_t[a + 2], q_t[a + 3]
+        for v in range(size):
+            b0, b1, b2, b3 = s0[v], s1[v], s2[v], s3[v]
+            place_out[v] += p0 * b0 + p1 * b1 + p2 * b2 + p3 * b3
+            rate_out[v] += r0 * b0 + r1 * b1 + r2 * b2 + r3 * b3
+    for a in range(whole, k):
+        row = transposed[a]
+        for v in range(size):
+            place_out[v] += q[a] * row[v]
+            rate_out[v] += q_t[a] * row[v]
+
+
+@njit(cache=True, fastmath=_FAST)
+def weighted_rows(shapes, place, weight, first, out):
+    """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of out (count, >= first + k)."""
+    k = shapes.shape[1]
+    for r in range(place.size):
+        own, target, w = shapes[place[r]], out[r, first : first + k], weight[r]
+        for q in range(k):
+            target[q] = w * own[q]
+
+
+@njit(cache=True, fastmath=_FAST)
+def combine_rows(weight, place, shapes, out):
+    """Stencil (count, 5) times fields: out (count, k) for shapes (n m, k)."""
+    count = len(weight)
+    for r in range(count):
+        a, b, c, d, e = weight[r, 0], weight[r, 1], weight[r, 2], weight[r, 3], weight[r, 4]
+        own, nxt, prv = shapes[place[r, 0]], shapes[place[r, 1]], shapes[place[r, 2]]
+        up, down = shapes[place[r, 3]], shapes[place[r, 4]]
+        target = out[r]
+        for q in range(target.size):
+            target[q] = a * own[q] + b * nxt[q] + c * prv[q] + d * up[q] + e * down[q]
+
+
+@njit(cache=True, fastmath=_FAST)
+def motion_columns(order, count, DX, DZ, SX, SZ, SZX, slope, AR, AC, cos_x, sin_x, cos_f, sin_f, z, out):
+    """Derivatives of the balances at the unknowns to (scaled pose, scaled rates, vx, vz): out (count, 10).
+
+    The gap is ``-(x + z bx) cos - (y + z by) sin``, on links in theta with the true angle.
+    """
+    n, m = DX.shape
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        own = AC[i, j]
+        tilt = AC[i, j] * z[j]
+        vx = SX[i, j] - SX[prv, j]
+        vz = 0.0
+        if j + 1 < m:
+            own += 0.5 * DZ[i, j] * (slope[i, j] + slope[i, j + 1])
+            tilt += 0.5 * DZ[i, j] * (slope[i, j] * z[j] + slope[i, j + 1] * z[j + 1])
+            vx += SZX[i, j]
+            vz += SZ[i, j]
+        if j > 0:
+            own -= 0.5 * DZ[i, j - 1] * (slope[i, j] + slope[i, j - 1])
+            tilt -= 0.5 * DZ[i, j - 1] * (slope[i, j] * z[j] + slope[i, j - 1] * z[j - 1])
+            vx -= SZX[i, j - 1]
+            vz -= SZ[i, j - 1]
+        c = DX[i, j] * cos_f[i] - DX[prv, j] * cos_f[prv]
+        s = DX[i, j] * sin_f[i] - DX[prv, j] * sin_f[prv]
+        out[r, 0] = -(c + own * cos_x[i])
+        out[r, 1] = -(s + own * sin_x[i])
+        out[r, 2] = -(c * z[j] + tilt * cos_x[i])
+        out[r, 3] = -(s * z[j] + tilt * sin_x[i])
+        out[r, 4] = -AR[i, j] * cos_x[i]
+        out[r, 5] = -AR[i, j] * sin_x[i]
+        out[r, 6] = out[r, 4] * z[j]
+        out[r, 7] = out[r, 5] * z[j]
+        out[r, 8] = vx
+        out[r, 9] = vz
+
+
+@njit(cache=True, fastmath=_FAST)
+def gap_slopes(field, width, z, link_out, slope_x_out, slope_z_out):
+    """Mean on the links in theta and slopes of a field (n, m): central differences, one-sided at the ends of z.
+
+    Second order inside on any spacing of z, first order at its ends, as numpy.gradient.
+    """
+    n, m = field.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            link_out[i, j] = 0.5 * (field[i, j] + field[nxt, j])
+            slope_x_out[i, j] = (field[nxt, j] - field[prv, j]) / (2.0 * width)
+        slope_z_out[i, 0] = (field[i, 1] - field[i, 0]) / (z[1] - z[0])
+        slope_z_out[i, m - 1] = (field[i, m - 1] - field[i, m - 2]) / (z[m - 1] - z[m - 2])
+        for j in range(1, m - 1):
+            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
+            slope_z_out[i, j] = (
+                low * low * field[i, j + 1] - high * high * field[i, j - 1] + (high * high - low * low) * field[i, j]
+            ) / (low * high * (low + high))
+
+
+@njit(cache=True, fastmath=_FAST)
+def transposed_slopes(field, width, z, along_x_out, along_z_out):
+    """Fields whose products with any gap term are those of ``field`` with its slopes of `gap_slopes`."""
+    n, m = field.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            along_x_out[i, j] = (field[prv, j] - field[nxt, j]) / (2.0 * width)
+            along_z_out[i, j] = 0.0
+        first, last = field[i, 0] / (z[1] - z[0]), field[i, m - 1] / (z[m - 1] - z[m - 2])
+        along_z_out[i, 0] -= first
+        along_z_out[i, 1] += first
+        along_z_out[i, m - 2] -= last
+        along_z_out[i, m - 1] += last
+        for j in range(1, m - 1):
+            low, high = z[j] - z[j - 1], z[j + 1] - z[j]
+            share = field[i, j] / (low * high * (low + high))
+            along_z_out[i, j + 1] += low * low * share
+            along_z_out[i, j - 1] -= high * high * share
+            along_z_out[i, j] += (high * high - low * low) * share

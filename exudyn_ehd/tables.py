@@ -1,0 +1,95 @@
+"""Tables of named columns: as text, as CSV; units of the names that the package uses."""
+
+from __future__ import annotations
+
+import csv
+import pathlib
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from exudyn_ehd.files import replacing
+
+# SI units by name; a name of several words may end in one of these.
+UNITS = {
+    "time": "s",
+    "seconds": "s",
+    "journal_radius": "m",
+    "length": "m",
+    "radial_clearance": "m",
+    "viscosity": "Pa s",
+    "speed": "rad/s",
+    "load": "N",
+    "eccentricity_ratio": "-",
+    "attitude_angle": "rad",
+    "minimum_gap": "m",
+    "minimum_gap_z": "m",
+    "minimum_gap_angle": "rad",
+    "peak_pressure": "Pa",
+    "peak_angle": "rad",
+    "friction_torque": "N m",
+    "contact_torque": "N m",
+    "power_loss": "W",
+    "leakage": "m3/s",
+    "supply_flow": "m3/s",
+    "contact_load": "N",
+    "film_temperature": "K",
+    "peak_temperature": "K",
+    "sommerfeld_number": "-",
+    "whirl_ratio": "-",
+    "critical_mass": "kg",
+    "force_x": "N",
+    "force_y": "N",
+    "force_z": "N",
+    "moment_x": "N m",
+    "moment_y": "N m",
+    "moment_z": "N m",
+}
+PREFIXES = ("mean_", "largest_", "smallest_")
+SUFFIX = "_time"
+
+
+def unit_of(name: str, more: Mapping[str, str] | None = None) -> str | None:
+    """SI unit of a column's name, None if it is not known; ``more`` comes first."""
+    if more and name in more:
+        return more[name]
+    if name.endswith(SUFFIX):
+        return "s"
+    for prefix in PREFIXES:
+        name = name.removeprefix(prefix)
+    return UNITS.get(name)
+
+
+def heads(names: Sequence[str], more: Mapping[str, str] | None = None) -> list[str]:
+    """Column heads: name [unit]."""
+    units = [unit_of(name, more) for name in names]
+    return [name if unit is None else f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
+
+
+def text_table(
+    columns: Mapping[str, np.ndarray], *, more: Mapping[str, str] | None = None, remarks: Sequence[str] = ()
+) -> str:
+    """Aligned text of columns (n,) with a line of heads; ``remarks`` (n,) follow the rows."""
+    head = heads(list(columns), more)
+    rows = [[f"{value:.5g}" for value in row] for row in zip(*columns.values(), strict=True)]
+    widths = [max(len(row[i]) for row in [head, *rows]) for i in range(len(head))]
+    lines = ["  ".join(text.rjust(w) for text, w in zip(row, widths, strict=True)) for row in [head, *rows]]
+    for k, remark in enumerate(remarks):
+        lines[k + 1] = f"{lines[k + 1]}  {remark}".rstrip()
+    return "\n".join(lines)
+
+
+def write_csv(
+    path: str | pathlib.Path,
+    columns: Mapping[str, np.ndarray],
+    *,
+    more: Mapping[str, str] | None = None,
+    remarks: Mapping[str, Sequence[str]] | None = None,
+) -> None:
+    """Write columns (n,) as CSV under heads with units; numbers read back bit for bit; ``remarks`` are columns of text at the end."""
+    remarks = remarks or {}
+    with replacing(path) as file:
+        writer = csv.writer(file)
+        writer.writerow([*heads(list(columns), more), *remarks])
+        for k, row in enumerate(zip(*columns.values(), strict=True)):
+            writer.writerow([*(repr(float(value)) for value in row), *(texts[k] for texts in remarks.values())])

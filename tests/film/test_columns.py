@@ -1,0 +1,41 @@
+"""Many right-hand sides as columns against dense algebra."""
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.film.band_lu import PAD, factor_lu
+from exudyn_ehd.film.columns import solve_columns
+from exudyn_ehd.film.direct import factor_band
+
+
+def banded(count, width, seed):
+    """A column diagonally dominant matrix with a full band."""
+    A = -np.random.default_rng(seed).uniform(size=(count, count))
+    A[np.abs(np.subtract.outer(np.arange(count), np.arange(count))) > width] = 0.0
+    A[np.diag_indices(count)] = 1.1 + np.maximum(np.abs(A).sum(axis=0), np.abs(A).sum(axis=1))
+    return A
+
+
+def bands(A, width):
+    lower, upper = (np.zeros((len(A) + PAD, width + 1 + PAD)) for _ in range(2))
+    for d in range(min(width, len(A) - 1) + 1):
+        upper[: len(A) - d, d], lower[: len(A) - d, d] = np.diagonal(A, d), np.diagonal(A, -d)
+    return lower, upper
+
+
+@pytest.mark.parametrize("count, width", [(1, 1), (3, 2), (7, 3), (30, 5), (41, 12)])
+@pytest.mark.parametrize("sides", [1, 9])
+def test_twins(count, width, sides):
+    b, inverse = np.random.default_rng(1).normal(size=(count, sides)), np.zeros(count)
+    A = banded(count, width, count)
+    lower, upper = bands(A, width)
+    assert factor_lu(lower, upper, count, width, inverse)
+    x = b.copy()
+    solve_columns(upper, lower, inverse, False, count, width, x)
+    np.testing.assert_allclose(x, np.linalg.solve(A.T, b), rtol=1e-11, atol=1e-13)
+    A = A + A.T
+    _, band = bands(A, width)
+    assert factor_band(band, count, width, 0, inverse)
+    x = b.copy()
+    solve_columns(band, band, inverse, True, count, width, x)
+    np.testing.assert_allclose(x, np.linalg.solve(A, b), rtol=1e-11, atol=1e-13)

@@ -1,0 +1,7 @@
+"""The hard cases are plain modules beside their tests, so that one command can run them too."""
+
+import sys
+from pathlib import Path
+
+# importlib mode puts no test folder on the path
+sys.path.insert(0, str(Path(__file__).parent))
