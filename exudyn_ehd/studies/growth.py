@@ -151,7 +151,7 @@ def joint_growth(repeats: int, counts: tuple[int, ...] = JOINTS) -> Growth:
         settings.timeIntegration.numberOfSteps = STEPS
         settings.timeIntegration.verboseMode = 0
         settings.solution.file.write = False
-        settings.linearSolverType = exu.LinearSolverType.EigenSparse
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
         ConfigureSolver(settings)
         runs[count] = partial(mbs.SolveDynamic, settings)
     sizes, seconds = measure(runs, repeats)
