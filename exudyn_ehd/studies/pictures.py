@@ -16,11 +16,14 @@ from matplotlib.ticker import FuncFormatter
 
 from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, styled
 from exudyn_ehd.studies.front import cheapest, pareto_front
-from exudyn_ehd.studies.table import Row, format_seconds
+from exudyn_ehd.studies.table import Row, format_seconds, read_rows
 
 LEVELS = (0.1, 0.01, 0.001)
 # Errors below this are rounding.
 FLOOR = 1e-12
+FILM_FAMILIES = (
+    "2D, Swift-Stieber", "2D, Gumbel", "impedance map", "short bearing", "long bearing", "FD + SOR, Gumbel",
+)  # fmt: skip
 MARKERS = "osD^vP*X<>ph8"
 
 
@@ -60,8 +63,7 @@ def draw_points(axes: Axes, rows: Sequence[Row], per: str) -> None:
     if not points:
         axes.text(0.5, 0.5, "no timed point", ha="center", transform=axes.transAxes)
         return
-    families = list(dict.fromkeys(row.family for row in points))
-    for k, family in enumerate(families):
+    for family, k in _places(points).items():
         own = [row for row in points if row.family == family]
         t = np.array([row.seconds for row in own])
         axes.errorbar(
@@ -69,11 +71,6 @@ def draw_points(axes: Axes, rows: Sequence[Row], per: str) -> None:
             fmt=MARKERS[k % len(MARKERS)], color=PALETTE[k % len(PALETTE)], label=family, elinewidth=0.6, ms=4.0, zorder=3,
             mfc=PALETTE[k % len(PALETTE)] if k < len(PALETTE) else "white",
         )  # fmt: skip
-    front = pareto_front([row.seconds for row in points], [_error(row) for row in points])
-    axes.plot(
-        [points[k].seconds for k in front], [_error(points[k]) for k in front], color=BLACK, lw=0.8, zorder=2,
-        label="Pareto front", drawstyle="steps-post",
-    )  # fmt: skip
     reference = points[0]
     axes.set(xscale="log", yscale="log", xlabel=f"processor time per {per}, one thread", ylabel=_ylabel(reference))
     low = min(_error(row) for row in points)
@@ -84,10 +81,32 @@ def draw_points(axes: Axes, rows: Sequence[Row], per: str) -> None:
         axes.axhspan(lower, own_error, color=GREY, alpha=0.18, lw=0, label="reference's own error")
     times = [row.seconds for row in points]
     axes.set_xlim(0.5 * min(times), 2.5 * max(times))
+    line = _front_line(points, upper, 2.5 * max(times))
+    axes.plot(*line.T, color=BLACK, lw=0.8, zorder=2, label="Pareto front")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: format_seconds(value)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:.4g} %"))
     axes.grid(True, which="major")
     axes.figure.legend(loc="outside lower center", ncols=4)
+
+
+def _places(points: Sequence[Row]) -> dict[str, int]:
+    """Place in palette and markers by family; film models have the same in all pictures."""
+    families = list(dict.fromkeys(row.family for row in points))
+    if any(family in FILM_FAMILIES for family in families):
+        families = [*FILM_FAMILIES, *(f for f in families if f not in FILM_FAMILIES)]
+    present = {row.family for row in points}
+    return {family: k for k, family in enumerate(families) if family in present}
+
+
+def _front_line(points: Sequence[Row], top: float, right: float) -> np.ndarray:
+    """Corners (k, 2) of the border of what no point beats, from ``top`` to ``right``."""
+    corners = []
+    last = top
+    for k in pareto_front([row.seconds for row in points], [_error(row) for row in points]):
+        t, error = points[k].seconds, _error(points[k])
+        corners += [(t, last), (t, error)]
+        last = error
+    return np.array([*corners, (right, last)])
 
 
 def _ylabel(row: Row) -> str:
@@ -118,9 +137,9 @@ def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
     for row, (_, y) in zip(points, place, strict=True):
         left, right = (to_screen((t, 1.0))[0] for t in (row.low, row.high))
         taken.append((left, y - scale, right, y + scale))
-    front = [place[k] for k in pareto_front([row.seconds for row in points], [_error(row) for row in points])]
-    for (x0, y0), (x1, y1) in itertools.pairwise(front):
-        taken += [(x0, y0 - scale, x1, y0 + scale), (x1 - scale, y1, x1 + scale, y0)]
+    line = to_screen(_front_line(points, axes.get_ylim()[1], axes.get_xlim()[1]))
+    for (x0, y0), (x1, y1) in itertools.pairwise(line):
+        taken.append((min(x0, x1) - scale, min(y0, y1) - scale, max(x0, x1) + scale, max(y0, y1) + scale))
     order = np.argsort(place[:, 0] + 0.3 * place[:, 1])
     for k in order:
         text = short_label(points[k])
@@ -182,6 +201,23 @@ def summary_rows(tables: Iterable[tuple[Sequence[Row], str]]) -> list[list[str]]
     return out
 
 
+def guide_text(folder: pathlib.Path) -> str:
+    """The table of the guide from the shipped tables: what `GUIDE` names, of those that exist."""
+    lines = []
+    for name, quantity in GUIDE:
+        path = folder / f"{name}.csv"
+        if path.exists():
+            rows, notes = read_rows(path)
+            lines += summary_rows([([row for row in rows if row.quantity == quantity], notes[0])])
+    return summary_text(lines)
+
+
+GUIDE = (
+    ("steady_500_film", "load"), ("steady_800_film", "load"), ("steady_800_film", "peak pressure"),
+    ("steady_950_film", "load"), ("steady_800_tilted_film", "load"), ("orbit_film", "path"),
+    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("whirl_film", "growth"),
+    ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
+)  # fmt: skip
 HEADINGS = ["scene: ladder", "quantity", "reference, its own error", "within 10 %", "within 1 %", "within 0.1 %"]
 
 

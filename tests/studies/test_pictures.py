@@ -1,5 +1,7 @@
 """Pictures of the shipped tables: every point labelled, no label on another; the command line; exponents of growth."""
 
+import pathlib
+
 import pytest
 from matplotlib.text import Annotation
 
@@ -68,3 +70,8 @@ def test_growth_runs(tmp_path):
     assert 0.0 < found.seconds[0] < found.seconds[1]
     growth.write_growths(tmp_path / "growth.csv", [found], "note")
     assert (tmp_path / "growth.csv").read_text().startswith("# note\nwhat,size,n,seconds")
+
+
+def test_the_guide_says_what_the_tables_say():
+    guide = (pathlib.Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    assert pictures.guide_text(cells.DATA) in guide
