@@ -1,5 +1,7 @@
 """Every example runs headless in its quick mode and gives the figures that it is there to show."""
 
+import math
+
 import pytest
 
 
@@ -120,3 +122,20 @@ def test_start_stop(example, tmp_path):
     assert rows["worn_volume_mm3"] == pytest.approx(rows["worn_volume_by_archard_mm3"], rel=0.01)
     assert rows["worn_volume_mm3"] > rows["worn_volume_by_archard_mm3"]
     assert rows["iterations_per_step"] < 3
+
+
+def test_hydrostatic_or_grooved(example, tmp_path):
+    rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)
+    assert (tmp_path / "hydrostatic_or_grooved.png").stat().st_size > 10_000
+    # another finite-volume code on the same case and grid
+    assert max(abs(value) for key, value in rows.items() if "off the other code" in key) < 5e-3
+    # only the mass-conserving film gives back what it takes
+    assert rows["Elrod-Adams: oil out of nothing, share of the leakage"] < 1e-9
+    for closure in ("Gumbel", "Swift-Stieber"):
+        assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
+        # and only it notices that a groove under the load starves the film
+        assert 20 < rows[f"{closure}: smallest film, groove under the load [um]"] < 30
+    assert math.isnan(rows["Elrod-Adams: smallest film, groove under the load [um]"])
+    # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
+    assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
+    assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60

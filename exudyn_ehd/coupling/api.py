@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.results import JointResults
 from exudyn_ehd.coupling.sensors import add_sensor
-from exudyn_ehd.coupling.sides import NodeSide
+from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.coupling.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_vector
 
@@ -171,8 +171,11 @@ def CreateLubricatedJoint(
     name : str
         Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
-        Housing, journal: each a rigid body or ground (ObjectIndex), a rigid-body node (NodeIndex) or a rigid marker
-        (MarkerIndex).
+        Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact beams and
+        cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker (MarkerIndex: on any of these,
+        on a link of a kinematic tree, on a superelement). Beams are joined where ``position`` lies along the element. A cable turns
+        with its slope; it has no roll: spatial ones take joints along the cable, without spin of their own, and across it, for motion
+        in the plane normal to the axis.
     position : (3,) [m]
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
@@ -264,14 +267,14 @@ def attach(
         As in `CreateLubricatedJoint`.
     """
     for item in (housing, journal):
-        if item.kind == kinematics.PLANAR and abs(rotation[2, 2]) < 1.0 - 1e-12:
+        if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
-    if isinstance(sides[0], NodeSide) and isinstance(sides[1], NodeSide):
+    if not any(isinstance(side, MarkerSide) for side in sides):
         _check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
-    flat = (kinematics.GROUND, kinematics.PLANAR)
     # planar bodies can't move axially: the constraint would be empty, and singular
-    held = isinstance(axial, Held) and not (housing.kind in flat and journal.kind in flat)
+    flat = all(item.planar or item.kind == kinematics.GROUND for item in (housing, journal))
+    held = isinstance(axial, Held) and not flat
     element = FilmElement(model, *sides, name)
     nodes, more = [node for side in sides for node in side.nodes], {}
     if hasattr(model, "bore"):
@@ -302,7 +305,8 @@ def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    if shared:
+    # Exudyn adds up what an object hands to a node that it lists twice
+    if shared and not (housing.inner and journal.inner and int(housing.marker) != int(journal.marker)):
         raise InputError(
             f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
         )
@@ -368,7 +372,7 @@ def _joint_points(housing: Item, journal: Item, position: Any, use_global: bool)
     return point, point.copy()
 
 
-def _check_start(bearing: Any, housing: tuple[Item, NodeSide], journal: tuple[Item, NodeSide]) -> None:
+def _check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
     """Refuse an initial state in which the journal isn't inside the bore."""
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
@@ -402,6 +406,11 @@ def _hold_axially(
     markers = []
     for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
         if item.kind is None:
+            if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
+                raise InputError(
+                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none exists on spatial "
+                    "cables; use axial=Free(), with a constraint of your own if one is needed."
+                )
             if abs(axial_offset) > 0.0:
                 raise InputError(
                     f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "

@@ -13,7 +13,7 @@ from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.bush_object import CarriedOuter, CreateFlexibleBush, FixedOuter
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
-from exudyn_ehd.coupling.sides import NodeSide, Side
+from exudyn_ehd.coupling.sides import MarkerSide, NodeSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
@@ -118,7 +118,7 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side]) -> np.ndarray | No
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
     first instant is Swift-Stieber's.
     """
-    if not all(isinstance(side, NodeSide) for side in sides):
+    if any(isinstance(side, MarkerSide) for side in sides):
         return None
     bearing = dataclasses.replace(model.bearing, thermal=None)
     if bearing.cavitation.conserves_mass:

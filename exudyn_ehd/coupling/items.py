@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import exudyn
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
-from exudyn_ehd.coupling.sides import MarkerSide, NodeSide, Side
+from exudyn_ehd.coupling import beam_items, kinematics
+from exudyn_ehd.coupling.beam_items import CABLES, EXACT_BEAMS, SLOPE_NODES
+from exudyn_ehd.coupling.beam_sides import BeamSide
+from exudyn_ehd.coupling.sides import FloatingSide, MarkerSide, MeshSide, NodeSide, Side, TreeSide
 from exudyn_ehd.status import InputError
 
 # the index types exist at run time, but not in the type stubs
@@ -21,6 +24,7 @@ _NODE_KINDS = {
     "RigidBodyRotVecLG": kinematics.ROTATION_VECTOR,
     "RigidBody2D": kinematics.PLANAR,
 }
+_MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
 
 
@@ -31,27 +35,36 @@ class Item:
     Attributes
     ----------
     position, rotation : ndarray (3,), (3, 3)
-        Its frame in the reference configuration, global: the body's, the node's or the marker's.
+        Its frame in the reference configuration, global: the body's, the node's or the marker's; of a beam element that of its local
+        coordinates, x along it.
     is_marker : bool
         Whether it fixes the joint point itself.
     kind : int or None
-        How its node turns, None for a marker on anything but a rigid body, a rigid node or ground.
+        How its node turns, None for anything but a rigid body, a rigid node or ground.
+    planar : bool
+        Whether it moves in the global x-y plane only.
+    inner : bool
+        Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree, point of a mesh).
     node : exudyn.NodeIndex or None
         The rigid node.
     marker : exudyn.MarkerIndex or None
-        The marker of a generic side.
+        The rigid marker that was given.
     nodes : tuple
         Nodes it depends on.
     node_position, node_rotation : ndarray (3,), (3, 3)
         Frame of its node (or of global space for ground) in the reference configuration.
     reference_coordinates, initial_coordinates, initial_velocities : ndarray (n,)
-        Of its node.
+        Of its nodes; empty if only Exudyn's marker knows.
+    build : function of point (3,) and joint rotation (3, 3), or None
+        Makes the side; None for rigid nodes and ground.
     """
 
     position: np.ndarray
     rotation: np.ndarray
     is_marker: bool
     kind: int | None
+    planar: bool = False
+    inner: bool = False
     node: Any = None
     marker: Any = None
     nodes: tuple[Any, ...] = ()
@@ -60,11 +73,13 @@ class Item:
     reference_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    build: Callable[[np.ndarray, np.ndarray], Side] | None = None
 
     def side(self, point: np.ndarray, joint_rotation: np.ndarray) -> Side:
         """Carrier of the frame that has global position ``point`` and ``joint_rotation`` in the reference state."""
-        if self.kind is None:
-            return MarkerSide(self.marker, list(self.nodes), self.rotation.T @ joint_rotation)
+        if self.build is not None:
+            return self.build(point, joint_rotation)
+        assert self.kind is not None
         reference = np.zeros(0) if self.node is None else self.reference_coordinates
         rho = self.node_rotation.T @ (point - self.node_position)
         return NodeSide(self.kind, self.node, reference, rho, self.node_rotation.T @ joint_rotation)
@@ -93,21 +108,25 @@ def resolve(mbs: Any, where: str, number: Any) -> Item:
         if isinstance(number, exu.NodeIndex):
             return _node_item(mbs, where, number)
         if isinstance(number, exu.ObjectIndex) or (isinstance(number, int) and not isinstance(number, bool)):
-            return _body_item(mbs, where, number)
+            return _body_item(mbs, where, exu.ObjectIndex(int(number)))
     except exu.ExudynError as error:
         raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
     raise InputError(
-        f"{where} must be an ObjectIndex (rigid body or ground), a NodeIndex (rigid-body node) or a MarkerIndex (rigid "
+        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam or cable node) or a MarkerIndex (rigid "
         f"marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... returned."
     )
 
 
 def _node_item(mbs: Any, where: str, node: Any) -> Item:
     data = mbs.GetNode(node)
+    if data["nodeType"] in SLOPE_NODES:
+        return _cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
+    if data["nodeType"] == "PointSlope23":
+        return _slope_pair_item(mbs, where, node)
     kind = _NODE_KINDS.get(data["nodeType"])
     if kind is None:
         raise InputError(
-            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a rigid-body node, or a "
+            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a node of a rigid body, a beam or a cable, or a "
             "rigid marker on the flexible body."
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
@@ -120,6 +139,7 @@ def _node_item(mbs: Any, where: str, node: Any) -> Item:
         rotation=rotation,
         is_marker=False,
         kind=kind,
+        planar=kind == kinematics.PLANAR,
         node=node,
         nodes=(node,),
         node_position=position,
@@ -142,52 +162,190 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
         )
     if kind in ("RigidBody", "RigidBody2D"):
         return _node_item(mbs, where, exu.NodeIndex(int(data["nodeNumber"])))
+    nodes = beam_items.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
+    if kind in CABLES:
+        return _cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
+    if kind in EXACT_BEAMS:
+        return _beam_item(mbs, where, nodes, float(data["length"]))
+    if kind in ("ObjectANCFBeam", "RotationalMass1D"):
+        output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+        place = [
+            mbs.GetObjectOutputBody(body, o, [0.0] * 3, reference) for o in (output.Position, output.RotationMatrix)
+        ]
+        return Item(
+            position=np.array(place[0]),
+            rotation=np.array(place[1]).reshape(3, 3),
+            is_marker=False,
+            kind=None,
+            nodes=nodes,
+            build=lambda point, rotation: beam_items.marker_on_body(mbs, where, body, nodes, point, rotation),
+        )
+    hints = {
+        "KinematicTree": "give MarkerKinematicTreeRigid on one of its links",
+        "FFRFreducedOrder": _MESH_HINT,
+        "FFRF": _MESH_HINT,
+        "GenericODE2": _MESH_HINT,
+    }
     raise InputError(
-        f"{where}: an object of type {kind} is no rigid body; give a RigidBody, a RigidBody2D, a ground object, or a "
-        "rigid marker (MarkerBodyRigid, MarkerSuperElementRigid, ...) on it."
+        f"{where}: an object of type {kind} is no rigid body; "
+        + hints.get(kind, "give a rigid body, a beam or cable element, a ground object, or a rigid marker on it")
+        + "."
+    )
+
+
+def _slope_pair_item(mbs: Any, where: str, node: Any) -> Item:
+    """Node of an ANCF beam."""
+    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
+    frame = np.array(mbs.GetNodeOutput(node, output.RotationMatrix, reference)).reshape(3, 3)
+    return Item(
+        position=place,
+        rotation=frame,
+        is_marker=False,
+        kind=None,
+        nodes=(node,),
+        build=lambda point, rotation: beam_items.marker_on_node(mbs, where, node, place, frame, point, rotation),
+    )
+
+
+def _cable_item(
+    mbs: Any, where: str, nodes: tuple[Any, ...], dimension: int, length: float | None, x: float | None = None
+) -> Item:
+    """Node (``length`` None) or element of cables; ``x`` is the place of a marker along the element."""
+    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
+    place, slope = beam_items.cable_maps(dimension, length, 0.0 if x is None else x)
+    return Item(
+        position=place @ reference,
+        rotation=beam_items.frame_along(slope @ reference, dimension == 2),
+        is_marker=x is not None,
+        kind=None,
+        planar=dimension == 2,
+        nodes=nodes,
+        build=lambda point, rotation: beam_items.cable_side(where, nodes, reference, length, x, point, rotation),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+    )
+
+
+def _beam_item(
+    mbs: Any, where: str, nodes: tuple[Any, ...], length: float, transform: np.ndarray | None = None
+) -> Item:
+    """Element of a geometrically exact beam; ``transform`` (4, 4) that of a marker in the element's local coordinates."""
+    ends = beam_items.beam_ends(mbs, nodes, _NODE_KINDS)
+    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
+    share = None if transform is None else 0.5 + float(transform[0, 3]) / length
+    position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
+    rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
+    if transform is not None:
+        assert share is not None
+        position = (1.0 - share) * ends[0].frame[:, 3] + share * ends[1].frame[:, 3]
+        position = position + rotation[:, 1:] @ transform[1:3, 3]
+        rotation = rotation @ transform[:3, :3]
+    return Item(
+        position=position,
+        rotation=rotation,
+        is_marker=transform is not None,
+        kind=None,
+        planar=ends[0].kind == kinematics.PLANAR,
+        nodes=nodes,
+        build=lambda point, joint: beam_items.beam_side(where, ends, share, point, joint),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
     )
 
 
 def _marker_item(mbs: Any, where: str, marker: Any) -> Item:
     data = mbs.GetMarker(marker)
-    kind = data["markerType"]
-    if kind not in _RIGID_MARKERS:
+    item = _known_marker_item(mbs, where, data)
+    if item is not None:
+        return dataclasses.replace(item, marker=marker, is_marker=True)
+    if data["markerType"] not in _RIGID_MARKERS:
         raise InputError(
-            f"{where}: a marker of type {kind} has no orientation; give a rigid marker, e.g. MarkerBodyRigid or "
+            f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. MarkerBodyRigid or "
             "MarkerNodeRigid."
         )
-    base = None
-    if kind == "NodeRigid" and mbs.GetNode(data["nodeNumber"])["nodeType"] in _NODE_KINDS:
-        base = _node_item(mbs, where, exu.NodeIndex(int(data["nodeNumber"])))
-    elif kind == "BodyRigid":
-        body = mbs.GetObject(data["bodyNumber"])
-        if body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
-            base = _body_item(mbs, where, data["bodyNumber"])
-    if base is not None:
-        transform = np.array(data["localHT"], dtype=float)
-        return dataclasses.replace(
-            base,
-            is_marker=True,
-            position=base.position + base.rotation @ transform[:3, 3],
-            rotation=base.rotation @ transform[:3, :3],
-        )
     reference, output = exu.ConfigurationType.Reference, exu.OutputVariableType
+    rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)
+    make, nodes = _marker_side(mbs, marker, data)
     return Item(
         position=np.array(mbs.GetMarkerOutput(marker, output.Position, reference), dtype=float),
-        rotation=np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3),
+        rotation=rotation,
         is_marker=True,
         kind=None,
+        inner=data["markerType"] in ("KinematicTreeRigid", "SuperElementRigid"),
         marker=marker,
-        nodes=_nodes_of_marker(mbs, data),
+        nodes=nodes,
+        build=lambda point, joint: make(rotation.T @ joint),
     )
 
 
-def _nodes_of_marker(mbs: Any, data: dict[str, Any]) -> tuple[Any, ...]:
+def _known_marker_item(mbs: Any, where: str, data: dict[str, Any]) -> Item | None:
+    """Item of a marker on a body or node whose kinematics are known here; None for any other."""
+    kind = data["markerType"]
+    if kind in ("NodeRigid", "NodePosition"):
+        node = exu.NodeIndex(int(data["nodeNumber"]))
+        node_type = mbs.GetNode(node)["nodeType"]
+        if node_type in SLOPE_NODES:
+            return _cable_item(mbs, where, (node,), SLOPE_NODES[node_type], None, 0.0)
+        if kind == "NodeRigid" and node_type in _NODE_KINDS:
+            return _transformed(_node_item(mbs, where, node), data)
+    if kind in ("BodyRigid", "BodyPosition"):
+        body = mbs.GetObject(data["bodyNumber"])
+        if body["objectType"] in CABLES:
+            local = np.array(data["localHT"])[:3, 3] if kind == "BodyRigid" else np.array(data["localPosition"])
+            item = _cable_item(
+                mbs,
+                where,
+                beam_items.element_nodes(body),
+                CABLES[body["objectType"]],
+                float(body["length"]),
+                float(local[0]),
+            )
+            turn = np.array(data["localHT"])[:3, :3] if kind == "BodyRigid" else np.eye(3)
+            return dataclasses.replace(
+                item, position=item.position + item.rotation[:, 1:] @ local[1:], rotation=item.rotation @ turn
+            )
+        if kind == "BodyRigid" and body["objectType"] in EXACT_BEAMS:
+            return _beam_item(
+                mbs, where, beam_items.element_nodes(body), float(body["length"]), np.array(data["localHT"])
+            )
+        if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
+            return _transformed(_body_item(mbs, where, data["bodyNumber"]), data)
+    return None
+
+
+def _transformed(base: Item, data: dict[str, Any]) -> Item:
+    transform = np.array(data["localHT"], dtype=float)
+    return dataclasses.replace(
+        base,
+        position=base.position + base.rotation @ transform[:3, 3],
+        rotation=base.rotation @ transform[:3, :3],
+    )
+
+
+def _marker_side(mbs: Any, marker: Any, data: dict[str, Any]) -> tuple[Callable[[np.ndarray], Side], tuple[Any, ...]]:
+    """Function from the rotation of the joint frame in the marker's to the side, and the nodes it depends on."""
     if "nodeNumber" in data:
-        return (exu.NodeIndex(int(data["nodeNumber"])),)
+        nodes = (exu.NodeIndex(int(data["nodeNumber"])),)
+        return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
     body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
-    numbers = body["nodeNumbers"] if "nodeNumbers" in body else [body["nodeNumber"]]
-    return tuple(exu.NodeIndex(int(number)) for number in numbers)
+    nodes = beam_items.element_nodes(body)
+    kind = data["markerType"]
+    if kind == "KinematicTreeRigid":
+        return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
+    if kind == "SuperElementRigid" and body["objectType"] in ("FFRF", "FFRFreducedOrder"):
+        frame = _node_item(mbs, "", nodes[0]).side(np.zeros(3), np.eye(3))
+        assert isinstance(frame, NodeSide)
+        frame.rho[:] = 0.0
+        return (lambda rotation: FloatingSide(marker, list(nodes), rotation, frame)), nodes
+    if kind == "SuperElementRigid" and all(mbs.GetNode(node)["nodeType"] == "Point" for node in nodes):
+        own = np.array(data["meshNodeNumbers"], dtype=int)
+        used = tuple(nodes[i] for i in own)
+        columns = (3 * own[:, None] + np.arange(3)).ravel()
+        return (lambda rotation: MeshSide(marker, list(used), rotation, columns)), used
+    return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
 
 
 def body_of_node(mbs: Any, node: Any) -> Any:

@@ -1,18 +1,20 @@
 """The two sides of a joint: who carries the marker frame, and how its state is read.
 
-A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
-`MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
+A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels, `beam_sides` for
+geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Protocol
 
-import exudyn as exu
+import exudyn
 import numpy as np
 
 from exudyn_ehd.coupling import kinematics
 
+# ExudynError exists at run time, but not in the type stubs
+exu: Any = exudyn
 _CURRENT = exu.ConfigurationType.Current
 _EMPTY = np.zeros(0)
 
@@ -63,10 +65,11 @@ class NodeSide:
 
 
 class MarkerSide:
-    """Marker frame of any rigid marker (beams, superelements, kinematic trees), through Exudyn's marker Jacobians.
+    """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
 
-    The derivative of the marker's velocity with respect to the coordinates at fixed rates is neglected in the
-    Jacobian: Newton's rate suffers a little on fast turning flexible bodies, the solution does not.
+    The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from Exudyn too where the
+    marker offers it (ANCF beams and cables, rigid bodies); the subclasses know it for bodies whose markers don't. For any other body it
+    counts as zero: Newton's rate suffers a little, the solution does not.
 
     Parameters
     ----------
@@ -85,11 +88,20 @@ class MarkerSide:
         self.frame = np.zeros((3, 6))
         self.jac = np.zeros((4, 3, 0))
         self.size = -1
+        self.change: np.ndarray | None = None
+        self._offers_change = True
 
     def bind(self, mbs: Any) -> None:
         """Find the number of coordinates, which Exudyn knows only after Assemble."""
-        self.size = np.array(mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)).shape[1]
+        self.size = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian).shape[1]
         self.jac = np.zeros((4, 3, self.size))
+        try:
+            mbs.ComputeItem(self.marker, exu.ComputeItemType.JacobianTTimesVectorDerivative, vector=np.ones(6))
+        except exu.ExudynError:
+            self._offers_change = False
+
+    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+        return np.asarray(mbs.ComputeItem(self.marker, item))
 
     def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
         """Fill the frame from the marker in ``configuration``, and Jp, Jr if that is the current one."""
@@ -100,20 +112,142 @@ class MarkerSide:
         self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
         self.frame[:, 5] = mbs.GetMarkerOutput(self.marker, output.AngularVelocity, configuration)
         if configuration == _CURRENT:
-            self.jac[0] = mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)
-            self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
+            self.jac[0] = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian)
+            self.jac[1] = self._jacobian(mbs, exu.ComputeItemType.RotationJacobian)
 
     def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Leave Vq, Wq zero; see the class."""
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        self.change = self._jacobian_change(mbs, q)
+        if self.change is not None:
+            self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
 
     def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        vector = np.concatenate([force, moment])
-        item = exu.ComputeItemType.JacobianTTimesVectorDerivative
-        out[:] = mbs.ComputeItem(self.marker, item, vector=vector)
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
+        if self.change is not None:
+            out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray | None:
+        """Entries d J[i, a] / dq_b (6, n, n) of J = [Jp, Jr]; None if unknown."""
+        if not self._offers_change:
+            return None
+        item, n = exu.ComputeItemType.JacobianTTimesVectorDerivative, self.size
+        change = np.zeros((6, n, n))
+        for i, unit in enumerate(np.eye(6)):
+            part = np.asarray(mbs.ComputeItem(self.marker, item, vector=unit))
+            # Exudyn gives an empty matrix for one that vanishes
+            if part.size:
+                change[i] = part
+        return change
 
 
-Side = NodeSide | MarkerSide
+class TreeSide(MarkerSide):
+    """Frame on a link of a kinematic tree of revolute and prismatic joints.
+
+    Columns k of joints behind j turn with joint j, dJ_k/dq_j = omega_j x J_k (j <= k); a joint before j sees the marker's point move,
+    dJp_k/dq_j = omega_k x Jp_j (j > k). Parents come before their children; joints off the path to the link have zero columns.
+    """
+
+    def bind(self, mbs: Any) -> None:
+        """Find the number of coordinates."""
+        super().bind(mbs)
+        before = np.tri(self.size, dtype=bool)  # [k, j]: j <= k
+        self._turning, self._leading = before, ~before
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+        Jp, Jr = self.jac[0].T, self.jac[1].T
+        turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
+        turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
+        turned[1][self._leading] = 0.0
+        # joints off the path move nothing, and nothing that they carry counts
+        return turned.transpose(0, 3, 1, 2).reshape(6, self.size, self.size)
+
+
+class FloatingSide(MarkerSide):
+    """Superelement marker on a body in floating frame of reference formulation: a rigid node, then local flexible coordinates.
+
+    The columns of the flexible coordinates turn with the frame, ``d/dtheta = Jr_theta x``, and the frame's lever arm to the marker grows
+    with them; their own change with deformation is of the order of the deformation and left out.
+
+    Parameters
+    ----------
+    marker, nodes, rotation
+        As in `MarkerSide`.
+    frame : NodeSide
+        The rigid node's own frame.
+    """
+
+    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, frame: NodeSide) -> None:
+        super().__init__(marker, nodes, rotation)
+        self.floating = frame
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+        floating, n = self.floating, self.floating.size
+        floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        arm = self.frame[:, 3] - floating.frame[:, 3]
+        turn = self.jac[1, :, :n].T
+        change = np.zeros((6, self.size, self.size))
+        for i, unit in enumerate(np.eye(3)):
+            floating.geometric(mbs, q[:n], np.zeros(3), unit, change[3 + i, :n, :n])
+            floating.geometric(mbs, q[:n], np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
+        # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
+        change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
+        for first in (0, 3):
+            columns = self.jac[first // 3, :, n:].T
+            change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
+        change[:3, :n, n:] = np.cross(turn[:, None, :], self.jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
+        return change
+
+
+class MeshSide(MarkerSide):
+    """Superelement marker on a finite-element object with positions as nodes: only the marker's own nodes take part.
+
+    The Jacobian of the position is constant, that of the averaged rotation as good as constant.
+
+    Parameters
+    ----------
+    marker, rotation
+        As in `MarkerSide`.
+    nodes : list
+        The marker's nodes.
+    columns : ndarray of int (n,)
+        Their columns in the marker's Jacobians.
+    """
+
+    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, columns: np.ndarray) -> None:
+        super().__init__(marker, nodes, rotation)
+        self.columns = columns
+
+    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+        return np.asarray(mbs.ComputeItem(self.marker, item))[:, self.columns]
+
+
+class Side(Protocol):
+    """What carries the frame of one side of a joint.
+
+    Attributes
+    ----------
+    nodes : list
+        Nodes it depends on.
+    size : int
+        Number n of their coordinates.
+    frame : ndarray (3, 6)
+    jac : ndarray (4, 3, n)
+        Work arrays of `kinematics`.
+    """
+
+    nodes: list[Any]
+    size: int
+    frame: np.ndarray
+    jac: np.ndarray
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
 
 
 def read_state(mbs: Any, sides: tuple[Side, Side], configuration: Any) -> tuple[list[float], list[float]]:
