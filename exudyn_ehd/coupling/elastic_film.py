@@ -110,3 +110,8 @@ class ModalFilmElement(BoreFilmElement):
         whole[n:, n:] = T[6:, SIZE:]
         whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
         return np.negative(whole, out=whole)
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last."""
+        model: Any = self.model
+        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)

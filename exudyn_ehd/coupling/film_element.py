@@ -18,9 +18,11 @@ import numpy as np
 from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
+from exudyn_ehd.coupling.film_record import FilmRecorder
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
 from exudyn_ehd.coupling.step_control import GapWatch
+from exudyn_ehd.joint.fields import FilmFields, film_fields
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -71,6 +73,7 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
+        self.recorder: FilmRecorder | None = None
         self.watch: GapWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
@@ -263,6 +266,8 @@ class FilmElement:
             # the row of a resumed state was recorded at the end of its step; memory sees it now as the beginning of the next
             if not resumed or start > self._record.last_time:
                 self._record.append(row)
+                if self.recorder is not None:
+                    self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
             if self._uses_memory and start > self._start:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
@@ -309,15 +314,24 @@ class FilmElement:
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
         return _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
 
-    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial]:
-        """Time of the last accepted state, and the film there; its model then holds that film's fields."""
+    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial, Any]:
+        """Time of the last accepted state, the film there, and the configuration; the model then holds that film's fields."""
         configuration = self._accepted()
         time = mbs.systemData.GetTime(configuration)
-        return time, self._look(mbs, time, configuration)
+        return time, self._look(mbs, time, configuration), configuration
+
+    def fields(self, mbs: Any, time: float, configuration: Any) -> FilmFields:
+        """Fields of the film that was evaluated last, at the state in ``configuration``."""
+        model: Any = self.model
+        return film_fields(model, time, self.bush_displacement(mbs, configuration))
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+        """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
+        return None
 
     def remembered(self, mbs: Any) -> tuple[float, Any, np.ndarray]:
         """Time of the last accepted state, what the film remembers there, and the record up to it."""
-        time, trial = self.look_at_accepted(mbs)
+        time, trial, _ = self.look_at_accepted(mbs)
         row, memory = self._row(time, trial), self._memory
         if self._uses_memory and time > self._start and row is not None:
             assert trial.evaluation is not None

@@ -81,6 +81,12 @@ class NodalFilmElement(BoreFilmElement):
         out[:, :2] += radial
         return out
 
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
+        frame = self.sides[0].frame
+        positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
+        return (positions - frame[:, 3]) @ frame[:, :3] - self.bush.mesh.nodes
+
     def nodal_forces(self, evaluation: Any) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
         return self._complete(evaluation.wrench, evaluation.bore_load.reshape(-1, 2))

@@ -80,9 +80,9 @@ class SystemState:
         configuration = exu.ConfigurationType.Current if finished else exu.ConfigurationType.StartOfStep
         data, algorithmic = mbs.systemData, None
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
-            algorithmic = np.array(
-                solver.GetAAlgorithmic() if finished else solver.GetStartOfStepStateAAlgorithmic(), dtype=float
-            )
+            implicit: Any = solver
+            last = implicit.GetAAlgorithmic if finished else implicit.GetStartOfStepStateAAlgorithmic
+            algorithmic = np.array(last(), dtype=float)
         return cls(
             time=float(data.GetTime(configuration)),
             coordinates=tuple(np.array(part, dtype=float) for part in data.GetSystemState(configuration)),
@@ -118,7 +118,7 @@ class SystemState:
         """Write to a NumPy file (npz), whole or not at all."""
         if pathlib.Path(path).suffix != ".npz":
             raise InputError(f"SystemState.save: path must end in .npz, got '{path}'.")
-        arrays: dict[str, np.ndarray] = dict(zip(_PARTS, self.coordinates, strict=True))
+        arrays: dict[str, Any] = dict(zip(_PARTS, self.coordinates, strict=True))
         arrays["accelerations"] = self.accelerations
         if self.algorithmic is not None:
             arrays["algorithmic"] = self.algorithmic
@@ -184,9 +184,10 @@ def _joint(arrays: dict[str, np.ndarray], k: int, head: dict[str, Any]) -> Joint
     memory = None
     if head["memory"]:
         stored = {field.name: arrays.get(f"{k} {field.name}") for field in dataclasses.fields(History)}
-        memory = History(
-            **{name: value if value is None or value.ndim else float(value) for name, value in stored.items()}
-        )
+        values: dict[str, Any] = {
+            name: value if value is None or value.ndim else float(value) for name, value in stored.items()
+        }
+        memory = History(**values)
     return JointState(
         name=head["name"], bearing=head["bearing"], time=head["time"], memory=memory, rows=arrays[f"{k} rows"]
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
 import exudyn as exu
@@ -55,7 +55,7 @@ def SolveDynamic(
     InputError
         If the restart belongs to another system.
     """
-    going_on = nullcontext()
+    going_on: AbstractContextManager[None] = nullcontext()
     if restart is not None:
         state = restart if isinstance(restart, SystemState) else load_state(restart)
         going_on = _restarted(mbs, simulationSettings, state)
@@ -95,7 +95,7 @@ def own_errors(mbs: Any, where: str) -> Iterator[None]:
     try:
         yield
     except exu.ExudynError as error:
-        cause: BaseException | None = error
+        cause: BaseException = error
         while cause.__cause__ is not None:
             cause = cause.__cause__
         if isinstance(cause, EHDError):

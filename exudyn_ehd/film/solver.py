@@ -193,11 +193,7 @@ class FilmSolver:
         """
         g, s = self.grid, self.system
         self.vx, self.vz = vx, vz
-        if self.flux is None:
-            conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-            couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
-        else:
-            self._apply_flux_effects(self.flux)
+        self._set_links()
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -215,6 +211,15 @@ class FilmSolver:
             steps += fine_steps + self._guess_from_coarse(mass_old, step)
             status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
+
+    def _set_links(self) -> None:
+        """Conductances and Couette fluxes of the links."""
+        g, s = self.grid, self.system
+        if self.flux is not None:
+            self._apply_flux_effects(self.flux)
+            return
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
         g, s = self.grid, self.system

@@ -60,9 +60,11 @@ class ModalBore:
         S.
     stiffness : (k,) array
         Modal stiffness, N/m.
+    modes : BoreModes
     """
 
     def __init__(self, modes: BoreModes, grid: FilmGrid) -> None:
+        self.modes = modes
         self.grid_shape = grid.shape
         self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
         self.transposed = np.ascontiguousarray(self.shapes.T)

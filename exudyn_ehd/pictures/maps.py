@@ -129,7 +129,15 @@ def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -
         return finish(figure, path)
 
 
-def draw_map(ax: Any, film: Film, field: MapField, unit: Unit, limits: tuple[float, float] | None = None) -> Any:
+def draw_map(
+    ax: Any,
+    film: Film,
+    field: MapField,
+    unit: Unit,
+    limits: tuple[float, float] | None = None,
+    *,
+    outlines: bool = True,
+) -> Any:
     """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of the colours in the shown unit."""
     values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
     low, high = limits or colour_limits(values, field)
@@ -143,7 +151,8 @@ def draw_map(ax: Any, film: Film, field: MapField, unit: Unit, limits: tuple[flo
         vmin=low,
         vmax=high,
     )
-    draw_rupture(ax, film)
+    if outlines:
+        draw_rupture(ax, film)
     _draw_supply(ax, film)
     ax.set(
         xlabel="angle θ [°]",
