@@ -215,9 +215,9 @@ def CreateLubricatedJoint(
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
-        Draw the film element.
+        Draw the film in Exudyn's renderer: the pressure of the last accepted step in colours on the bore.
     color : (4,)
-        Its colour, RGBA; Exudyn's default for -1.
+        Of the film element's nodes, RGBA; Exudyn's default for -1.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
 
@@ -309,7 +309,9 @@ def attach(
             nodeNumbers=nodes,
             forceUserFunction=element.force,
             jacobianUserFunction=element.jacobian,
-            visualization=eii.VObjectGenericODE2(show=show, color=list(color)),
+            visualization=eii.VObjectGenericODE2(
+                show=show, color=list(color), graphicsDataUserFunction=element.display.graphics
+            ),
             **more,
         )
     )

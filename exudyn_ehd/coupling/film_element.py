@@ -18,6 +18,7 @@ import numpy as np
 from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
+from exudyn_ehd.coupling.display import FilmDisplay
 from exudyn_ehd.coupling.film_record import FilmRecorder
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
@@ -74,6 +75,7 @@ class FilmElement:
         self.name = name
         self.evaluations = 0
         self.recorder: FilmRecorder | None = None
+        self.display = FilmDisplay(self)
         self.watch: GapWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
@@ -268,6 +270,8 @@ class FilmElement:
                 self._record.append(row)
                 if self.recorder is not None:
                     self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
+            if self.display.wanted:
+                self.display.take()
             if self._uses_memory and start > self._start:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
@@ -312,7 +316,12 @@ class FilmElement:
     def _accepted(self) -> Any:
         """Configuration that holds the last accepted state."""
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
-        return _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        return _CURRENT if self.is_idle else _START_OF_STEP
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
+        return solvers.is_finished(self._solver)
 
     def look_at_accepted(self, mbs: Any) -> tuple[float, Trial, Any]:
         """Time of the last accepted state, the film there, and the configuration; the model then holds that film's fields."""
