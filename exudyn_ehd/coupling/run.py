@@ -64,7 +64,25 @@ def SolveDynamic(
 
 
 def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
-    """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`."""
+    """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    simulationSettings : exudyn.SimulationSettings
+    **options
+        As in ``mbs.SolveStatic``.
+
+    Returns
+    -------
+    bool
+        As ``mbs.SolveStatic``.
+
+    Raises
+    ------
+    FilmError, RunError
+        As `SolveDynamic`.
+    """
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options))
 
