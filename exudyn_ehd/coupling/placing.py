@@ -55,7 +55,7 @@ def place(mbs: Any, element: FilmElement, name: str, load: Any, speed: float | N
     coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
     # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
     rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
-    bore = result.film.bore_coordinates
+    bore: Any = result.film.bore_coordinates
     for node in getattr(element, "bore_nodes", ()):
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
         coordinates[where], bore = bore[: where.size], bore[where.size :]
