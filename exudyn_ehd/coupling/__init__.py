@@ -11,6 +11,7 @@ elastic_film  the film element on a flexible bore, modal; nodal_film: on the nod
 solvers       which Exudyn solver is at work
 results       the film now, films kept over a run, pictures; film_record: what keeps them
 history       record of accepted steps; sensors: the same quantities as Exudyn sensors
+display       the film in Exudyn's renderer
 settings      `ConfigureSolver`
 contract      what a film model offers
 """

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.band_lu import solve_lu_transposed
+from exudyn_ehd.film.band_lu import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.columns import ColumnFactor
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.density_newton import (
@@ -275,6 +275,12 @@ class CompressibleFilmSolver(FilmSolver):
         self._make_exact()
         b = self.buffers
         return ColumnFactor(b.upper, b.lower, b.inv_diag, False)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
+        self._make_exact()
+        w, b = self.work, self.buffers
+        solve_lu(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs.reshape(1, -1))
 
     def _make_exact(self) -> None:
         """Factor Newton's matrix at the solution, if the last one was before."""

@@ -130,6 +130,11 @@ class ElrodAdams:
         lower, upper = _lu_buffers(work)
         return ColumnFactor(upper, lower, work.inv_diag, False)
 
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        lower, upper = _lu_buffers(work)
+        solve_lu(lower, upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
+
 
 def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
     """The workspace's L and U, allocated when first needed."""

@@ -64,6 +64,8 @@ class Closure(Protocol):
 
     def adjoint_factor(self, work: Workspace) -> ColumnFactor: ...
 
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
+
 
 @dataclass(eq=False)
 class Sensitivities:
@@ -269,6 +271,10 @@ class FilmSolver:
     def adjoint_factor(self) -> ColumnFactor:
         """Factor of the transposed system of the last solution."""
         return self.closure.adjoint_factor(self.work)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
+        self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""

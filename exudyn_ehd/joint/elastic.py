@@ -21,6 +21,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore import Bore
 from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.elastic_product import TangentProduct
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
 from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
 from exudyn_ehd.status import Status
@@ -46,6 +47,12 @@ class ElasticEvaluation(Evaluation):
         self._require_current()
         model: Any = self._model
         return model.combined_tangent(by_place, by_rate)
+
+    def tangent_product(self) -> TangentProduct:
+        """As `ElasticBearingModel.tangent_product`; RuntimeError if the model has evaluated another state since."""
+        self._require_current()
+        model: Any = self._model
+        return model.tangent_product()
 
 
 class BoreTerm:
@@ -193,6 +200,10 @@ class ElasticBearingModel(BearingModel):
             k = self.bore.size
             return np.full((6 + k, MOTION_SIZE + k), np.nan)
         return elastic_tangent(self, (by_place, by_rate))
+
+    def tangent_product(self) -> TangentProduct:
+        """The tangent of the last evaluation, which must have found a film, as an operator."""
+        return TangentProduct(self)
 
     def bore_fields(self) -> dict[str, np.ndarray]:
         """Displacement (n, m) and coordinates (k,) of the bore, m."""
