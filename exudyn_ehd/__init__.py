@@ -49,7 +49,7 @@ from exudyn_ehd.joint.audit import Audit, Finding
 from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, Status
+from exudyn_ehd.status import EHDError, FilmError, InputError, RunError, Status
 
 __version__ = "0.1.0"
 
@@ -65,6 +65,11 @@ _LAZY = {
     "Revolutions": "coupling.revolutions",
     "load_history": "coupling.history",
     "StepControl": "coupling.step_control",
+    "JointState": "coupling.restart",
+    "SystemState": "coupling.restart",
+    "SaveState": "coupling.run",
+    "SolveDynamic": "coupling.run",
+    "SolveStatic": "coupling.run",
     "CarriedOuter": "coupling.bush_object",
     "CreateFlexibleBush": "coupling.bush_object",
     "FixedOuter": "coupling.bush_object",
@@ -145,6 +150,7 @@ __all__ = [
     "ImpedanceMap",
     "InputError",
     "JointHistory",
+    "JointState",
     "JournalBearing",
     "LineLoad",
     "LongBearing",
@@ -165,9 +171,13 @@ __all__ = [
     "Revolutions",
     "ReynoldsTemperature",
     "RoelandsPressure",
+    "RunError",
     "SaintVenantKirchhoff",
+    "SaveState",
     "ShortBearing",
+    "SolveDynamic",
     "SolveDynamicSparse",
+    "SolveStatic",
     "Status",
     "SteadyResult",
     "StepControl",
@@ -176,6 +186,7 @@ __all__ = [
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
+    "SystemState",
     "VogelTemperature",
     "WaltherTemperature",
     "bearing_grid",

@@ -16,7 +16,9 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.results import JointResults
+from exudyn_ehd.coupling.run import joints_of
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.coupling.step_control import GapWatch, StepControl
@@ -25,6 +27,7 @@ from exudyn_ehd.status import InputError, require_vector
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import ElasticLiner
     from exudyn_ehd.joint.audit import Audit
+    from exudyn_ehd.joint.steady import EquilibriumResult
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -81,6 +84,55 @@ class LubricatedJoint(JointResults):
         starts a new one.
         """
         return self.element.snapshot(self.mbs)
+
+    def place_in_equilibrium(
+        self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
+    ) -> EquilibriumResult:
+        """Let the next run start where the film carries a steady load, with the film in its steady state.
+
+        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing but for its spin.
+        Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and loads that depend on the
+        place, settle in a static solve (`SolveStatic`) or a ramp of the load.
+
+        Parameters
+        ----------
+        load : (2,) [N]
+            Force on the journal in the joint's x and y that the film has to carry: what acts on its body, with inertia.
+        speed : float, optional
+            Relative spin, rad/s; by default that of the initial state.
+
+        Returns
+        -------
+        EquilibriumResult
+
+        Raises
+        ------
+        InputError
+            For a joint that does not turn, without a system assembled, or a journal that is not a rigid body.
+        FilmError
+            If no equilibrium was found.
+        """
+        place = importlib.import_module("exudyn_ehd.coupling.placing").place
+        return place(self.mbs, self.element, self.name, load, speed)
+
+    def state(self) -> JointState:
+        """What the joint knows beside Exudyn's coordinates at the last accepted state: memory of the film, and record.
+
+        See `SaveState` for the whole system.
+        """
+        time, memory, rows = self.element.remembered(self.mbs)
+        return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
+
+    def restore_state(self, state: JointState) -> None:
+        """Let the next run, if it starts at the state's time, go on with its memory and record; `SolveDynamic` does it with ``restart``.
+
+        Raises
+        ------
+        InputError
+            If the state is of another joint or bearing.
+        """
+        check_owner(self, state)
+        self.element.resume(state.time, state.memory, state.rows)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
@@ -295,7 +347,9 @@ def attach(
         )
     )
     constraint = _hold_axially(mbs, name, housing, journal, points, rotation) if held else None
-    return LubricatedJoint(mbs, name, element, (number, constraint))
+    joint = LubricatedJoint(mbs, name, element, (number, constraint))
+    joints_of(mbs).append(joint)
+    return joint
 
 
 def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:

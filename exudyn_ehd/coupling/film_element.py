@@ -84,6 +84,7 @@ class FilmElement:
         self._solver: Any = None
         self._uses_memory = False
         self._memory: Any = None
+        self._resumed: tuple[float, Any] | None = None
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -240,6 +241,7 @@ class FilmElement:
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
         """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
+        resumed = False
         if run[0] is not self._run[0] or run[1] is not self._run[1]:
             self._solver = solvers.running_solver(self._run, run)
             self._run = run
@@ -248,6 +250,11 @@ class FilmElement:
             # a run that starts behind the record goes on with it, any other begins anew
             if not self._uses_memory or not start > self._record.last_time:
                 self._memory = None
+            resumed = self._resumed is not None and start == self._resumed[0]
+            if resumed:
+                assert self._resumed is not None
+                self._memory, self._start = self._resumed[1], start
+            self._resumed = None
         elif start < self._start:
             self._memory = None
         if self._uses_memory and self._memory is None:
@@ -258,9 +265,11 @@ class FilmElement:
             self.watch.start(trial.motion)
         row = self._row(start, trial)
         if row is not None:
-            self._record.append(row)
-            if self.recorder is not None:
-                self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
+            # the row of a resumed state was recorded at the end of its step; memory sees it now as the beginning of the next
+            if not resumed or start > self._record.last_time:
+                self._record.append(row)
+                if self.recorder is not None:
+                    self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
             if self.display.wanted:
                 self.display.take()
             if self._uses_memory and start > self._start:
@@ -328,6 +337,28 @@ class FilmElement:
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
         """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
         return None
+
+    def remembered(self, mbs: Any) -> tuple[float, Any, np.ndarray]:
+        """Time of the last accepted state, what the film remembers there, and the record up to it."""
+        time, trial, _ = self.look_at_accepted(mbs)
+        row, memory = self._row(time, trial), self._memory
+        if self._uses_memory and time > self._start and row is not None:
+            assert trial.evaluation is not None
+            memory = trial.evaluation.history()
+            self._trial = None
+        return time, memory, self._record.rows(row)
+
+    def no_rows(self) -> np.ndarray:
+        """A record (0, k) without steps."""
+        return self._record.rows(None)[:0]
+
+    def resume(self, time: float, memory: Any, rows: np.ndarray) -> None:
+        """Go on with ``memory`` and record in a run that starts at ``time``."""
+        self._record.restore(rows)
+        self._resumed = (time, memory)
+        self._memory, self._trial, self._start = None, None, np.nan
+        # the next run is a new one, whatever was run before
+        self._run = (self, self)
 
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""

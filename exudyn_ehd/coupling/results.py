@@ -173,6 +173,14 @@ class JointResults:
         """Unrolled map of the film's temperature at the last accepted state, with a thermal effect."""
         return self.film().plot_temperature(ax=ax, path=path)
 
+    def plot_contact_pressure(self, *, ax: Any = None, path: Any = None) -> Figure:
+        """Unrolled map of the pressure of asperities or wall at the last accepted state."""
+        return self.film().plot_contact_pressure(ax=ax, path=path)
+
+    def plot_wear_depth(self, *, ax: Any = None, path: Any = None) -> Figure:
+        """Unrolled map of what was worn off the bore up to the last accepted state."""
+        return self.film().plot_wear_depth(ax=ax, path=path)
+
     def plot_bearing(self, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Figure:
         """The bearing in space at the last accepted state: pressure, journal, load on the bush."""
         return self.film().plot_bearing(camera=camera, ax=ax, path=path)

@@ -52,6 +52,16 @@ TEMPERATURE = MapField(
 )
 
 
+CONTACT_PRESSURE = MapField(
+    "contact_pressure",
+    "contact pressure",
+    "pressure",
+    "magma",
+    "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...).",
+)
+WEAR_DEPTH = MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...).")
+
+
 def field_values(film: Film, field: MapField) -> np.ndarray:
     """The field (n, m) of a film; a single temperature fills the whole map.
 
@@ -60,7 +70,7 @@ def field_values(film: Film, field: MapField) -> np.ndarray:
     InputError
         If the film has none.
     """
-    values = getattr(film, field.name)
+    values = getattr(film, field.name, None)
     if values is None:
         raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}")
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
