@@ -181,21 +181,38 @@ class FloatingSide(MarkerSide):
         self.floating = frame
 
     def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
-        floating, n = self.floating, self.floating.size
-        floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
-        arm = self.frame[:, 3] - floating.frame[:, 3]
-        turn = self.jac[1, :, :n].T
-        change = np.zeros((6, self.size, self.size))
-        for i, unit in enumerate(np.eye(3)):
-            floating.geometric(mbs, q[:n], np.zeros(3), unit, change[3 + i, :n, :n])
-            floating.geometric(mbs, q[:n], np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
-        # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
-        change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
-        for first in (0, 3):
-            columns = self.jac[first // 3, :, n:].T
-            change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
-        change[:3, :n, n:] = np.cross(turn[:, None, :], self.jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
-        return change
+        n = self.floating.size
+        self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
+
+
+def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.ndarray) -> np.ndarray:
+    """Entries d J[i, a] / dq_b (6, m, m) of the Jacobians of a point in a floating frame.
+
+    Parameters
+    ----------
+    floating : NodeSide
+        The rigid node's own frame.
+    q : ndarray (n,)
+        Its coordinates.
+    arm : ndarray (3,)
+        From the node to the point, global [m].
+    jac : ndarray (4, 3, m)
+        Jp and Jr of the point: the node's columns, then those of local coordinates.
+    """
+    n, size = floating.size, jac.shape[2]
+    turn = jac[1, :, :n].T
+    change = np.zeros((6, size, size))
+    for i, unit in enumerate(np.eye(3)):
+        floating.geometric(None, q, np.zeros(3), unit, change[3 + i, :n, :n])
+        floating.geometric(None, q, np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
+    # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
+    change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
+    for first in (0, 3):
+        columns = jac[first // 3, :, n:].T
+        change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
+    change[:3, :n, n:] = np.cross(turn[:, None, :], jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
+    return change
 
 
 class MeshSide(MarkerSide):
