@@ -29,8 +29,12 @@ MODULI = {"E = 2.1e12 (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "pol
 CLOSURES = {"Gumbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
 
-def bush(modulus: float, kind: type, mesh: ehd.HollowCylinder, tilted: bool) -> ehd.ModalBush | ehd.ANCFBush:
-    """Return a bush of one material, modal or nodal."""
+def bush(
+    modulus: float, kind: type, mesh: ehd.HollowCylinder, tilted: bool
+) -> ehd.ElasticLiner | ehd.ModalBush | ehd.ANCFBush:
+    """Return a bush of one material: columns of its thickness, modal or nodal."""
+    if kind is ehd.ElasticLiner:
+        return ehd.ElasticLiner(thickness=mesh.thickness, youngs_modulus=modulus, poisson_ratio=0.3)
     material = ehd.SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.3, density=7800.0)
     if kind is ehd.ANCFBush:
         return ehd.ANCFBush(mesh=mesh, material=material)
@@ -93,9 +97,9 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
             plain = dataclasses.replace(rigid, cavitation=cavitation)
             cases[closure, name, "rigid"] = solve(plain, tilt)
             for material, modulus in moduli.items():
-                kinds = {"modal": ehd.ModalBush}
+                kinds: dict[str, type] = {"modal": ehd.ModalBush}
                 if closure == "Gumbel":
-                    kinds["nodal"] = ehd.ANCFBush
+                    kinds = {"liner": ehd.ElasticLiner, **kinds, "nodal": ehd.ANCFBush}
                 for label, kind in kinds.items():
                     bearing = dataclasses.replace(plain, bush=bush(modulus, kind, mesh, tilt > 0.0))
                     cases[closure, name, f"{material}, {label}"] = solve(bearing, tilt)

@@ -49,7 +49,7 @@ from exudyn_ehd.joint.audit import Audit, Finding
 from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, Status
+from exudyn_ehd.status import EHDError, FilmError, InputError, RunError, Status
 
 __version__ = "0.1.0"
 
@@ -65,6 +65,11 @@ _LAZY = {
     "Revolutions": "coupling.revolutions",
     "load_history": "coupling.history",
     "StepControl": "coupling.step_control",
+    "JointState": "coupling.restart",
+    "SystemState": "coupling.restart",
+    "SaveState": "coupling.run",
+    "SolveDynamic": "coupling.run",
+    "SolveStatic": "coupling.run",
     "CarriedOuter": "coupling.bush_object",
     "CreateFlexibleBush": "coupling.bush_object",
     "FixedOuter": "coupling.bush_object",
@@ -86,6 +91,8 @@ _LAZY = {
     "Rayleigh": "solid.bush",
     "SaintVenantKirchhoff": "solid.total_lagrange",
     "SurfaceLoad": "solid.loads",
+    "Recommendation": "studies.advice",
+    "recommend": "studies.advice",
     "mesh_from_arrays": "solid.mesh",
     "mesh_from_fem": "solid.mesh",
     "EquilibriumPoint": "studies.parameters",
@@ -148,6 +155,7 @@ __all__ = [
     "ImpedanceMap",
     "InputError",
     "JointHistory",
+    "JointState",
     "JournalBearing",
     "LineLoad",
     "LongBearing",
@@ -163,13 +171,18 @@ __all__ = [
     "ProfileTable",
     "Quantity",
     "Rayleigh",
+    "Recommendation",
     "RegularisedWall",
     "Revolutions",
     "ReynoldsTemperature",
     "RoelandsPressure",
+    "RunError",
     "SaintVenantKirchhoff",
+    "SaveState",
     "ShortBearing",
+    "SolveDynamic",
     "SolveDynamicSparse",
+    "SolveStatic",
     "Status",
     "SteadyResult",
     "StepControl",
@@ -178,6 +191,7 @@ __all__ = [
     "Support",
     "SurfaceLoad",
     "SwiftStieber",
+    "SystemState",
     "VogelTemperature",
     "WaltherTemperature",
     "add_bore_modes",
@@ -189,6 +203,7 @@ __all__ = [
     "mesh_from_fem",
     "oil",
     "parameter_study",
+    "recommend",
     "slider_grid",
     "solve_film",
     "steady",

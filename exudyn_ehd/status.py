@@ -52,6 +52,10 @@ class FilmError(EHDError, RuntimeError):
     """A film could not be evaluated; names the joint, the state and the remedy."""
 
 
+class RunError(EHDError, RuntimeError):
+    """A solver of Exudyn ended without success although every film could be evaluated; names the joints and their state."""
+
+
 def require_number(
     where: str,
     value: float,

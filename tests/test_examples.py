@@ -1,5 +1,7 @@
 """Every example runs headless in its quick mode and gives the figures that it is there to show."""
 
+import math
+
 import pytest
 
 
@@ -120,3 +122,59 @@ def test_start_stop(example, tmp_path):
     assert rows["worn_volume_mm3"] == pytest.approx(rows["worn_volume_by_archard_mm3"], rel=0.01)
     assert rows["worn_volume_mm3"] > rows["worn_volume_by_archard_mm3"]
     assert rows["iterations_per_step"] < 3
+
+
+def test_rotor_oil_whirl(example, tmp_path):
+    n = example("rotor_oil_whirl").main(quick=True, output=tmp_path)
+    assert (tmp_path / "rotor_oil_whirl.png").stat().st_size > 10_000
+    # Rayleigh's frequency of disc and 17/35 of the shaft, 74.2 Hz; four linear beams are 5 % too stiff
+    assert 74.2 < n["first_bending_Hz"] < 1.06 * 74.2
+    # growth in time against the eigenvalues of shaft, K and C; the rotor of one mass leaves out the shaft's own inertia
+    assert n["threshold_simulated_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.01)
+    assert n["threshold_one_mass_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.03)
+    assert n["ratio_at_threshold"] == pytest.approx(0.5, abs=0.02)
+    # half-frequency whirl, far above the threshold and below twice the bending frequency
+    assert 0.45 < n["whirl_ratio_lowest"] < n["whirl_ratio_highest"] < 0.5
+    # whip: near the bending frequency, and no longer half the spin (a change of 0.5 per Hz)
+    assert 0.9 * n["first_bending_Hz"] < n["whip_Hz"] < n["first_bending_Hz"]
+    assert n["whip_ratio"] < 0.47 and n["whip_change_per_Hz"] < 0.3
+    # the shaft bends by several clearances of 0.12 mm, the journals stay inside theirs
+    assert n["largest_disc_amplitude_mm"] > 0.6
+    assert n["largest_eccentricity_ratio"] < 0.97 and n["smallest_film_um"] > 0.5
+
+
+def test_four_bar_spatial(example, tmp_path):
+    rows = example("four_bar_spatial").main(quick=True, output=tmp_path)
+    assert (tmp_path / "four_bar_spatial.png").stat().st_size > 10_000
+    ideal, rigid, elastic, parallel = rows.values()
+    # the films of the rigid rocker carry what the ideal joint does, and let the tool off its path by about the eccentricity times the
+    # leverage of the arm, the elastic rocker by its bend
+    assert rigid["largest_reaction_N"] == pytest.approx(ideal["largest_reaction_N"], rel=0.01)
+    assert rigid["tool_deviation_um"] < 2.2 * 16 * rigid["right_eccentricity_ratio"]
+    assert elastic["tool_deviation_um"] > 10 * rigid["tool_deviation_um"]
+    # a straight line through both journals, and a beam bent by the left film's force and moment; 0.5 %: the shaft's own inertia
+    assert rigid["beam_theory_off_by_urad"] < 1e-3 * rigid["right_tilt_urad"]
+    assert elastic["beam_theory_off_by_urad"] < 5e-3 * elastic["right_tilt_urad"]
+    # misalignment from elasticity: edge film and pressure against the bearing with parallel axes under the same load
+    assert elastic["right_tilt_urad"] > 8 * rigid["right_tilt_urad"]
+    assert rigid["right_minimum_gap_um"] == pytest.approx(parallel["right_minimum_gap_um"], rel=0.1)
+    assert elastic["right_minimum_gap_um"] < 0.65 * parallel["right_minimum_gap_um"]
+    assert elastic["right_peak_pressure_MPa"] > 1.1 * parallel["right_peak_pressure_MPa"]
+    assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
+
+
+def test_hydrostatic_or_grooved(example, tmp_path):
+    rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)
+    assert (tmp_path / "hydrostatic_or_grooved.png").stat().st_size > 10_000
+    # another finite-volume code on the same case and grid
+    assert max(abs(value) for key, value in rows.items() if "off the other code" in key) < 5e-3
+    # only the mass-conserving film gives back what it takes
+    assert rows["Elrod-Adams: oil out of nothing, share of the leakage"] < 1e-9
+    for closure in ("Gumbel", "Swift-Stieber"):
+        assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
+        # and only it notices that a groove under the load starves the film
+        assert 20 < rows[f"{closure}: smallest film, groove under the load [um]"] < 30
+    assert math.isnan(rows["Elrod-Adams: smallest film, groove under the load [um]"])
+    # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
+    assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
+    assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60

@@ -9,8 +9,9 @@ kinematics    poses, rates and exact variations of the two frames, as kernels
 film_element  force and Jacobian user functions, failures, accepted steps
 elastic_film  the film element on a flexible bore, modal; nodal_film: on the nodes of a bush; elastic_attach: their items
 solvers       which Exudyn solver is at work
-results       the film now, pictures
+results       the film now, films kept over a run, pictures; film_record: what keeps them
 history       record of accepted steps; sensors: the same quantities as Exudyn sensors
+display       the film in Exudyn's renderer
 settings      `ConfigureSolver`
 contract      what a film model offers
 """

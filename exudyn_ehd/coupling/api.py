@@ -16,7 +16,9 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.results import JointResults
+from exudyn_ehd.coupling.run import joints_of
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.coupling.step_control import GapWatch, StepControl
@@ -81,6 +83,25 @@ class LubricatedJoint(JointResults):
         starts a new one.
         """
         return self.element.snapshot(self.mbs)
+
+    def state(self) -> JointState:
+        """What the joint knows beside Exudyn's coordinates at the last accepted state: memory of the film, and record.
+
+        See `SaveState` for the whole system.
+        """
+        time, memory, rows = self.element.remembered(self.mbs)
+        return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
+
+    def restore_state(self, state: JointState) -> None:
+        """Let the next run, if it starts at the state's time, go on with its memory and record; `SolveDynamic` does it with ``restart``.
+
+        Raises
+        ------
+        InputError
+            If the state is of another joint or bearing.
+        """
+        check_owner(self, state)
+        self.element.resume(state.time, state.memory, state.rows)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
@@ -194,9 +215,9 @@ def CreateLubricatedJoint(
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
-        Draw the film element.
+        Draw the film in Exudyn's renderer: the pressure of the last accepted step in colours on the bore.
     color : (4,)
-        Its colour, RGBA; Exudyn's default for -1.
+        Of the film element's nodes, RGBA; Exudyn's default for -1.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
 
@@ -293,12 +314,16 @@ def attach(
             nodeNumbers=nodes,
             forceUserFunction=element.force,
             jacobianUserFunction=element.jacobian,
-            visualization=eii.VObjectGenericODE2(show=show, color=list(color)),
+            visualization=eii.VObjectGenericODE2(
+                show=show, color=list(color), graphicsDataUserFunction=element.display.graphics
+            ),
             **more,
         )
     )
     constraint = _hold_axially(mbs, name, housing, journal, points, rotation) if held else None
-    return LubricatedJoint(mbs, name, element, (number, constraint))
+    joint = LubricatedJoint(mbs, name, element, (number, constraint))
+    joints_of(mbs).append(joint)
+    return joint
 
 
 def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:

@@ -39,6 +39,7 @@ class BoreFilmElement(FilmElement):
     def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str) -> None:
         super().__init__(model, housing, journal, name)
         self.bore_nodes = nodes
+        self._places: np.ndarray | None = None
 
     @property
     def rigid_size(self) -> int:
@@ -47,10 +48,11 @@ class BoreFilmElement(FilmElement):
 
     def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
         q, q_t = super()._read(mbs, configuration)
-        output = exu.OutputVariableType
-        for node in self.bore_nodes:
-            q += np.atleast_1d(mbs.GetNodeOutput(node, output.Coordinates, configuration)).tolist()
-            q_t += np.atleast_1d(mbs.GetNodeOutput(node, output.Coordinates_t, configuration)).tolist()
+        if self._places is None:
+            self._places = np.concatenate([mbs.systemData.GetNodeLTGODE2(int(node)) for node in self.bore_nodes])
+        data = mbs.systemData
+        q += np.asarray(data.GetODE2Coordinates(configuration))[self._places].tolist()
+        q_t += np.asarray(data.GetODE2Coordinates_t(configuration))[self._places].tolist()
         return q, q_t
 
     def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
@@ -110,3 +112,8 @@ class ModalFilmElement(BoreFilmElement):
         whole[n:, n:] = T[6:, SIZE:]
         whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
         return np.negative(whole, out=whole)
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last."""
+        model: Any = self.model
+        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)

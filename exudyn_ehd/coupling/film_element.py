@@ -18,9 +18,12 @@ import numpy as np
 from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
+from exudyn_ehd.coupling.display import FilmDisplay
+from exudyn_ehd.coupling.film_record import FilmRecorder
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
 from exudyn_ehd.coupling.step_control import GapWatch
+from exudyn_ehd.joint.fields import FilmFields, film_fields
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -71,6 +74,8 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
+        self.recorder: FilmRecorder | None = None
+        self.display = FilmDisplay(self)
         self.watch: GapWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
@@ -79,6 +84,7 @@ class FilmElement:
         self._solver: Any = None
         self._uses_memory = False
         self._memory: Any = None
+        self._resumed: tuple[float, Any] | None = None
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -235,6 +241,7 @@ class FilmElement:
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
         """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
+        resumed = False
         if run[0] is not self._run[0] or run[1] is not self._run[1]:
             self._solver = solvers.running_solver(self._run, run)
             self._run = run
@@ -243,6 +250,11 @@ class FilmElement:
             # a run that starts behind the record goes on with it, any other begins anew
             if not self._uses_memory or not start > self._record.last_time:
                 self._memory = None
+            resumed = self._resumed is not None and start == self._resumed[0]
+            if resumed:
+                assert self._resumed is not None
+                self._memory, self._start = self._resumed[1], start
+            self._resumed = None
         elif start < self._start:
             self._memory = None
         if self._uses_memory and self._memory is None:
@@ -253,7 +265,13 @@ class FilmElement:
             self.watch.start(trial.motion)
         row = self._row(start, trial)
         if row is not None:
-            self._record.append(row)
+            # the row of a resumed state was recorded at the end of its step; memory sees it now as the beginning of the next
+            if not resumed or start > self._record.last_time:
+                self._record.append(row)
+                if self.recorder is not None:
+                    self.recorder.offer(start, lambda: self.fields(mbs, start, _START_OF_STEP))
+            if self.display.wanted:
+                self.display.take()
             if self._uses_memory and start > self._start:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
@@ -298,13 +316,45 @@ class FilmElement:
     def _accepted(self) -> Any:
         """Configuration that holds the last accepted state."""
         # during a run, and after one that an exception has ended, the current state need not be an accepted one
-        return _CURRENT if solvers.is_finished(self._solver) else _START_OF_STEP
+        return _CURRENT if self.is_idle else _START_OF_STEP
 
-    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial]:
-        """Time of the last accepted state, and the film there; its model then holds that film's fields."""
+    @property
+    def is_idle(self) -> bool:
+        """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
+        return solvers.is_finished(self._solver)
+
+    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial, Any]:
+        """Time of the last accepted state, the film there, and the configuration; the model then holds that film's fields."""
         configuration = self._accepted()
         time = mbs.systemData.GetTime(configuration)
-        return time, self._look(mbs, time, configuration)
+        return time, self._look(mbs, time, configuration), configuration
+
+    def fields(self, mbs: Any, time: float, configuration: Any) -> FilmFields:
+        """Fields of the film that was evaluated last, at the state in ``configuration``."""
+        model: Any = self.model
+        return film_fields(model, time, self.bush_displacement(mbs, configuration))
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+        """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
+        return None
+
+    def remembered(self, mbs: Any) -> tuple[float, Any, np.ndarray]:
+        """Time of the last accepted state, what the film remembers there, and the record up to it."""
+        time, trial, _ = self.look_at_accepted(mbs)
+        row, memory = self._row(time, trial), self._memory
+        if self._uses_memory and time > self._start and row is not None:
+            assert trial.evaluation is not None
+            memory = trial.evaluation.history()
+            self._trial = None
+        return time, memory, self._record.rows(row)
+
+    def resume(self, time: float, memory: Any, rows: np.ndarray) -> None:
+        """Go on with ``memory`` and record in a run that starts at ``time``."""
+        self._record.restore(rows)
+        self._resumed = (time, memory)
+        self._memory, self._trial, self._start = None, None, np.nan
+        # the next run is a new one, whatever was run before
+        self._run = (self, self)
 
     def snapshot(self, mbs: Any) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""

@@ -193,7 +193,7 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
         If it holds something else.
     """
     try:
-        with np.load(path, allow_pickle=False) as data:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
             known = "format" in data.files and str(data["format"]) == _FORMAT
             values: dict[str, Any] = {name: data[name] for name in data.files if name != "format"} if known else {}
     except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
@@ -260,6 +260,19 @@ class Record:
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
         self._rows[self._count] = row
         self._count += 1
+
+    def rows(self, final: np.ndarray | None) -> np.ndarray:
+        """Copy of all rows (n, k), with ``final`` behind them if given and later."""
+        rows = self._rows[: self._count].copy()
+        if final is not None and final[_TIME] > self.last_time:
+            rows = np.concatenate([rows, final[None]])
+        return rows
+
+    def restore(self, rows: np.ndarray) -> None:
+        """Begin with these rows (n, k)."""
+        if rows.ndim != 2 or rows.shape[1] != _WIDTH:
+            raise InputError(f"LubricatedJoint.restore_state: rows must be (n, {_WIDTH}), got {rows.shape}.")
+        self._rows, self._count = np.concatenate([rows, np.empty((64, _WIDTH))]), len(rows)
 
     @property
     def last_time(self) -> float:

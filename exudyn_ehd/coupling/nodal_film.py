@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling import kinematics
@@ -17,6 +18,9 @@ from exudyn_ehd.coupling.bush_object import FlexibleBush
 from exudyn_ehd.coupling.elastic_film import SIZE, BoreFilmElement
 from exudyn_ehd.coupling.film_element import Trial
 from exudyn_ehd.coupling.sides import Side
+from exudyn_ehd.status import Status
+
+_CURRENT = exu.ConfigurationType.Current
 
 
 class NodalFilmElement(BoreFilmElement):
@@ -50,36 +54,19 @@ class NodalFilmElement(BoreFilmElement):
         d = self.arms @ A - self.place
         return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
 
-    def _spread(self, force: np.ndarray, moment: np.ndarray) -> np.ndarray:
-        """Nodal forces (count, 3, ...), joint frame, with resultants force and moment (3, ...) about O."""
-        x = self.arms @ self.sides[0].frame[:, :3]
-        mean = x.mean(axis=0)
-        S = np.array([[0.0, -mean[2], mean[1]], [mean[2], 0.0, -mean[0]], [-mean[1], mean[0], 0.0]])
-        inertia = np.eye(3) * np.einsum("ai,ai->", x, x) / self.count - x.T @ x / self.count
-        both = np.linalg.solve(np.block([[np.eye(3), -S], [S, inertia]]), np.concatenate((force, moment)))
-        a, b = both[:3], both[3:]
-        turned = np.stack(
-            [
-                np.multiply.outer(x[:, 2], b[1]) - np.multiply.outer(x[:, 1], b[2]),
-                np.multiply.outer(x[:, 0], b[2]) - np.multiply.outer(x[:, 2], b[0]),
-                np.multiply.outer(x[:, 1], b[0]) - np.multiply.outer(x[:, 0], b[1]),
-            ],
-            axis=1,
-        )
-        return (a + turned) / self.count
-
     def _complete(self, wrench: np.ndarray, radial: np.ndarray) -> np.ndarray:
         """Nodal forces (count, 3, ...) of the pressure's (count, 2, ...) and of the rest of minus the wrench (6, ...)."""
         x = self.arms @ self.sides[0].frame[:, :3]
-        force, moment = -wrench[:3].copy(), -wrench[3:].copy()
-        fx, fy = radial[:, 0], radial[:, 1]
-        force[:2] -= radial.sum(axis=0)
-        moment[0] += np.tensordot(x[:, 2], fy, 1)
-        moment[1] -= np.tensordot(x[:, 2], fx, 1)
-        moment[2] -= np.tensordot(x[:, 0], fy, 1) - np.tensordot(x[:, 1], fx, 1)
-        out = self._spread(force, moment)
+        rest = -wrench - np.tensordot(resultant(x), radial.reshape(2 * self.count, *radial.shape[2:]), 1)
+        out = np.tensordot(kinematics.spread_matrix(x), rest, 1)
         out[:, :2] += radial
         return out
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+        """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
+        frame = self.sides[0].frame
+        positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
+        return (positions - frame[:, 3]) @ frame[:, :3] - self.bush.mesh.nodes
 
     def nodal_forces(self, evaluation: Any) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
@@ -125,10 +112,21 @@ class NodalFilmElement(BoreFilmElement):
             for b, block, motion in zip(by_bore, rigid[:2], rigid[2:], strict=True)
         )
         if n_h:
-            force = self.nodal_forces(evaluation) @ A.T
-            turn = np.cross(self.sides[0].jac[1].T, force[:, None, :])
-            stiffness[n:, :n_h] += turn.transpose(0, 2, 1).reshape(-1, n_h)
+            stiffness[n:, :n_h] += self._turning_forces(evaluation)
         return stiffness, damping
+
+    def operator(
+        self, mbs: Any, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
+    ) -> NodalTangent | None:
+        """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
+        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        return NodalTangent(self, mbs, trial, f_q, f_qt) if trial.status == Status.CONVERGED else None
+
+    def _turning_forces(self, evaluation: Any) -> np.ndarray:
+        """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""
+        force = self.nodal_forces(evaluation) @ self.sides[0].frame[:, :3].T
+        turn = np.cross(self.sides[0].jac[1].T, force[:, None, :])
+        return turn.transpose(0, 2, 1).reshape(3 * self.count, -1)
 
     def _housing_maps(self) -> tuple[np.ndarray, np.ndarray]:
         """d(d)/dq = d(d_t)/dq_t and d(d_t)/dq (2 count, n_h) of the bore's displacements to the housing's coordinates."""
@@ -162,6 +160,68 @@ class NodalFilmElement(BoreFilmElement):
         nodal = self._complete(by_bore[:6], by_bore[6:].reshape(self.count, 2, size))
         whole[n:] = np.einsum("ij,ajc->aic", self.sides[0].frame[:, :3], nodal).reshape(-1, size)
         return whole
+
+
+class NodalTangent:
+    """Minus (f_q dQ/dq + f_qt dQ/dq_t) of a film on a nodal bush as an operator: one film solve per product.
+
+    Parameters
+    ----------
+    element : NodalFilmElement
+    mbs : exudyn.MainSystem
+    trial : Trial
+        The last one of the element.
+    f_q, f_qt : float
+    """
+
+    def __init__(self, element: NodalFilmElement, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> None:
+        evaluation: Any = trial.evaluation
+        self.film = evaluation.tangent_product()
+        self.factors = f_q, f_qt
+        self.n, self.n_h, self.count = element.rigid_size, element.sides[0].size, element.count
+        stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, self.film.wrench)
+        self.rigid = (f_q * stiffness + f_qt * damping)[self.n_h :]
+        self.motion = f_q * by_place + f_qt * by_rate
+        self.journal = element._wrench_map()[self.n_h :]
+        self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
+        self.turning = (self.frame[:, :2].T @ -_skew(omega)).T
+        x = element.arms @ self.frame
+        self.spread, self.resultant = kinematics.spread_matrix(x).reshape(-1, 6), resultant(x)
+        if self.n_h:
+            self.place, self.drift = element._housing_maps()
+            self.turned = f_q * element._turning_forces(evaluation)
+
+    def __call__(self, change: np.ndarray) -> np.ndarray:
+        """Product (N,) with a change (N,) of the element's coordinates."""
+        n, n_h, film, (f_q, f_qt) = self.n, self.n_h, self.film, self.factors
+        nodes = change[n:].reshape(-1, 3)
+        moved, drift = (nodes @ self.frame[:, :2]).ravel(), (nodes @ self.turning).ravel()
+        if n_h:
+            moved += self.place @ change[:n_h]
+            drift += self.drift @ change[:n_h]
+        place, rate = f_q * moved, f_q * drift + f_qt * moved
+        motion = self.motion @ change[:n]
+        radial = film.bore_load(motion, place, rate)
+        through_bore = film.wrench_place @ place + film.wrench_rate @ rate
+        rest = through_bore + film.wrench @ motion + self.resultant @ radial
+        nodal = (self.spread @ -rest).reshape(-1, 3)
+        nodal[:, :2] += radial.reshape(-1, 2)
+        out = np.empty_like(change)
+        out[:n_h] = 0.0
+        out[n_h:n] = self.journal @ through_bore + self.rigid @ change[:n]
+        out[n:] = (nodal @ self.frame.T).ravel()
+        if n_h:
+            out[n:] += self.turned @ change[:n_h]
+        return np.negative(out, out=out)
+
+
+def resultant(x: np.ndarray) -> np.ndarray:
+    """Force and moment about O (6, 2 count) of nodal forces in x and y at x (count, 3)."""
+    out = np.zeros((6, len(x), 2))
+    out[0, :, 0] = out[1, :, 1] = 1.0
+    out[3, :, 1], out[4, :, 0] = -x[:, 2], x[:, 2]
+    out[5, :, 0], out[5, :, 1] = -x[:, 1], x[:, 0]
+    return out.reshape(6, -1)
 
 
 def _skew(v: np.ndarray) -> np.ndarray:

@@ -11,6 +11,12 @@ after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off 
 and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own analytic Jacobians. The
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
+Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product with their exact
+tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES
+(Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r. The bush answers a film's short waves weakly, so that
+some eight products do. Newton then takes the iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and
+hardly changing, lasts.
+
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """
 
@@ -24,12 +30,15 @@ from typing import Any
 import exudyn
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
-from scipy.sparse.linalg import SuperLU, splu
+from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
+from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # the index types exist at run time, but not in the type stubs
 exu: Any = exudyn
+# Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of products.
+FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,6 +76,9 @@ class SparseRun:
     steps, rejected : int
         Newton solutions that converged, and those that did not (Exudyn then halves the step).
     iterations, jacobians : int
+        Of Newton's method.
+    products : int
+        Products with the tangents of films on nodal bushes.
     seconds, seconds_jacobian, seconds_solve : float
         Wall clock of the run, of Jacobians with factorisations, of back substitutions.
     factor_bytes : int
@@ -78,6 +90,7 @@ class SparseRun:
     rejected: int = 0
     iterations: int = 0
     jacobians: int = 0
+    products: int = 0
     seconds: float = 0.0
     seconds_jacobian: float = 0.0
     seconds_solve: float = 0.0
@@ -165,14 +178,15 @@ class _Newton:
             self.step_size = solver.it.currentStepSize
         if self.excess >= self.reuse.worth:
             self.factor = None
-        age = 0
+        age, renewable = 0, True
         for iteration in range(1, newton.maxIterations + 1):
             if not np.isfinite(error):
                 break
             if self.factor is None or age >= self.reuse.maximum_iterations:
                 if not self._factorise(solver, mbs):
                     break
-                age = 0
+                # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
+                age, renewable = 0, False
             self._update(solver, mbs)
             age += 1
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
@@ -183,7 +197,7 @@ class _Newton:
                 return True
             if iteration == 1 and newton.adaptInitialResidual:
                 first = max(first, error)
-            if error > self.reuse.contractivity * previous:
+            if error > self.reuse.contractivity * previous and (renewable or not self.matrix.films):
                 self.factor = None
         self.factor = None
         self.run.rejected += 1
@@ -210,10 +224,29 @@ class _Newton:
         self.run.seconds_jacobian += time.perf_counter() - start
         return True
 
+    def _solve(self, solver: Any, mbs: Any, residual: np.ndarray) -> np.ndarray:
+        """Newton's step: with the factor, or with it and the films' operators."""
+        assert self.factor is not None
+        films = self.matrix.film_operators(mbs, solver)
+        if not films:
+            return self.factor.solve(residual)
+        factor = self.factor
+
+        def product(v: np.ndarray) -> np.ndarray:
+            d, out = factor.solve(v), v.copy()
+            for places, film in films:
+                out[places] += film(d[places])
+            self.run.products += 1
+            return out
+
+        operator = LinearOperator((residual.size, residual.size), matvec=product, dtype=float)
+        y, _ = gmres(operator, residual, rtol=FILM_TOLERANCE, atol=0.0, restart=FILM_PRODUCTS, maxiter=1)
+        return factor.solve(y)
+
     def _update(self, solver, mbs) -> None:
         start = time.perf_counter()
         assert self.factor is not None
-        d = self.factor.solve(np.array(solver.GetSystemResidual()))
+        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
@@ -241,6 +274,7 @@ class SystemMatrix:
     coordinates: int
     constraints: int
     parts: tuple[Callable, ...]
+    films: tuple[tuple[Any, np.ndarray], ...]
 
     @classmethod
     def of(cls, mbs: Any) -> SystemMatrix:
@@ -255,6 +289,7 @@ class SystemMatrix:
                     "mbs.SolveDynamic."
                 )
         n = len(data.GetODE2Coordinates())
+        films: list[tuple[Any, np.ndarray]] = []
         parts: list[Callable] = [
             _euler_parameters(mbs, exu.NodeIndex(number), n)
             for number in range(data.NumberOfNodes())
@@ -270,11 +305,24 @@ class SystemMatrix:
             places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
             if len(places) == 0:
                 continue
-            if mbs.GetObject(item)["objectType"] == "GenericODE2":
+            film = _nodal_film(mbs, item)
+            if film is not None:
+                films.append((film, places))
+            elif mbs.GetObject(item)["objectType"] == "GenericODE2":
                 parts.append(_generic(mbs, item, places))
             else:
                 parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
-        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts))
+        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
+
+    def film_operators(self, mbs: Any, solver: Any) -> list[tuple[np.ndarray, Callable]]:
+        """Places and operators of the films on nodal bushes at the current state, scaled by beta h^2."""
+        if not self.films:
+            return []
+        h, data = solver.it.currentStepSize, mbs.systemData
+        q, q_t, t = (np.asarray(data.GetODE2Coordinates()), np.asarray(data.GetODE2Coordinates_t()), data.GetTime())
+        factors = solver.newmarkBeta * h * h, solver.newmarkGamma * h
+        made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
+        return [(places, operator) for places, operator in made if operator is not None]
 
     def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
         """Return the iteration matrix of the current state, scaled by beta h^2."""
@@ -289,6 +337,15 @@ class SystemMatrix:
             empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
             system = (system + coo_matrix((np.ones(len(empty)), (empty, empty)), shape=(size, size))).tocsc()
         return system
+
+
+def _nodal_film(mbs: Any, item: Any) -> NodalFilmElement | None:
+    """The film element behind an object, if its bore is that of a nodal bush."""
+    if mbs.GetObject(item)["objectType"] != "GenericODE2":
+        return None
+    jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
+    element = getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
+    return element if isinstance(element, NodalFilmElement) else None
 
 
 def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:

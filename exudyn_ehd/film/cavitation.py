@@ -58,6 +58,10 @@ class FullSommerfeld:
         """Factor of the (symmetric) transposed system of the last solution."""
         return ColumnFactor(work.band, work.band, work.inv_diag, True)
 
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        solve_one(work.band, work.inv_diag, work.count, work.width, rhs)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Gumbel:
@@ -97,6 +101,10 @@ class Gumbel:
     def adjoint_factor(self, work: Workspace) -> ColumnFactor:
         """Factor of the (symmetric) transposed system of the last solution."""
         return ColumnFactor(work.band, work.band, work.inv_diag, True)
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        solve_one(work.band, work.inv_diag, work.count, work.width, rhs)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -141,6 +149,10 @@ class SwiftStieber:
     def adjoint_factor(self, work: Workspace) -> ColumnFactor:
         """Factor of the (symmetric) transposed system of the last solution."""
         return ColumnFactor(work.band, work.band, work.inv_diag, True)
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        solve_one(work.band, work.inv_diag, work.count, work.width, rhs)
 
 
 def solve_symmetric(work: Workspace, rhs: np.ndarray) -> None:

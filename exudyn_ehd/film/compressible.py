@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.band_lu import solve_lu_transposed
+from exudyn_ehd.film.band_lu import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.columns import ColumnFactor
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.density_newton import (
@@ -35,16 +35,20 @@ from exudyn_ehd.film.density_newton import (
     Balance,
     Buffers,
     carry_density,
+    carry_density_plain,
     compressible_balance,
     factor_compressible,
     link_factors,
+    raise_to,
     solve_compressible,
+    solved_viscosity,
 )
 from exudyn_ehd.film.elrod import _lu_buffers
-from exudyn_ehd.film.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.flux import FluxEffect
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
-from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives
+from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives, plain_link_derivatives
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -78,7 +82,6 @@ class CompressibleFilmSolver(FilmSolver):
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         shape = grid.shape
-        self.flux = LinkFlux(shape)
         self.law, self.pressure_scale = law, 1.0
         w, s = self.work, self.system
         self.film = Balance(
@@ -89,7 +92,9 @@ class CompressibleFilmSolver(FilmSolver):
             w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.ones((6, *shape)), np.zeros(shape)
         )
         self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
+        self.sigma_known = False
         self.exact = False
+        self.held = False
         if closure.conserves_mass:
             self.kind = FILLED
         elif closure.clips:
@@ -126,7 +131,7 @@ class CompressibleFilmSolver(FilmSolver):
             ok, steps = self._newton(1.0)
             if ok:
                 return self._finish(steps)
-        w.warm = False
+        w.warm = self.held = False
         status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
         steps += count
         w.warm = False
@@ -151,8 +156,7 @@ class CompressibleFilmSolver(FilmSolver):
         """Coefficients of this film, as `FilmSolver.solve` sets them."""
         s = self.system
         self.vx, self.vz = vx, vz
-        assert self.flux is not None
-        self._apply_flux_effects(self.flux)
+        self._set_links()
         s.cavity_pressure = cavity_pressure
         if self.closure.clips:
             s.linear_pressure[self.grid.fixed] = s.pressure[self.grid.fixed]
@@ -163,22 +167,27 @@ class CompressibleFilmSolver(FilmSolver):
     def _set_store(self) -> None:
         """Coefficients of the storage term; see `Balance`."""
         s, f = self.system, self.film
-        f.known[:] = 0.0
-        f.kept[:] = 0.0
+        if self.closure.conserves_mass:
+            f.known[:] = 0.0
+            f.kept[:] = 0.0
         if s.inverse_step > 0.0:
             np.multiply(self.H, s.inverse_step, out=f.grow)
             np.multiply(s.mass_old, -s.inverse_step, out=f.known if self.instant else f.kept)
-        elif self.squeeze:
-            f.grow[:] = self.H_t
         else:
-            f.grow[:] = 0.0
+            np.copyto(f.grow, self.H_t if self.squeeze else self.nothing)
+
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        self.held = False
+        super().refresh_fixed()
 
     def _newton(self, share: float) -> tuple[bool, int]:
         s, w = self.system, self.work
         ok, steps, self.exact, w.count, w.width = solve_compressible(
-            self.film, self.pressure_scale, s.cavity_pressure, self.kind, self.law.kernel_table, share, w.active,
-            self.buffers, s.linear_pressure, self._fill,
+            self.film, self.pressure_scale, s.cavity_pressure, self.kind, self.law.kernel_table, share, self.held, w.count,
+            w.width, w.active, self.buffers, s.linear_pressure, self._fill,
         )  # fmt: skip
+        self.held = ok
         return ok, steps
 
     def _switch_on(self) -> tuple[bool, int]:
@@ -209,16 +218,42 @@ class CompressibleFilmSolver(FilmSolver):
             np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~fixed, s.cavity_pressure <= P, out=w.active)
         elif self.kind != FULL:
-            free = ~fixed
-            P[free] = np.maximum(P[free], s.cavity_pressure)
+            raise_to(P, fixed, s.cavity_pressure)
             if self.kind == FILLED:
                 np.clip(s.fill, 0.0, 1.0, out=s.fill)
-        link_factors(self._fill, self.rho, s.fx, s.fz, self.sigma_x, self.sigma_z)
+        self.sigma_known = False
         return Status.CONVERGED, steps
+
+    def _sigma(self) -> tuple[np.ndarray, np.ndarray]:
+        """Fill times density on the links in theta and z (n, m)."""
+        if not self.sigma_known:
+            s = self.system
+            link_factors(self._fill, self.rho, s.fx, s.fz, self.sigma_x, self.sigma_z)
+            self.sigma_known = True
+        return self.sigma_x, self.sigma_z
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of the last solution (n, m) with their derivatives to the transformed pressure.
+
+        False where that has no pressure.
+        """
+        s, table, fields = self.system, self.law.kernel_table, self.buffers.fields
+        floor = -np.inf if self.kind == FULL else s.cavity_pressure
+        if solved_viscosity(
+            s.pressure, self.pressure_scale, floor, table, fields, p_out, ratio_out, ratio_P_out, p_P_out
+        ):
+            return True
+        if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
+            return False
+        p_out /= self.pressure_scale
+        ratio_P_out *= self.pressure_scale
+        np.divide(ratio_out, self.rho, out=p_P_out)
+        return True
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette mass flows of the links in theta and z, and the rate at which a full film's mass grows with its gap."""
-        return self.system.fx * self.sigma_x, self.system.fz * self.sigma_z, self.rho * self.H_t
+        sigma_x, sigma_z = self._sigma()
+        return self.system.fx * sigma_x, self.system.fz * sigma_z, self.rho * self.H_t
 
     def inflow(self) -> np.ndarray:
         """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
@@ -231,15 +266,21 @@ class CompressibleFilmSolver(FilmSolver):
         w, b = self.work, self.buffers
         self._make_exact()
         solve_lu_transposed(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs)
-        fields = np.zeros((rhs.shape[0], self.H.size))
-        fields[:, w.order[: w.count]] = rhs
-        return fields.reshape(rhs.shape[0], *self.grid.shape)
+        fields = np.empty((rhs.shape[0], *self.grid.shape))
+        scatter(rhs, w.order, w.count, fields)
+        return fields
 
     def adjoint_factor(self) -> ColumnFactor:
         """Factor of the transposed Newton matrix at the solution."""
         self._make_exact()
         b = self.buffers
         return ColumnFactor(b.upper, b.lower, b.inv_diag, False)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
+        self._make_exact()
+        w, b = self.work, self.buffers
+        solve_lu(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs.reshape(1, -1))
 
     def _make_exact(self) -> None:
         """Factor Newton's matrix at the solution, if the last one was before."""
@@ -265,14 +306,24 @@ class CompressibleFilmSolver(FilmSolver):
 
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
-        g, d, f = self.grid, self.link_fields, self.flux
-        assert f is not None
+        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
+        sigma_x, sigma_z = self._sigma()
+        if f is None:
+            plain_link_derivatives(
+                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            carry_density_plain(
+                sigma_x, sigma_z, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            return d
         flux_link_derivatives(
-            self.system.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
+            s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
             self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
         )  # fmt: skip
         carry_density(
-            self.sigma_x, self.sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+            sigma_x, sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
             d.DX, d.DZ, d.SX, d.SZ,
         )  # fmt: skip
         return d

@@ -85,7 +85,7 @@ def chain_limiter(slope, curvature, face_slope, has_rate, cell, face, rate):
 
 
 @njit(cache=True, fastmath=_FAST)
-def couette_integral_ratio(H, weight, ratio, active, fixed, cavity_share):
+def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):
     """(C with the viscosity ratio in ``sum weight share ratio / H``, C over the unbroken film)."""
     n, m = H.shape
     whole = 0.0
@@ -102,7 +102,7 @@ def couette_integral_ratio(H, weight, ratio, active, fixed, cavity_share):
 
 @njit(cache=True, fastmath=_FAST)
 def couette_gradient_ratio(H, weight, ratio, ratio_h, ratio_v, active, fixed, cavity_share, out):
-    """dC/dH of `couette_integral_ratio` -> out (n, m); returns dC/dv."""
+    """dC/dH of `couette_integral_law` -> out (n, m); returns dC/dv."""
     n, m = H.shape
     speed = 0.0
     for i in range(n):

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.viscosity import LARGEST_PRESSURE, BoundPressureLaw, HermiteTable, hermite_inverse
+from exudyn_ehd.film.viscosity import LARGEST_PRESSURE, BoundPressureLaw, HermiteTable, hermite_at, hermite_inverse
 from exudyn_ehd.status import InputError, require_number
 
 LARGEST_COEFFICIENT = 1e-6
@@ -155,21 +155,34 @@ def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
 
 
 @njit(cache=True)
-def density_of_transformed(P, scale, floor, law, share, q, p, s, s_q, rho_out, rho_P_out):
+def density_of_transformed(P, scale, floor, law, share, p, s, s_q, rho_out, rho_P_out):
     """Density ratio and its derivative at scaled pressures P (n, m), with ``floor`` the scaled pressure below which it stays.
 
     ``share`` = 1: the law; less: that share of the difference to a constant density. Pressures beyond the law's range have the density
-    at its end. q, p, s, s_q are buffers (n, m).
+    at its end. p, s, s_q (n, m) come back as of `viscosity.hermite_inverse`.
     """
     n, m = P.shape
+    cavity = -np.inf
+    p0 = s0 = s0_q = rho0 = 0.0
     for i in range(n):
         for j in range(m):
-            q[i, j] = min(max(max(P[i, j], floor) * scale, law.lowest), law.highest)
-    hermite_inverse(q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale, p, s, s_q)
-    for i in range(n):
-        for j in range(m):
+            x = P[i, j]
+            if x <= floor:
+                if cavity != floor:
+                    cavity = floor
+                    y = min(max(floor * scale, law.lowest), law.highest)
+                    p0, s0, s0_q = hermite_at(y, law.exponent, law.q, law.table, law.bucket, law.bucket_scale)
+                    rho0 = 1.0 + share * (density_ratio(p0, law.a, law.b)[0] - 1.0)
+                p[i, j], s[i, j], s_q[i, j], rho_out[i, j] = p0, s0, s0_q, rho0
+                if x < floor:
+                    rho_P_out[i, j] = 0.0
+                    continue
+            else:
+                y = min(max(x * scale, law.lowest), law.highest)
+                p[i, j], s[i, j], s_q[i, j] = hermite_at(
+                    y, law.exponent, law.q, law.table, law.bucket, law.bucket_scale
+                )
             rho, rho_p = density_ratio(p[i, j], law.a, law.b)
             rho_out[i, j] = 1.0 + share * (rho - 1.0)
-            x = P[i, j]
-            inside = x >= floor and law.lowest < x * scale < law.highest
+            inside = law.lowest < x * scale < law.highest
             rho_P_out[i, j] = share * rho_p * s[i, j] * scale if inside else 0.0

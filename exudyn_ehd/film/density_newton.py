@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.band_lu import factor_lu, solve_lu
+from exudyn_ehd.film.band_lu import add_flux, factor_lu, solve_lu
 from exudyn_ehd.film.density import density_of_transformed
 from exudyn_ehd.film.direct import PAD, number_cells
 from exudyn_ehd.film.elrod import _add_entry
@@ -155,13 +155,47 @@ def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, wi
 
 
 @njit(cache=True)
+def assemble_full(rho_P, film, number, count, width, lower, upper):
+    """As `assemble_compressible` where every unknown is a pressure and every film full."""
+    n, m = rho_P.shape
+    kx, kz, fx, fz, area, grow = film.kx, film.kz, film.fx, film.fz, film.area, film.grow
+    for r in range(count):
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a = number[i, j]
+            b = number[nxt, j]
+            by_a = 0.5 * rho_P[i, j]
+            if a >= 0:
+                upper[a, 0] += area[i, j] * rho_P[i, j] * grow[i, j]
+            if (a >= 0 or b >= 0) and kx[i, j] != 0.0:
+                k = kx[i, j]
+                f = fx[i, j]
+                add_flux(a, b, k + f * by_a, 0.5 * f * rho_P[nxt, j] - k, lower, upper)
+            if j + 1 < m:
+                b = number[i, j + 1]
+                if a >= 0 or b >= 0:
+                    k = kz[i, j]
+                    f = fz[i, j]
+                    add_flux(a, b, k + f * by_a, 0.5 * f * rho_P[i, j + 1] - k, lower, upper)
+
+
+@njit(cache=True)
 def factor_compressible(fill, film, kind, full, b):
     """Newton's matrix at the density in ``b.fields``, factored; returns (ok, count, width)."""
     if kind == COMPLEMENTARY:
         count, width = number_cells(full, film.kx, b.order, b.number)
     else:
         count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
-    assemble_compressible(fill, b.fields[4], b.fields[5], film, full, b.number, b.order, count, width, b.lower, b.upper)
+    if kind == FILLED:
+        assemble_compressible(
+            fill, b.fields[4], b.fields[5], film, full, b.number, b.order, count, width, b.lower, b.upper
+        )
+    else:
+        assemble_full(b.fields[5], film, b.number, count, width, b.lower, b.upper)
     return factor_lu(b.lower, b.upper, count, width, b.inv_diag), count, width
 
 
@@ -232,24 +266,24 @@ def _start(P, fill, film, full, pc, kind):
 @njit(cache=True)
 def _balance_at(P, fill, film, scale, floor, law, share, b):
     c = b.fields
-    density_of_transformed(P, scale, floor, law, share, c[0], c[1], c[2], c[3], c[4], c[5])
+    density_of_transformed(P, scale, floor, law, share, c[1], c[2], c[3], c[4], c[5])
     compressible_balance(P, fill, c[4], film, b.residual)
 
 
 @njit(cache=True)
-def solve_compressible(film, scale, pc, kind, law, share, full, b, P, fill):
+def solve_compressible(film, scale, pc, kind, law, share, held, count, width, full, b, P, fill):
     """Newton from P, fill and the sets in ``full``; returns (ok, steps, exact, count, width).
 
-    A factor serves further steps as long as the sets stay and each step is five times smaller than the last. ``exact`` says that the
-    last factor is that of the solution.
+    A factor serves further steps as long as the sets stay and each step is five times smaller than the last; the first step takes
+    that of the last film (``count``, ``width``) if there is one (``held``). ``exact`` says that the last factor is that of the
+    solution.
     """
     floor = -np.inf if kind == FULL else pc
     m = P.shape[1]
     _start(P, fill, film, full, pc, kind)
     _balance_at(P, fill, film, scale, floor, law, share, b)
-    count, width = 0, 1
     last = moved = 0.0
-    fresh = True
+    fresh = not held
     for step in range(MAX_NEWTON_STEPS):
         if fresh:
             ok, count, width = factor_compressible(fill, film, kind, full, b)
@@ -263,22 +297,61 @@ def solve_compressible(film, scale, pc, kind, law, share, full, b, P, fill):
         size, peak = _take(P, fill, full, b.order, count, b.x, pc, kind)
         if not size < 1e300:
             return False, step + 1, False, count, width
+        if size <= ERROR_TOLERANCE:
+            return True, step + 1, not (held and step == 0) and moved <= LAST_STEP, count, width
         moved += size
         _balance_at(P, fill, film, scale, floor, law, share, b)
         changes = 0
         if kind >= COMPLEMENTARY:
             changes = _select(P, fill, b.residual, film.fixed, full, pc, kind, pc - SET_TOLERANCE * peak)
         if changes > 0:
-            _balance_at(P, fill, film, scale, floor, law, share, b)
+            # those that left had the cavity's density already
+            compressible_balance(P, fill, b.fields[4], film, b.residual)
             fresh = True
             continue
+        borrowed = held and step == 0
         ratio = size / last if not fresh and last > 0.0 else size
-        if (fresh and size <= LAST_STEP) or (not fresh and ratio * size <= ERROR_TOLERANCE) or size <= ERROR_TOLERANCE:
-            exact = moved <= LAST_STEP or (not fresh and ratio <= EXACT_RATIO)
+        standing = size <= ERROR_TOLERANCE
+        if standing or (
+            not borrowed and ((fresh and size <= LAST_STEP) or (not fresh and ratio * size <= ERROR_TOLERANCE))
+        ):
+            exact = not borrowed and (moved <= LAST_STEP or (not fresh and ratio <= EXACT_RATIO))
             return True, step + 1, exact, count, width
-        fresh = not fresh and ratio > 0.2
+        fresh = not fresh and not borrowed and ratio > 0.2
         last = size
     return False, MAX_NEWTON_STEPS, False, count, width
+
+
+@njit(cache=True)
+def raise_to(P, fixed, lowest):
+    """Free pressures below ``lowest``, which are so by rounding, in place."""
+    n, m = P.shape
+    for i in range(n):
+        for j in range(m):
+            if P[i, j] < lowest and not fixed[i, j]:
+                P[i, j] = lowest
+
+
+@njit(cache=True)
+def solved_viscosity(P, scale, floor, law, fields, p_out, ratio_out, ratio_P_out, p_P_out):
+    """Scaled pressure, viscosity ratio and both derivatives to P from the fields that the balance was solved with.
+
+    False where P has no pressure, or was below ``floor`` and so has none in the fields.
+    """
+    n, m = P.shape
+    per_scale = 1.0 / scale
+    for i in range(n):
+        for j in range(m):
+            q = P[i, j] * scale
+            if not law.lowest < q < law.highest or P[i, j] < floor:
+                return False
+            s = fields[2, i, j]
+            rho = fields[4, i, j]
+            p_out[i, j] = fields[1, i, j] * per_scale
+            p_P_out[i, j] = s
+            ratio_out[i, j] = s * rho
+            ratio_P_out[i, j] = fields[3, i, j] * rho * scale + fields[5, i, j] * s
+    return True
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -295,3 +368,19 @@ def carry_density(sigma_x, sigma_z, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z
             more = width_x[i] * (sigma_z[i, j] - 1.0)
             DZ[i, j] += more * vz * cz_h[i, j]
             SZ[i, j] += more * cz[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def carry_density_plain(sigma_x, sigma_z, H, HF, vx, vz, width_x, width_z, link_x, DX, DZ, SX, SZ):
+    """As `carry_density` for the plain film's carriers."""
+    n, m = H.shape
+    for i in range(n):
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            more = linked * width_z[j] * (sigma_x[i, j] - 1.0)
+            DX[i, j] += more * vx
+            SX[i, j] += more * HF[i, j]
+        for j in range(m - 1):
+            more = width_x[i] * (sigma_z[i, j] - 1.0)
+            DZ[i, j] += more * vz
+            SZ[i, j] += more * 0.5 * (H[i, j] + H[i, j + 1])

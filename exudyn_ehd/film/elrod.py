@@ -32,6 +32,8 @@ from exudyn_ehd.status import Status, require_number
 MAX_NEWTON_STEPS = 60
 MAX_PSEUDO_STEPS = 60
 SET_TOLERANCE = 1e-12
+# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no such film exists.
+LARGEST_DEFICIT = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,6 +129,11 @@ class ElrodAdams:
         """Factor of the transposed system of the last solution."""
         lower, upper = _lu_buffers(work)
         return ColumnFactor(upper, lower, work.inv_diag, False)
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        lower, upper = _lu_buffers(work)
+        solve_lu(lower, upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
 
 
 def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
@@ -240,7 +247,8 @@ def solve_elrod(
             if fixed[i, j]:
                 full[i, j] = False
                 fill[i, j] = 1.0
-    count, width = number_cells(free, kx, order, number)
+    # oil also links columns that exchange no pressure flow (short bearings)
+    count, width = number_cells(free, np.abs(kx) + np.abs(fx), order, number)
     for step in range(MAX_NEWTON_STEPS):
         assemble_elrod(
             kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full | fixed, number, count, width, P, lower,
@@ -270,11 +278,13 @@ def solve_elrod(
                     full[i, j] = True
                     changes += 1
         if changes == 0:
+            sound = True
             for i in range(n):
                 for j in range(m):
                     if full[i, j]:
                         P[i, j] = max(P[i, j], pc)
                     else:
+                        sound = sound and fill[i, j] > -LARGEST_DEFICIT
                         fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
-            return True, step + 1, count, width
+            return sound, step + 1, count, width
     return False, MAX_NEWTON_STEPS, count, width

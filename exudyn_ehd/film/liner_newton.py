@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.band_lu import factor_lu, solve_lu
+from exudyn_ehd.film.band_lu import add_flux, factor_lu, solve_lu
 from exudyn_ehd.film.direct import PAD, number_cells
 
 MAX_NEWTON_STEPS = 80
@@ -170,21 +170,6 @@ def liner_residual(
 
 
 @njit(cache=True)
-def _add_link(a, b, out_a, out_b, lower, upper):
-    """Derivatives ``out_a``, ``out_b`` of the flux a -> b to the pressures of its ends; a, b are unknowns or -1."""
-    if a >= 0:
-        upper[a, 0] += out_a
-        if b > a:
-            upper[a, b - a] += out_b
-            lower[a, b - a] -= out_a
-        elif b >= 0:
-            lower[b, a - b] += out_b
-            upper[b, a - b] -= out_a
-    if b >= 0:
-        upper[b, 0] -= out_b
-
-
-@njit(cache=True)
 def assemble_liner(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width, lower,
     upper,
@@ -216,7 +201,7 @@ def assemble_liner(
                 k = width_z[j] * h * (h * h + d * d) * lx
                 by_h = 0.5 * width_z[j] * beta * (v - (3.0 * h * h + d * d) * drop)
                 by_d = width_z[j] * beta * h * d * drop
-                _add_link(
+                add_flux(
                     a, b, k + (by_h + by_d if da == pa else 0.0), -k + (by_h - by_d if db == pb else 0.0), lower, upper
                 )
             if j + 1 == m:
@@ -231,7 +216,7 @@ def assemble_liner(
                 k = width_x[i] * h * (h * h + d * d) * link_z[j]
                 by_h = 0.5 * width_x[i] * beta * (vz - (3.0 * h * h + d * d) * drop)
                 by_d = width_x[i] * beta * h * d * drop
-                _add_link(
+                add_flux(
                     a, b, k + (by_h + by_d if da == pa else 0.0), -k + (by_h - by_d if db == pb else 0.0), lower, upper
                 )
 

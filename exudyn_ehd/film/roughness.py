@@ -8,13 +8,25 @@ correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, 
     phi_s = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_s,
     Phi_s = A1 H^a1 exp(-a2 H + a3 H^2) for H <= 5,    A2 exp(-H / 4) for H > 5.
 
-Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s). The mean shear of the
-open film is ``mu U E[1 / local gap]``, the Couette friction factor of the second paper, here for Gaussian heights and with
-their cut-off at sigma / 100. Their factors phi_fs and phi_fp, which distribute shear between two surfaces of different roughness,
-are left out: the Poiseuille shear stays ``-+ h_T/2 dp/dx``, so that the forces on journal, film and bore balance.
+Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the friction factors).
+
+Friction. The second paper gives the mean shear stress of the two surfaces in pure sliding as ``mu U / h (phi_f +- phi_fs)`` with
+``phi_f = h E[1 / local gap]`` (here for Gaussian heights, with their cut-off at sigma / 100) and
+
+    phi_fs = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_fs,    Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2) for H <= 7,
+
+the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher one, which makes up for the difference: momentum
+of the film. Where one surface is smooth its shear is all there is, so that the tangential force on either is
+
+    mu U / h (phi_f + Phi_fs),
+
+and as both factors are linear in the variances (heights of the two surfaces are independent) that holds for every share of the two.
+For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small roughness). Beyond H = 7 Phi_fs
+falls on by the power that it has there. Under a pressure gradient the two tangential forces are ``-+ h_T/2 dp/dx``: exact for equally rough
+surfaces, where shear, ``phi_fp h/2 dp/dx`` with ``phi_fp h = h_T - sigma Phi_s`` by reciprocity, and ripples add up to it.
 
 The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as phi = phi_x h^3 /
-h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as ``h_T E[1 / local gap]``. Below the smallest H that the fits are
+h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as ``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are
 meant for (0.5 to 1) their logarithms run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
 """
 
@@ -42,6 +54,17 @@ PATTERNS = {
     6.0: (0.52, 1.5, 0.5, 1.29, 0.62, 1.09, 0.08, 0.388),
     9.0: (0.87, 1.5, 0.5, 1.011, 0.54, 1.07, 0.08, 0.295),
 }
+# gamma: A3, a4, a5, a6
+FRICTION_PATTERNS = {
+    1 / 9: (14.1, 2.45, 2.30, 0.10),
+    1 / 6: (13.4, 2.42, 2.30, 0.10),
+    1 / 3: (12.3, 2.32, 2.30, 0.10),
+    1.0: (11.1, 2.31, 2.38, 0.11),
+    3.0: (9.8, 2.25, 2.80, 0.18),
+    6.0: (10.1, 2.25, 2.90, 0.18),
+    9.0: (8.7, 2.15, 2.97, 0.18),
+}
+FRICTION_REACH = 7.0
 SHEAR_CUTOFF = 0.01
 FLOW_BLEND = 0.5
 SHEAR_BLEND = 0.15
@@ -103,6 +126,15 @@ def shear_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
     return np.where(H <= 5.0, A1 * H**a1 * np.exp(-a2 * H + a3 * np.minimum(H, 5.0) ** 2), A2 * np.exp(-0.25 * H))
 
 
+def shear_stress_factor(H: np.ndarray, pattern: float) -> np.ndarray:
+    """Phi_fs(H, gamma) of one rough surface; beyond H = 7 a power of H that continues the fit with its slope."""
+    A3, a4, a5, a6 = next(v for known, v in FRICTION_PATTERNS.items() if math.isclose(pattern, known, rel_tol=1e-3))
+    H, end = np.asarray(H, dtype=float), FRICTION_REACH
+    power = a4 - a5 * end + 2.0 * a6 * end**2
+    near = np.minimum(H, end)
+    return A3 * near**a4 * np.exp(-a5 * near + a6 * near**2) * (np.maximum(H, end) / end) ** power
+
+
 def friction_factor(H: np.ndarray) -> np.ndarray:
     """``h E[1 / local gap]`` over the open film with local gaps above sigma / 100, in sigma units; the sum runs in ln(gap)."""
     H = np.atleast_1d(np.asarray(H, dtype=float))
@@ -158,7 +190,8 @@ def flow_tables(pattern: float, residual: float) -> tuple[np.ndarray, np.ndarray
     shear = np.log(np.maximum(shear_flow_factor(positive, pattern) / ts, 1e-300))
     phi = np.exp(_continued(flow, s, start, FLOW_BLEND))[::-1]
     psi = np.exp(_continued(shear, s, start, SHEAR_BLEND))[::-1]
-    friction = (ts * mean_inverse_gap(xs))[::-1].copy()
+    drag = np.log(np.maximum(shear_stress_factor(positive, pattern) * ts / positive, 1e-300))
+    friction = (ts * mean_inverse_gap(xs) + np.exp(_continued(drag, s, start, SHEAR_BLEND)))[::-1].copy()
     phi[0] = friction[0] = 1.0
     return _table(y, phi), _table(y, psi), _table(y, friction)
 
@@ -202,7 +235,7 @@ class RoughFlow:
 
 
 class RoughShear:
-    """Couette friction factor of rough surfaces as a shear factor of one bearing model; arguments as `RoughFlow`."""
+    """Couette friction factor phi_f + Phi_fs of rough surfaces as a shear factor of one bearing model; arguments as `RoughFlow`."""
 
     def __init__(self, roughness: PatirCheng, clearance: float, residual: float) -> None:
         self.sigma = roughness.composite_roughness / clearance

@@ -64,6 +64,8 @@ class Closure(Protocol):
 
     def adjoint_factor(self, work: Workspace) -> ColumnFactor: ...
 
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
+
 
 @dataclass(eq=False)
 class Sensitivities:
@@ -193,11 +195,7 @@ class FilmSolver:
         """
         g, s = self.grid, self.system
         self.vx, self.vz = vx, vz
-        if self.flux is None:
-            conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-            couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
-        else:
-            self._apply_flux_effects(self.flux)
+        self._set_links()
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -215,6 +213,15 @@ class FilmSolver:
             steps += fine_steps + self._guess_from_coarse(mass_old, step)
             status, fine_steps = self.closure.solve(s, self.work)
         return status, steps + fine_steps
+
+    def _set_links(self) -> None:
+        """Conductances and Couette fluxes of the links."""
+        g, s = self.grid, self.system
+        if self.flux is not None:
+            self._apply_flux_effects(self.flux)
+            return
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
         g, s = self.grid, self.system
@@ -264,6 +271,10 @@ class FilmSolver:
     def adjoint_factor(self) -> ColumnFactor:
         """Factor of the transposed system of the last solution."""
         return self.closure.adjoint_factor(self.work)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
+        self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""

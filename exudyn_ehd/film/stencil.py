@@ -76,6 +76,16 @@ def add_modes(transposed, q, q_t, place_out, rate_out):
 
 
 @njit(cache=True, fastmath=_FAST)
+def sparse_product(indptr, indices, data, x, out):
+    """CSR matrix times vector, without the checks that would take longer than a small product."""
+    for r in range(out.size):
+        total = 0.0
+        for p in range(indptr[r], indptr[r + 1]):
+            total += data[p] * x[indices[p]]
+        out[r] = total
+
+
+@njit(cache=True, fastmath=_FAST)
 def weighted_rows(shapes, place, weight, first, out):
     """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of out (count, >= first + k)."""
     k = shapes.shape[1]

@@ -268,36 +268,38 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
     start of each of b equal parts of q.
     """
     n, m = q.shape
-    top = q_table[-1]
     for i in range(n):
         for j in range(m):
-            x = q[i, j]
-            if x == 0.0:
-                p_out[i, j] = 0.0
-                ratio_out[i, j] = 1.0
-                ratio_q_out[i, j] = alpha
-                continue
-            if x < 0.0:
-                r = 1.0 / (1.0 - alpha * x)
-                p_out[i, j] = -np.log1p(-alpha * x) / alpha
-                ratio_out[i, j] = r
-                ratio_q_out[i, j] = alpha * r * r
-                continue
-            if not x < top:
+            if not q[i, j] < q_table[-1]:
                 return False
-            at = min(int(x * bucket_scale), bucket.size - 2)
-            low = bucket[at]
-            high = bucket[at + 1] + 1
-            while high - low > 1:
-                middle = (low + high) // 2
-                if q_table[middle] <= x:
-                    low = middle
-                else:
-                    high = middle
-            c = table[low]
-            w = c[0]
-            t = (x - q_table[low]) * w
-            p_out[i, j] = c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6]))))
-            ratio_out[i, j] = w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6]))))
-            ratio_q_out[i, j] = w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6])))
+            p_out[i, j], ratio_out[i, j], ratio_q_out[i, j] = hermite_at(
+                q[i, j], alpha, q_table, table, bucket, bucket_scale
+            )
     return True
+
+
+@njit(cache=True, inline="always")
+def hermite_at(x, alpha, q_table, table, bucket, bucket_scale):
+    """p, dp/dq and d2p/dq2 of `hermite_inverse` at one x below the table's end."""
+    if x == 0.0:
+        return 0.0, 1.0, alpha
+    if x < 0.0:
+        r = 1.0 / (1.0 - alpha * x)
+        return -np.log1p(-alpha * x) / alpha, r, alpha * r * r
+    at = min(int(x * bucket_scale), bucket.size - 2)
+    low = bucket[at]
+    high = bucket[at + 1] + 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        if q_table[middle] <= x:
+            low = middle
+        else:
+            high = middle
+    c = table[low]
+    w = c[0]
+    t = (x - q_table[low]) * w
+    return (
+        c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6])))),
+        w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6])))),
+        w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6]))),
+    )

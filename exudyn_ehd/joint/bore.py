@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_modes, combine_rows, weighted_rows
+from exudyn_ehd.film.stencil import add_modes, combine_rows, sparse_product, weighted_rows
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
@@ -61,9 +61,11 @@ class ModalBore:
         S.
     stiffness : (k,) array
         Modal stiffness, N/m.
+    modes : BoreModes or ReducedBore
     """
 
     def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
+        self.modes = modes
         self.grid_shape = grid.shape
         self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
         self.transposed = np.ascontiguousarray(self.shapes.T)
@@ -144,7 +146,9 @@ class NodalBore:
 
     def load(self, field: np.ndarray) -> np.ndarray:
         """S^T f (k,)."""
-        return self.transposed @ field.ravel()
+        T, out = self.transposed, np.empty(self.size)
+        sparse_product(T.indptr, T.indices, T.data, np.ascontiguousarray(field).reshape(-1), out)
+        return out
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
@@ -152,7 +156,11 @@ class NodalBore:
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
-        return self.displacement(q), self.displacement(q_t)
+        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
+        S = self.shapes
+        sparse_product(S.indptr, S.indices, S.data, q, place.reshape(-1))
+        sparse_product(S.indptr, S.indices, S.data, q_t, rate.reshape(-1))
+        return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""

@@ -43,28 +43,18 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
     (6 + k, 10 + k * combinations) array
         d/d motion, then the combinations.
     """
-    k, c = model.bore.size, model.bearing.radial_clearance
-    lam, count = _adjoints(model)
-    places = model.solver.work.order[: len(lam)]
-    links, slope, AR, AC = swept_derivatives(model)
-    balance = np.empty((len(lam), SIZE))
-    motion_columns(
-        places, len(lam), links.DX, links.DZ, links.SX, links.SZ, links.SZX, slope, AR, AC, model.cos_x, model.sin_x,
-        model.cos_f, model.sin_f, model.grid.z, balance,
-    )  # fmt: skip
-    gradient = -(lam.T @ balance)
+    k = model.bore.size
+    lam, count = _adjoints(model, whole=True)
+    balances = Balances(model)
+    gradient = -(lam.T @ balances.motion)
     out = np.empty((6 + k, SIZE + k * len(combinations)))
     out[:6, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
     out[6:, :SIZE] = _scaled(model, gradient[count : count + k])
-    weights = _wrench_weights(model)
-    direct = _direct(model, weights)
-    by_integral = weights[:, :count] if shear_needs_adjoint(model) else weights[:, [0, 1, 2, 3, 5, 6]]
-    weight, vertices = np.empty((len(lam), 5)), np.empty((len(lam), 5), dtype=np.int64)
+    weights, direct = wrench_weights(model)
     for i, (by_gap, by_rate) in enumerate(combinations):
         block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
-        gap_stencil(places, len(lam), links.DX, links.DZ, slope, AR, AC, -by_gap / c, -by_rate / c, weight, vertices)
-        by_bore = model.bore.project(weight, vertices, lam)
-        block[:6] = by_integral @ by_bore[:count] + by_gap * direct
+        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam)
+        block[:6] = weights @ by_bore[:count] + by_gap * direct
         np.multiply(by_bore[count : count + k], model.force_scale, out=block[6:])
         if model.contact_fields is not None:
             _add_contact_loads(model, block[6:], by_gap)
@@ -73,19 +63,69 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
     return out
 
 
-def _adjoints(model: ElasticBearingModel) -> tuple[np.ndarray, int]:
-    """Adjoint solutions (count, >= integrals + k) of the integrals and the bore's loads at the unknowns, and the number of integrals."""
-    w, k = model.solver.work, model.bore.size
-    integrals = adjoint_rows(model)
-    count = len(integrals)
+class Balances:
+    """Derivatives of the film's balances at its unknowns for the last evaluation of ``model``.
+
+    Attributes
+    ----------
+    places : (count,) array
+        Flat vertices of the unknowns.
+    motion : (count, 10) array
+        To (scaled pose, scaled rates, vx, vz).
+    """
+
+    def __init__(self, model: ElasticBearingModel) -> None:
+        work = model.solver.work
+        self.clearance = model.bearing.radial_clearance
+        self.places = work.order[: work.count]
+        self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(model)
+        links, self.motion = self.links, np.empty((work.count, SIZE))
+        motion_columns(
+            self.places, work.count, links.DX, links.DZ, links.SX, links.SZ, links.SZX, self.slope, self.by_rate, self.by_gap,
+            model.cos_x, model.sin_x, model.cos_f, model.sin_f, model.grid.z, self.motion,
+        )  # fmt: skip
+
+    def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
+        """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
+        count, c = len(self.places), self.clearance
+        weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
+        gap_stencil(
+            self.places, count, self.links.DX, self.links.DZ, self.slope, self.by_rate, self.by_gap, by_place / c,
+            by_rate / c, weight, vertices,
+        )  # fmt: skip
+        return weight, vertices
+
+
+def wrench_rows(model: ElasticBearingModel, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """d wrench / d motion (6, 10), / dq and / dq_t (6, k): the upper rows of `elastic_tangent` alone."""
+    lam, count = _adjoints(model, whole=False)
+    weights, direct = wrench_weights(model)
+    by_place, by_rate = (
+        weights @ model.bore.project(*balances.stencil(*f), lam)[:count] for f in ((-1.0, 0.0), (0.0, -1.0))
+    )
+    return wrench_tangent(model, gradient=-(lam[:, :count].T @ balances.motion)), by_place + direct, by_rate
+
+
+def load_weights(model: ElasticBearingModel) -> np.ndarray:
+    """Weight of every unknown (count,) in the scaled pressure integral over the bore."""
+    w = model.solver.work
     at = w.order[: w.count]
     weight = np.where(w.active.ravel()[at], model.grid.weight.ravel()[at], 0.0)
     if model.P_q is not None:
         weight *= model.P_q.ravel()[at]
-    lam = np.empty((w.count, -(-(count + k) // VECTOR) * VECTOR))
+    return weight
+
+
+def _adjoints(model: ElasticBearingModel, whole: bool) -> tuple[np.ndarray, int]:
+    """Adjoint solutions (count, >= integrals + k) at the unknowns, those of the bore's loads only if ``whole``, and the number of integrals."""
+    k = model.bore.size if whole else 0
+    integrals = adjoint_rows(model)
+    count, unknowns = integrals.shape
+    lam = np.empty((unknowns, -(-(count + k) // VECTOR) * VECTOR))
     lam[:, :count] = integrals.T
     lam[:, count + k :] = 0.0
-    model.bore.fill_rows(at, weight, count, lam)
+    if whole:
+        model.bore.fill_rows(model.solver.work.order[:unknowns], load_weights(model), count, lam)
     model.solver.adjoint_columns(lam)
     return lam, count
 
@@ -132,7 +172,14 @@ def _end_field(model: ElasticBearingModel) -> np.ndarray:
     return field
 
 
-def _wrench_weights(model: ElasticBearingModel) -> np.ndarray:
+def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the integrals of `adjoint_rows` in the wrench, and what the wrench owes to q at fixed film pressure (6, k)."""
+    weights = _all_weights(model)
+    direct = _direct(model, weights)
+    return (weights[:, :7] if shear_needs_adjoint(model) else weights[:, [0, 1, 2, 3, 5, 6]]), direct
+
+
+def _all_weights(model: ElasticBearingModel) -> np.ndarray:
     """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench."""
     x, y, bx, by = model.pose.tolist()
     R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
@@ -165,7 +212,7 @@ def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
     return out
 
 
-def _contact_slope(model: ElasticBearingModel) -> np.ndarray:
+def contact_slope(model: ElasticBearingModel) -> np.ndarray:
     """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
     f, g = model.contact_fields, model.grid
     assert f is not None
@@ -174,11 +221,11 @@ def _contact_slope(model: ElasticBearingModel) -> np.ndarray:
 
 def _add_contact_motion(model: ElasticBearingModel, block: np.ndarray) -> None:
     """Add the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
-    slope, z = _contact_slope(model), model.grid.z
+    slope, z = contact_slope(model), model.grid.z
     cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
     block -= model.bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * model.pose_scale
 
 
 def _add_contact_loads(model: ElasticBearingModel, block: np.ndarray, by_gap: float) -> None:
     """Add ``by_gap`` times the gradient of the contacts' part of the bore's loads to q, (k, k)."""
-    block += model.bore.product(_contact_slope(model)) * (by_gap / model.bearing.radial_clearance)
+    block += model.bore.product(contact_slope(model)) * (by_gap / model.bearing.radial_clearance)

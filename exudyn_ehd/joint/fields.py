@@ -41,6 +41,8 @@ class FilmFields(FilmPictures):
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.model`; with a flexible bore followed by its coordinates and rates.
     bearing : JournalBearing
+    bush_displacement : (k, 3) array or None
+        Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
     """
 
     time: float
@@ -58,6 +60,7 @@ class FilmFields(FilmPictures):
     moment: np.ndarray
     motion: np.ndarray
     bearing: JournalBearing = field(repr=False)
+    bush_displacement: np.ndarray | None = None
 
 
 def grid_fields(model: BearingModel) -> dict[str, Any]:
@@ -75,7 +78,7 @@ def grid_fields(model: BearingModel) -> dict[str, Any]:
     }
 
 
-def film_fields(model: BearingModel, time: float) -> FilmFields:
+def film_fields(model: BearingModel, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
     """The film of the model's last evaluation."""
     wear = model.effects.wear
     return FilmFields(
@@ -88,4 +91,5 @@ def film_fields(model: BearingModel, time: float) -> FilmFields:
         moment=model.wrench[3:].copy(),
         motion=model.motion.copy(),
         bearing=model.bearing,
+        bush_displacement=bush_displacement,
     )

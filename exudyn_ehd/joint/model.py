@@ -21,7 +21,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.contact_loads import contact_integrals
+from exudyn_ehd.film.contact_loads import contact_integrals, couette_integral_law
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
@@ -398,18 +398,22 @@ class BearingModel:
                 self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
             return Status.CONVERGED
-        ratio, ratio_q = np.ones(shape), np.zeros(shape)
-        ratio_h, ratio_v = np.zeros(shape), np.zeros(shape)
+        ratio, ratio_q = np.empty(shape), np.empty(shape)
+        ratio_h = ratio_v = s.nothing
         self.P_q = None
-        if self.effects.pressure_law is not None:
+        if self.compressible is not None:
+            self.P, self.P_q = np.empty(shape), np.empty(shape)
+            if not self.compressible.viscosity(self.P, ratio, ratio_q, self.P_q):
+                return Status.NO_PRESSURE
+        elif self.effects.pressure_law is not None:
             self.P = np.empty(shape)
             if not self.effects.pressure_law.inverse(s.pressure * self.pressure_scale, self.P, ratio, ratio_q):
                 return Status.NO_PRESSURE
             self.P /= self.pressure_scale
             ratio_q *= self.pressure_scale
-            self.P_q = ratio.copy() if self.compressible is None else ratio / self.compressible.rho
+            self.P_q = ratio.copy()
         if self.effects.shear_factor is not None:
-            factor = np.empty(shape)
+            factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
             if self.P_q is not None:
                 ratio_h *= ratio
@@ -429,9 +433,10 @@ class BearingModel:
 
     def _couette(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
+        if self.ratio is not None and s.closure.conserves_mass:
+            return couette_integral_ratio(s.H, g.weight, self.ratio, s.fill, s.fill >= 1.0)
         if self.ratio is not None:
-            unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
-            return couette_integral_ratio(s.H, g.weight, self.ratio, self.share(), unbroken)
+            return couette_integral_law(s.H, g.weight, self.ratio, s.work.active, g.fixed, s.closure.cavity_shear)
         if s.closure.conserves_mass:
             return couette_integral_fill(s.H, g.weight, s.fill)
         return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)

@@ -20,6 +20,7 @@ from exudyn_ehd.pictures.methods import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 LARGEST_LOAD_STEPS = 100
+LARGEST_CREEP_STEPS = 300
 STEP_HALVINGS = 8
 LOAD_TOLERANCE = 1e-10
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
@@ -282,7 +283,7 @@ def equilibrium(
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution.
+    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a falling resistance.
 
     With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping that of a
     sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion. A transient
@@ -318,20 +319,19 @@ def equilibrium(
     model = build_study_model(bearing, 0.0)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = _first_guess(bearing, omega, force, b)
-    residual, rounding = math.inf, FORCE_ROUNDING * bearing.reference_force(omega) / size
-    wrench = _evaluate(model, motion, "equilibrium")
-    for count in range(1, LARGEST_LOAD_STEPS + 1):  # noqa: B007
-        unbalance = wrench[:2] + force
-        tangent = model.steady_tangent()
-        residual = float(np.max(np.abs(unbalance))) / size
-        if residual < max(LOAD_TOLERANCE, rounding):
-            break
-        step = _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
-        wrench = _move(model, motion, step)
-    else:
+    tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * bearing.reference_force(omega) / size)
+    start = motion[:2].copy()
+    count, residual, tangent = _newton(model, motion, force, tolerance)
+    if residual > tolerance:
+        motion[:2] = start
+        more, residual, tangent = _creep(model, motion, force, tolerance)
+        count += more
+    if residual > tolerance:
         raise FilmError(
-            f"equilibrium: no position found in {LARGEST_LOAD_STEPS} steps, residual {residual:.2g} of the load, eccentricity "
-            f"ratio {np.hypot(*model.pose[:2]):.4f}; a load this high may need contact=RegularisedWall(...) or a finer film grid."
+            f"equilibrium: no position found that carries {size:.4g} N in {count} steps; the nearest is off by {residual:.2g} of the "
+            f"load, at eccentricity ratio {np.hypot(*motion[:2]) / bearing.radial_clearance:.4f}. A load this high may need "
+            "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film may carry "
+            "no such load at any position: look at ehd.steady(...) around there."
         )
     K, C = -tangent[:2, :2], -_rate_tangent(model, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
@@ -348,6 +348,64 @@ def equilibrium(
         iterations=count,
         film=film,
     )
+
+
+def _newton(
+    model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
+) -> tuple[int, float, np.ndarray]:
+    """Newton's method from ``motion`` (changed in place): steps, unbalance over load, tangent at the end."""
+    size = float(np.hypot(*force))
+    count, residual = 0, math.inf
+    wrench = _evaluate(model, motion, "equilibrium")
+    tangent = model.steady_tangent()
+    while count < LARGEST_LOAD_STEPS:
+        count += 1
+        unbalance = wrench[:2] + force
+        residual = float(np.max(np.abs(unbalance))) / size
+        if residual <= tolerance:
+            break
+        try:
+            wrench = _move(model, motion, _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance)))
+        except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
+            break
+        tangent = model.steady_tangent()
+    return count, residual, tangent
+
+
+def _creep(
+    model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
+) -> tuple[int, float, np.ndarray]:
+    """As `_newton`, by way of the journal's creep: a viscous resistance r holds it back, which falls as the unbalance does.
+
+    ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure where Newton's
+    method jumps over a film that starves or touches.
+    """
+    size = float(np.hypot(*force))
+    unbalance = _evaluate(model, motion, "equilibrium")[:2] + force
+    tangent = model.steady_tangent()
+    resistance, count = 10.0 * size / model.bearing.radial_clearance, 1
+    while count < LARGEST_CREEP_STEPS and float(np.max(np.abs(unbalance))) > tolerance * size:
+        try:
+            step = np.linalg.solve(resistance * np.eye(2) - tangent[:2, :2], unbalance)
+        except np.linalg.LinAlgError:
+            resistance *= 4.0
+            count += 1
+            continue
+        base = motion[:2].copy()
+        motion[:2] += _limited_step(model, motion, step)
+        count += 1
+        try:
+            trial = _evaluate(model, motion, "equilibrium")[:2] + force
+        except FilmError:
+            trial = np.full(2, math.inf)
+        if float(np.hypot(*trial)) < float(np.hypot(*unbalance)):
+            unbalance, tangent = trial, model.steady_tangent()
+            resistance /= 5.0
+        else:
+            motion[:2] = base
+            resistance *= 4.0
+    _evaluate(model, motion, "equilibrium")
+    return count, float(np.max(np.abs(unbalance))) / size, tangent
 
 
 def _rate_tangent(model: BearingModel, tangent: np.ndarray) -> np.ndarray:

@@ -24,6 +24,8 @@ SIZE = (1.35 * COLUMN, 1.15 * COLUMN)
 CLEARANCE, HILL = 0.22, 0.75
 # Facets around, rows along.
 FACETS, ROWS = 120, 31
+# Colours of the journal.
+SIDE, CAP = (0.72, 0.74, 0.78), (0.82, 0.84, 0.87)
 
 
 def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Any:
@@ -59,16 +61,13 @@ def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: A
     with styled():
         figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
         quads, values = _quads(hill), _quads(unit(p)[..., None])[..., 0].mean(axis=1)
-        grey = np.tile([0.72, 0.74, 0.78, 1.0], (len(_quads(journal)), 1))
-        caps = np.tile([0.82, 0.84, 0.87, 1.0], (2, 1))
-        # one collection: matplotlib sorts facets by depth within a collection only
-        polygons = [*quads, *_quads(journal), journal[:-1, 0], journal[:-1, -1]]
-        faces = np.concatenate([colours(norm(values)), grey, caps])
-        ax.add_collection3d(
-            Poly3DCollection(
-                [_turned(q) for q in polygons], facecolors=faces, edgecolors=faces, linewidths=0.2, zorder=1
-            )
-        )
+        sides, caps = _quads(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
+        # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four corners, since
+        # it pads shorter ones with whatever the memory holds, and scales the axes by it
+        polygons = _turned(np.concatenate([quads, sides, caps]))
+        greys = [np.tile([*shade, 1.0], (len(part), 1)) for shade, part in ((SIDE, sides), (CAP, caps))]
+        faces = np.concatenate([colours(norm(values)), *greys])
+        ax.add_collection3d(Poly3DCollection(polygons, facecolors=faces, edgecolors=faces, linewidths=0.2, zorder=1))
         ring = np.stack([np.cos(around), np.sin(around)], axis=1)
         for end, order in ((z[0], 0), (z[-1], 2)):
             ax.plot(*_turned(np.column_stack([ring, np.full(len(ring), end)])).T, color=BLACK, lw=0.6, zorder=order)
@@ -105,6 +104,12 @@ def _quads(points: np.ndarray) -> np.ndarray:
     """Quadrilaterals (q, 4, d) of a grid of points (k, m, d)."""
     corners = [points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]]
     return np.stack(corners, axis=2).reshape(-1, 4, points.shape[-1])
+
+
+def _fan(rim: np.ndarray) -> np.ndarray:
+    """Facets (k, 4, 3) of the disc within a closed rim (k, 3): triangles with their last corner twice."""
+    following = np.roll(rim, -1, axis=0)
+    return np.stack([np.broadcast_to(rim.mean(axis=0), rim.shape), rim, following, following], axis=1)
 
 
 def _turned(points: np.ndarray) -> np.ndarray:

@@ -52,6 +52,16 @@ TEMPERATURE = MapField(
 )
 
 
+CONTACT_PRESSURE = MapField(
+    "contact_pressure",
+    "contact pressure",
+    "pressure",
+    "magma",
+    "give the bearing asperity=GreenwoodTripp(...) or contact=RegularisedWall(...).",
+)
+WEAR_DEPTH = MapField("wear_depth", "wear depth", "depth", "cividis", "give the bearing wear=ArchardWear(...).")
+
+
 def field_values(film: Film, field: MapField) -> np.ndarray:
     """The field (n, m) of a film; a single temperature fills the whole map.
 
@@ -60,7 +70,7 @@ def field_values(film: Film, field: MapField) -> np.ndarray:
     InputError
         If the film has none.
     """
-    values = getattr(film, field.name)
+    values = getattr(film, field.name, None)
     if values is None:
         raise InputError(f"plot_{field.name}: this film has no {field.text}; {field.absent}")
     return np.broadcast_to(np.asarray(values, dtype=float), film.pressure.shape)
@@ -129,7 +139,15 @@ def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -
         return finish(figure, path)
 
 
-def draw_map(ax: Any, film: Film, field: MapField, unit: Unit, limits: tuple[float, float] | None = None) -> Any:
+def draw_map(
+    ax: Any,
+    film: Film,
+    field: MapField,
+    unit: Unit,
+    limits: tuple[float, float] | None = None,
+    *,
+    outlines: bool = True,
+) -> Any:
     """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of the colours in the shown unit."""
     values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
     low, high = limits or colour_limits(values, field)
@@ -143,7 +161,8 @@ def draw_map(ax: Any, film: Film, field: MapField, unit: Unit, limits: tuple[flo
         vmin=low,
         vmax=high,
     )
-    draw_rupture(ax, film)
+    if outlines:
+        draw_rupture(ax, film)
     _draw_supply(ax, film)
     ax.set(
         xlabel="angle θ [°]",

@@ -31,6 +31,14 @@ class FilmPictures:
         """Unrolled map of the film's temperature, as `plot_pressure`."""
         return self._map("TEMPERATURE", ax, path)
 
+    def plot_contact_pressure(self, *, ax: Any = None, path: Any = None) -> Figure:
+        """Unrolled map of the pressure of asperities or wall, as `plot_pressure`; of a joint's film."""
+        return self._map("CONTACT_PRESSURE", ax, path)
+
+    def plot_wear_depth(self, *, ax: Any = None, path: Any = None) -> Figure:
+        """Unrolled map of what was worn off the bore, as `plot_pressure`; of a joint's film."""
+        return self._map("WEAR_DEPTH", ax, path)
+
     def plot_bearing(self, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Figure:
         """The bearing in space: pressure around the bore, journal, load on the bush; ``camera`` elevation and azimuth, degrees."""
         from exudyn_ehd.pictures.bearing3d import plot_bearing

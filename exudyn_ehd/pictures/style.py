@@ -34,6 +34,7 @@ RC = {
     "font.sans-serif": ["DejaVu Sans"],
     "font.size": 8.0,
     "axes.titlesize": 8.0,
+    "figure.titlesize": 8.0,
     "axes.labelsize": 8.0,
     "axes.linewidth": 0.6,
     "axes.prop_cycle": cycler(color=list(PALETTE)),

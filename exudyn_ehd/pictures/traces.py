@@ -101,5 +101,7 @@ def _checked(history: History, quantity: Any) -> str:
         known = ", ".join(sorted(set(QUANTITIES) - {"time"}))
         raise InputError(f"plot_traces: quantities must be scalars of a history, got {quantity!r}; known are {known}.")
     if not np.isfinite(getattr(history, name)).any():
-        raise InputError(f"plot_traces: this film has no {QUANTITIES[name][0]}; the history holds nan throughout.")
+        raise InputError(
+            f"plot_traces: this film has no {QUANTITIES[name][0]}, the history holds nan throughout; name other quantities."
+        )
     return name

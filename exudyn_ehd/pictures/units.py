@@ -31,6 +31,7 @@ class Unit:
 _UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "pressure": ((1e5, Unit("MPa", 1e-6)), (1e2, Unit("kPa", 1e-3)), (0.0, Unit("Pa"))),
     "length": ((1e-3, Unit("mm", 1e3)), (0.0, Unit("µm", 1e6))),
+    "depth": ((1e-3, Unit("mm", 1e3)), (1e-7, Unit("µm", 1e6)), (0.0, Unit("nm", 1e9))),
     "angle": ((0.0, Unit("°", 180.0 / np.pi)),),
     "time": ((1.0, Unit("s")), (1e-3, Unit("ms", 1e3)), (0.0, Unit("µs", 1e6))),
     "force": ((1e4, Unit("kN", 1e-3)), (0.1, Unit("N")), (0.0, Unit("mN", 1e3))),

@@ -8,12 +8,15 @@ study       scene + ladder + references -> table; repeated in turns, or in paral
 table       the table: text, CSV
 front       Pareto front, cheapest setting within an error, whether an order of times is kept
 steady      scenes: a journal at a prescribed position
-planar      scenes: journals that move in an Exudyn model
+moving      scenes: journals that move in an Exudyn model
+mechanisms  the Exudyn models of these scenes
 ladders     which settings stand on a ladder
 catalogue   all studies
 pictures    work-precision diagrams, one-page summary
 cells       measured errors over (eps, L/D, tilt, elasticity)
 advice      `recommend`
+growth      cost over grid, modes and joints
+moving_catalogue  the moving scenes and their ladders
 parameters  apart from all that: `parameter_study`, a function over lists of parameters
 
 ``python -m exudyn_ehd.studies`` redoes everything that is shipped in ``data``; ``--quick`` takes about a minute.

@@ -6,17 +6,23 @@ import dataclasses
 import math
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.lubricant import Lubricant
+from exudyn_ehd.film.roughness import PatirCheng
+from exudyn_ehd.film.shear import CarreauShear
 from exudyn_ehd.film.supply import AxialGroove
+from exudyn_ehd.film.temperature import VogelTemperature
+from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.viscosity import RoelandsPressure
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.studies import ladders
+from exudyn_ehd.studies.moving_catalogue import STEEL, moving_catalogue, quick_moving_catalogue
 from exudyn_ehd.studies.steady import DEGREE, SteadyScene
 from exudyn_ehd.studies.study import Study
 
-STEEL = SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 QUICK_GRIDS = ((32, 4), (64, 8), (96, 10), (128, 12))
 QUICK_CLASSIC = ((ladders.PAPER_GRID, (1e-3, ladders.PAPER_TOLERANCE)),)
 # The directions of a steady scene lie around this one, rad; it is no symmetry direction of any grid.
@@ -70,7 +76,7 @@ def steady_closures(scene: SteadyScene) -> Study:
     return Study(
         name=f"{scene.name}_closure", title=f"{scene.title}: cavitation", scene=scene,
         settings=ladders.closure_ladder(), references=ladders.closure_references(),
-        quantities=("load", "attitude", "friction", "leakage"),
+        quantities=("load", "attitude", "friction"),
     )  # fmt: skip
 
 
@@ -94,6 +100,46 @@ def steady_bush(scene: SteadyScene) -> Study:
     )  # fmt: skip
 
 
+def loaded_bearing() -> JournalBearing:
+    """The paper's journal in an oil with every law of this package, with a film temperature field and rough surfaces."""
+    oil = Lubricant(
+        viscosity=9e-3, temperature=353.15, pressure_law=RoelandsPressure(coefficient=1.5e-8),
+        temperature_law=VogelTemperature(first=(313.15, 0.0396), second=(373.15, 0.0059)),
+        shear_law=CarreauShear(relaxation_time=1e-6, exponent=0.8, residual=0.5),
+    )  # fmt: skip
+    heat = FilmEnergy(supply_temperature=353.15, bush_coefficient=2000.0, journal_coefficient=2000.0)
+    return dataclasses.replace(
+        paper_journal(), lubricant=oil, thermal=heat, roughness=PatirCheng(composite_roughness=0.8e-6),
+        asperity=GreenwoodTripp(composite_roughness=0.8e-6, composite_modulus=1.1e11),
+        end_pressures=(1e3, 1e3),
+    )  # fmt: skip
+
+
+def steady_effects() -> Study:
+    """Effects left out one by one, and all of them, at eccentricity ratio 0.85."""
+    bearing = loaded_bearing()
+    oil = bearing.lubricant
+    scene = dataclasses.replace(
+        steady_scene(0.85), name="steady_loaded", title="steady journal, eccentricity ratio 0.85, hot oil, rough surfaces",
+        bearing=bearing, directions=2,
+    )  # fmt: skip
+    lumped = LumpedThermal(supply_temperature=353.15, housing_conductance=20.0)
+    off: dict[str, dict[str, Any]] = {
+        "all": {},
+        "no pressure law": {"lubricant": dataclasses.replace(oil, pressure_law=None)},
+        "no shear thinning": {"lubricant": dataclasses.replace(oil, shear_law=None)},
+        "no heating": {"thermal": None},
+        "one temperature": {"thermal": lumped},
+        "no roughness": {"roughness": None},
+        "no asperities": {"asperity": None},
+        "none": {
+            "lubricant": dataclasses.replace(oil, pressure_law=None, shear_law=None), "thermal": None, "roughness": None,
+            "asperity": None,
+        },
+    }  # fmt: skip
+    return ladders.effects_study(scene, off, ("load", "friction", "peak pressure", "leakage", "attitude"))
+
+
 def full_catalogue() -> dict[str, Callable[[], Study]]:
     """Every shipped study by name; made when called."""
     studies: dict[str, Callable[[], Study]] = {}
@@ -103,10 +149,11 @@ def full_catalogue() -> dict[str, Callable[[], Study]]:
     main = steady_scene(0.8)
     studies[f"{main.name}_closure"] = partial(steady_closures, main)
     studies[f"{main.name}_bush"] = partial(steady_bush, main)
-    return studies
+    studies["steady_loaded_effects"] = steady_effects
+    return studies | moving_catalogue()
 
 
 def quick_catalogue() -> dict[str, Callable[[], Study]]:
-    """A minute's worth of it."""
+    """A minute's worth of it: film models at a steady position and on a journal's path, and step and integrator there."""
     main = steady_scene(0.8)
-    return {f"{main.name}_film": partial(steady_film, main, quick=True)}
+    return {f"{main.name}_film": partial(steady_film, main, quick=True)} | quick_moving_catalogue()

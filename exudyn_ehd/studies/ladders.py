@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 import numpy as np
 
@@ -18,14 +19,15 @@ from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.reduce import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as Material
-from exudyn_ehd.studies.setting import Setting
-from exudyn_ehd.studies.study import Reference
+from exudyn_ehd.studies.setting import Scene, Setting
+from exudyn_ehd.studies.study import Reference, Study
 
 Grid = tuple[int, int]
 MeshSize = tuple[int, int, int]
 Mesh = Callable[[MeshSize], HollowCylinder]
 GRIDS: tuple[Grid, ...] = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16), (256, 20))
 REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((192, 16), (384, 32), (768, 64))
+EFFECT_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
 QUICK_REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
 SWIFT, GUMBEL, SHORT, LONG = "Swift-Stieber", "Gumbel", "short bearing", "long bearing"
 # The paper prints its tolerance, not its film grid; this one has a point at every node that its bush has on the bore.
@@ -215,3 +217,30 @@ def bush_references(
 
 def _mesh_label(size: MeshSize) -> str:
     return " x ".join(str(n) for n in size)
+
+
+def effects_study(scene: Scene, off: Mapping[str, Mapping[str, Any]], quantities: tuple[str, ...] = ()) -> Study:
+    """Effects left out one by one, on the scene's grid, against all of them on fine grids.
+
+    Parameters
+    ----------
+    scene : Scene
+        With every effect.
+    off : mapping
+        Label to the options that leave something out; ``"all": {}`` first.
+    quantities : tuple of str
+        As for `Study`.
+    """
+    model = "all effects"
+    settings = tuple(
+        Setting(label=name, family=name, model=name if options else model, options=options)
+        for name, options in off.items()
+    )
+    a, b, c = (
+        Setting(label=f"all {grid_label(g)}", family="reference", model=model, options={"film": _film(g)})
+        for g in EFFECT_GRIDS
+    )
+    return Study(
+        name=f"{scene.name}_effects", title=f"{scene.title}: effects left out", scene=scene, settings=settings,
+        references=(Reference(model=model, levels=(a, b, c), ratio=2.0),), quantities=quantities,
+    )  # fmt: skip

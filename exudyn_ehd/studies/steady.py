@@ -78,37 +78,20 @@ class SteadyScene:
             if require_number(f"SteadyScene.{name}", getattr(self, name), at_least=0.0) >= 1.0:
                 raise InputError(f"SteadyScene.{name} must be below 1, got {getattr(self, name)!r}.")
 
-    @property
-    def slope(self) -> float:
-        """Tilt, rad."""
-        gap = self.bearing.radial_clearance * (1.0 - self.eccentricity_ratio)
-        return 2.0 * self.tilt_ratio * gap / self.bearing.length
-
     def motions(self) -> np.ndarray:
         """Motions (directions, 10) as in `exudyn_ehd.joint.model`."""
-        out = np.zeros((self.directions, 10))
-        angle = self.start_direction + DEGREE * np.arange(self.directions)
-        radial = np.stack((np.cos(angle), np.sin(angle)), axis=1)
-        out[:, :2] = self.eccentricity_ratio * self.bearing.radial_clearance * radial
-        out[:, 2:4] = self.slope * radial
-        out[:, 8] = self.speed
-        return out
+        angles = self.start_direction + DEGREE * np.arange(self.directions)
+        state = self.speed, self.eccentricity_ratio, self.tilt_ratio
+        return np.array([motion_at(self.bearing, *state, angle) for angle in angles])
 
     def prepare(self, setting: Setting) -> Callable[[], Outcome]:
         """Build the model; the run evaluates all directions, often enough to be measured."""
         model: Any = build_model(setting.bearing(self.bearing))
         motions = self.motions()
-        values, iterations, films = _values(model, motions)
-        start = time.process_time()
-        _sweep(model, motions)
-        once = max(time.process_time() - start, 1e-6)
-        rounds = max(1, math.ceil(SHORTEST / once))
+        values, iterations, films = measure_motions(model, motions)
 
         def run() -> Outcome:
-            start = time.process_time()
-            for _ in range(rounds):
-                _sweep(model, motions)
-            seconds = (time.process_time() - start) / (rounds * len(motions))
+            seconds = time_of_sweep(model, motions)
             return Outcome(values=values, seconds=seconds, newton=iterations, films=films)
 
         return run
@@ -125,21 +108,43 @@ def _tangent(model: Any, evaluation: Any) -> np.ndarray:
     return evaluation.tangent() if isinstance(model, ImpedanceModel) else model.steady_tangent()
 
 
+def motion_at(
+    bearing: JournalBearing, speed: float, eccentricity_ratio: float, tilt_ratio: float, direction: float
+) -> np.ndarray:
+    """Motion (10,) of a journal at rest but for its spin; the tilt takes ``tilt_ratio`` of the smallest gap, towards ``direction``."""
+    radial = np.array([math.cos(direction), math.sin(direction)])
+    motion = np.zeros(10)
+    motion[:2] = eccentricity_ratio * bearing.radial_clearance * radial
+    motion[2:4] = 2.0 * tilt_ratio * bearing.radial_clearance * (1.0 - eccentricity_ratio) / bearing.length * radial
+    motion[8] = speed
+    return motion
+
+
+def time_of_sweep(model: Any, motions: np.ndarray) -> float:
+    """Processor time per position in s, over as many sweeps as can be measured."""
+    rounds, start = 0, time.process_time()
+    while True:
+        _sweep(model, motions)
+        rounds += 1
+        spent = time.process_time() - start
+        if spent > SHORTEST:
+            return spent / (rounds * len(motions))
+
+
 def _sweep(model: Any, motions: np.ndarray) -> None:
     for motion in motions:
         _tangent(model, _evaluate(model, motion))
 
 
-def _values(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarray], float, float]:
+def measure_motions(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarray], float, float]:
     """Quantities over the directions in the frame of the eccentricity, iterations and film evaluations per position."""
     columns: dict[str, list[Any]] = {}
-    iterations = films = 0
+    iterations, before = 0, getattr(model, "serial", 0)
     for motion in motions:
         evaluation = _evaluate(model, motion)
         if evaluation.status is not Status.CONVERGED:
             raise FilmError(f"{evaluation.status.name}: {evaluation.status.advice}")
         iterations += evaluation.iterations
-        films += 1 + getattr(model, "settling_steps", 0)
         angle = math.atan2(motion[1], motion[0])
         turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
         radial, tangential = turn @ evaluation.wrench[:2]
@@ -151,4 +156,6 @@ def _values(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarray], flo
         row["damping"] = -turn @ tangent[:2, 4:6] @ turn.T
         for name, value in row.items():
             columns.setdefault(name, []).append(value)
+    # a map solves no film
+    films = getattr(model, "serial", 0) - before
     return {n: np.array(v) for n, v in columns.items()}, iterations / len(motions), films / len(motions)

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.solver import fill_balance
 from exudyn_ehd.joint.build import build_model
 
 RADIUS, CLEARANCE = 0.01, 2e-5
@@ -103,3 +104,34 @@ def test_random_states(supplied):
 @pytest.mark.parametrize("supplied", [False, True], ids=["ends", "supply"])
 def test_many_random_states(supplied):
     assert max(_campaign(11, 400, supplied)) <= 80
+
+
+@pytest.mark.parametrize("n_theta", [32, 33])
+def test_short_bearing_keeps_its_oil(n_theta):
+    """No pressure flow links the columns of a short bearing, but the oil's flow does: across the ring's seam too."""
+    bearing = ehd.JournalBearing(
+        journal_radius=RADIUS, length=0.5 * RADIUS, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.04),
+        film=ehd.ShortBearing(n_theta=n_theta, n_z=6), cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+    )  # fmt: skip
+    model = build_model(bearing)
+    s, balance = model.solver.system, np.empty(model.grid.shape)
+    forces = []
+    for column in (0, 5, n_theta // 2, n_theta - 1):
+        angle = 2.0 * np.pi * column / n_theta
+        motion = np.zeros(10)
+        motion[:2] = 0.8 * CLEARANCE * np.array([np.cos(angle), np.sin(angle)])
+        motion[8] = 300.0
+        history = model.initial_history(motion)
+        for step in (None, 1e-3, 1e-3):
+            evaluation = model.evaluate(motion, None if step is None else history, step or 0.0)
+            assert evaluation.status is ehd.Status.CONVERGED
+            fill_balance(
+                s.pressure, s.fill, s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, s.inverse_step, s.mass_old, balance
+            )
+            # rounding of the largest flow
+            assert np.abs(balance[~model.grid.fixed]).max() < 1e-11 * np.abs(s.fx).max()
+            if step is not None:
+                history = evaluation.history()
+        forces.append(np.hypot(*evaluation.wrench[:2]))
+    # the same film wherever the seam of the grid lies
+    assert np.ptp(forces) < 1e-9 * forces[0]

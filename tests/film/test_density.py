@@ -79,7 +79,7 @@ def test_density_kernel_equals_its_twin():
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
     scale, floor, share = 1e5, -1.0, 0.7
     P = law.transform(p) / scale
-    rho, rho_P, work = np.empty_like(P), np.empty_like(P), np.empty((4, *P.shape))
+    rho, rho_P, work = np.empty_like(P), np.empty_like(P), np.empty((3, *P.shape))
     density_of_transformed(P, scale, floor, law.kernel_table, share, *work, rho, rho_P)
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
     np.testing.assert_allclose(rho, 1.0 + share * (density.ratio(kept) - 1.0), rtol=1e-12)  # the spline's
@@ -87,7 +87,7 @@ def test_density_kernel_equals_its_twin():
     slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * share * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P, work = np.empty((1, 1)), np.empty((1, 1)), np.empty((4, 1, 1))
+    rho, rho_P, work = np.empty((1, 1)), np.empty((1, 1)), np.empty((3, 1, 1))
     density_of_transformed(beyond, scale, floor, law.kernel_table, 1.0, *work, rho, rho_P)
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0

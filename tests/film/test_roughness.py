@@ -1,6 +1,9 @@
 """Flow factors: tables against formulas, limits, derivatives, and the flow through a sinusoidal roughness by its exact solution."""
 
+import csv
 import math
+from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,8 +21,10 @@ from exudyn_ehd.film.roughness import (
     mean_inverse_gap,
     pressure_flow_factor,
     shear_flow_factor,
+    shear_stress_factor,
 )
 
+DATA = Path(__file__).parents[1] / "validation" / "data"
 CLEARANCE = 20e-6
 SIGMA = 0.5e-6
 
@@ -94,8 +99,8 @@ def test_smooth_surfaces_are_the_limit():
     np.testing.assert_allclose(found["gx"][0], 1.0, atol=1e-8)
 
 
-def test_friction_factor_is_the_mean_inverse_gap():
-    """h_T E[1 / gap] over gaps above sigma / 100 by quadrature; 5e-5 of the table's interpolation."""
+def test_friction_factor_is_the_mean_inverse_gap_and_the_drag_of_ripples():
+    """h_T E[1 / gap] over gaps above sigma / 100 by quadrature, 5e-5 of the table's interpolation; plus Phi_fs h_T / h within its range."""
     _, shear = rough()
     H = np.array([-1.0, 0.0, 0.3, 1.0, 2.0, 3.0, 5.0, 12.0, 40.0])
     t = average_gap_ratio(H, 0.02)
@@ -107,7 +112,10 @@ def test_friction_factor_is_the_mean_inverse_gap():
     gap = (t * shear.sigma)[None]
     ratio, ratio_h, ratio_v = (np.empty(gap.shape) for _ in range(3))
     shear.factor(gap, 1.0, ratio, ratio_h, ratio_v)
-    np.testing.assert_allclose(ratio[0], t * np.array(exact), rtol=5e-5, atol=1e-4)
+    fit = H > 0.5
+    drag = shear_stress_factor(H[fit], 1.0) * t[fit] / H[fit]
+    np.testing.assert_allclose(ratio[0][fit], t[fit] * np.array(exact)[fit] + drag, rtol=5e-5, atol=1e-4)
+    assert np.all(ratio[0][~fit] > t[~fit] * np.array(exact)[~fit])
     assert not ratio_v.any()
 
 
@@ -115,6 +123,54 @@ def test_friction_factor_far_from_contact():
     """1 + (sigma/h)^2 + 3 (sigma/h)^4 for a narrow distribution, whose first terms any symmetric one shares."""
     H = 20.0
     assert mean_inverse_gap(np.array([H]))[0] * H == pytest.approx(1 + H**-2 + 3 * H**-4, abs=3e-7)
+
+
+def test_shear_stress_factor_of_the_isotropic_pattern():
+    """11.1 H^2.31 exp(-2.38 H + 0.11 H^2), written out; one tangent at the end of its range."""
+    for H in (0.5, 1.0, 3.0, 6.5):
+        expected = 11.1 * math.exp(2.31 * math.log(H) - 2.38 * H + 0.11 * H * H)
+        assert shear_stress_factor(np.array([H]), 1.0)[0] == pytest.approx(expected, rel=1e-12)
+    below, at, above = shear_stress_factor(np.array([7.0 - 1e-4, 7.0, 7.0 + 1e-4]), 1.0)
+    assert at - below == pytest.approx(above - at, rel=1e-3)
+    assert shear_stress_factor(np.array([1e3]), 1.0)[0] < 1e-9
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+def test_friction_factors_agree_with_the_flow_factors(pattern):
+    """Small roughness of any pattern has Phi_fs = Phi_s / H = 1 - phi_fp to second order in 1 / H, and phi_fp H = H - Phi_s by
+    reciprocity (a surface that drags oil along is pushed by the pressure that drives it). The three fits are independent simulations:
+    a quarter for Phi_fs at H = 4, 5 % of H for the published phi_fp = 1 - D exp(-s H).
+    """
+    with open(DATA / "patir_cheng_flow_factors.csv", encoding="utf-8") as file:
+        rows = {round(float(Fraction(r["gamma"])), 6): r for r in csv.DictReader(file)}
+    D, s = (float(rows[round(pattern, 6)][k]) for k in ("D_phifp", "s_phifp"))
+    H = np.array([4.0])
+    flow, stress = shear_flow_factor(H, pattern) / H, shear_stress_factor(H, pattern)
+    np.testing.assert_allclose(stress, flow, rtol=0.25)
+    H = np.linspace(2.0, 6.0, 9)
+    np.testing.assert_allclose(1.0 - D * np.exp(-s * H), 1.0 - shear_flow_factor(H, pattern) / H, atol=0.05)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
+def test_tangential_force_of_ridges_across_the_motion(share):
+    """1 + 4 v of the smooth film's, v = (sigma / h)^2, however the roughness is shared between the moving and the resting surface.
+
+    Reynolds' equation of two sinusoidal surfaces, averaged over their relative position: shear plus pressure on the slopes of the
+    resting surface. Amplitudes of 1 % leave terms of the order 1e-8 beside v = 1e-4 / 2.
+    """
+    x = np.linspace(0.0, 2.0 * np.pi, 256, endpoint=False)
+    moving, resting = 0.01 * math.sqrt(share), 0.01 * math.sqrt(1.0 - share)
+    total = 0.0
+    for phase in x[::16]:
+        a, b = moving * np.cos(x - phase), resting * np.cos(x)
+        h = 1.0 + a + b
+        # units mu = U = 1: h^3 dp/dx / 12 = flow h / 2 - moving surface's a - constant, without mean pressure gradient
+        driven = 0.5 * h - a
+        constant = np.mean(driven / h**3) / np.mean(1.0 / h**3)
+        p_x = 12.0 * (driven - constant) / h**3
+        # resting surface at z = -b with the film above it: shear 1 / h - h p_x / 2 and p db/dx, summed by parts
+        total += np.mean(1.0 / h - 0.5 * h * p_x + b * p_x) / 16.0
+    assert total == pytest.approx(1.0 + 4.0 * 0.5 * 1e-4, abs=2e-8)
 
 
 def test_lay_decides_the_direction_of_easy_flow():

@@ -71,7 +71,7 @@ def settings(end, step, *, start=0.0, spectral_radius=0.8, **options):
     return ehd.ConfigureSolver(s, **options)
 
 
-def solve(mbs, joints, simulation_settings, *, solver=None, fails=False):
+def solve(mbs, joints, simulation_settings, *, solver=None, fails=False, restart=None):
     """Run a dynamic solver; every value that the joints recorded must be finite.
 
     ``fails``: the run must end with the package's error, which is returned in the run.
@@ -83,17 +83,15 @@ def solve(mbs, joints, simulation_settings, *, solver=None, fails=False):
         return True
 
     mbs.SetPreStepUserFunction(count)
-    before = [joint.history.time.size for joint in joints]
     error = None
     try:
-        mbs.SolveDynamic(simulation_settings, **({} if solver is None else {"solverType": solver}))
-    except exu.ExudynError as caught:
+        ehd.SolveDynamic(
+            mbs, simulation_settings, restart=restart, **({} if solver is None else {"solverType": solver})
+        )
+    except ehd.FilmError as caught:
         if not fails:
             raise
         error = caught
-        while error is not None and not isinstance(error, ehd.FilmError):
-            error = error.__cause__
-        assert error is not None, f"not the package's error: {caught!r}"
     assert fails == (error is not None), "the run should have ended with an error"
     mbs.SetPreStepUserFunction(0)
     it = mbs.sys["dynamicSolver"].it
@@ -103,7 +101,7 @@ def solve(mbs, joints, simulation_settings, *, solver=None, fails=False):
     start = simulation_settings.timeIntegration.startTime
     # a run that starts at the end of the record goes on with it
     steps = int(np.count_nonzero(histories[0].time > start))
-    assert steps > 0 or fails, before
+    assert steps > 0 or fails
     return Run(
         histories=histories, steps=steps, rejected=attempts[0] - steps, newton=int(it.newtonStepsCount), error=error
     )
@@ -222,11 +220,13 @@ class Rotor:
             )
         )
 
-    def run(self, end, step, *, solver=None, fails=False, **options):
+    def run(self, end, step, *, solver=None, fails=False, restart=None, **options):
         """Integrate to ``end``; options go to `settings`."""
         if not self.mbs.systemIsConsistent:
             self.mbs.Assemble()
-        return solve(self.mbs, [self.joint], settings(end, step, **options), solver=solver, fails=fails)
+        return solve(
+            self.mbs, [self.joint], settings(end, step, **options), solver=solver, fails=fails, restart=restart
+        )
 
     def momentum_error(self, history):
         """Momentum gained minus impulse of film and load, over the impulses: the steps' own equation of motion, integrated.

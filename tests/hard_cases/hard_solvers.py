@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pathlib
+import tempfile
+
 import exudyn as exu
 import numpy as np
 from hard_registry import hard_case
@@ -112,3 +115,27 @@ def not_finite():
     assert "masses and loads" in str(run.error)
     assert abs(run.history.time[-1] - 5e-3) < 2e-4
     return run
+
+
+@hard_case("restart from a stored state")
+def restart():
+    """Stopped in the middle of a swinging load, written to a file and taken up by a new system: nothing may remember the stop."""
+    made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+
+    def rotor():
+        return Rotor(made, load=lambda t: (500.0 * np.sin(300.0 * t), -1500.0))
+
+    whole = rotor().run(0.03, 1e-4, relativeTolerance=1e-9)
+    first = rotor()
+    half = first.run(0.0123, 1e-4, relativeTolerance=1e-9)
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "state.npz"
+        ehd.SaveState(first.mbs, path)
+        rest = rotor().run(0.03, 1e-4, start=0.0123, relativeTolerance=1e-9, restart=path)
+    a, b = whole.history, rest.history
+    assert a.time.size == b.time.size == 301
+    # times that sum up differently in their last bit, and Newton's tolerance
+    assert np.abs(a.motion - b.motion).max(axis=0)[:2].max() < 1e-9 * CLEARANCE
+    assert np.abs(a.force - b.force).max() < 1e-7 * np.abs(a.force).max()
+    assert np.array_equal(b.force[:124], half.history.force)
+    return whole, half, rest

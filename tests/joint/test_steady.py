@@ -312,3 +312,13 @@ class TestSolveFilm:
         for speed in (1.0, (1.0,), (math.nan, 0.0)):
             with pytest.raises(ehd.InputError, match="surface_speed"):
                 solve(self._gap(), surface_speed=speed)
+
+
+def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so():
+    groove = ehd.AxialGroove(angle=np.radians(270.0), width_angle=np.radians(15.0), length=0.06, pressure=7e4)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.05, length=0.08, radial_clearance=150e-6, lubricant=ehd.Lubricant(viscosity=0.01),
+        cavitation=ehd.ElrodAdams(), supply=(groove,), film=ehd.FiniteLength(n_theta=96, n_z=8),
+    )  # fmt: skip
+    with pytest.raises(ehd.FilmError, match=r"no position found that carries 3000 N.*supply area"):
+        ehd.equilibrium(bearing, speed=100.0 * np.pi, load=(0.0, -3000.0))

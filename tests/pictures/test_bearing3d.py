@@ -36,6 +36,14 @@ def test_picture_has_a_labelled_bar_and_names_what_is_not_to_scale(film, tmp_pat
     assert (tmp_path / "bearing.png").stat().st_size > 10_000
 
 
+def test_every_facet_has_four_finite_corners(film):
+    """Matplotlib pads shorter polygons with uninitialised memory, which then scales the axes."""
+    (facets,) = film.plot_bearing().axes[0].collections[:1]
+    corners = np.asarray(facets._faces)
+    assert corners.shape[1:] == (4, 3)
+    assert np.abs(corners).max() < 1.0 + bearing3d.HILL + 1e-9
+
+
 def test_flat_axes_are_refused(film):
     with pytest.raises(InputError, match="ax must be 3d"):
         film.plot_bearing(ax=Figure().add_subplot())

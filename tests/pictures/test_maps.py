@@ -1,11 +1,13 @@
 """Unrolled maps show the film's values at their places, with units."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+import exudyn_ehd as ehd
 from exudyn_ehd.pictures import maps
 from exudyn_ehd.status import InputError
 
@@ -103,3 +105,36 @@ def test_maps_can_share_a_figure_and_are_written(film, tmp_path):
     film.plot_gap(ax=axes[1], path=tmp_path / "new" / "both.png")
     assert len(figure.axes) == 4
     assert (tmp_path / "new" / "both.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"film": ehd.ShortBearing()},
+        {"film": ehd.LongBearing(), "inlet": ehd.MaximumGap()},
+        {"film": ehd.ClassicSOR(n_theta=48, n_z=12), "cavitation": ehd.Gumbel()},
+        {"film": ehd.FiniteLength(n_theta=48, n_z=6), "inlet": ehd.MaximumGap()},
+        {"film": ehd.FiniteLength(n_theta=48, n_z=6), "cavitation": ehd.FullSommerfeld()},
+    ],
+    ids=lambda options: "-".join(type(option).__name__ for option in options.values()),
+)
+def test_every_film_model_can_be_drawn(make_bearing, options, tmp_path):
+    """The map and the bearing in space of every film; the map's peak is the field's, wherever the ring starts."""
+    film = ehd.steady(make_bearing(**options), speed=300.0, eccentricity_ratio=0.6, direction=0.4)
+    shown = np.asarray(film.plot_pressure(path=tmp_path / "map.png").axes[0].images[0].get_array())
+    assert np.isfinite(shown).all()
+    # a vertex may fall between the picture's points, half a degree apart
+    assert shown.max() == pytest.approx(1e-6 * film.pressure.max(), rel=5e-3)
+    assert shown.min() == pytest.approx(1e-6 * film.pressure.min(), abs=5e-3 * shown.max())
+    film.plot_gap(path=tmp_path / "gap.png")
+    film.plot_bearing(path=tmp_path / "bearing.png")
+
+
+def test_contact_and_wear_of_a_joints_film(film):
+    with pytest.raises(InputError, match=r"has no contact pressure.*asperity=GreenwoodTripp"):
+        film.plot_contact_pressure()
+    with pytest.raises(InputError, match=r"has no wear depth.*wear=ArchardWear"):
+        film.plot_wear_depth()
+    fields = SimpleNamespace(**vars(film), contact_pressure=0.01 * film.pressure, wear_depth=2e-8 * (film.gap < 1e-5))
+    for field, text in ((maps.CONTACT_PRESSURE, "contact pressure [MPa]"), (maps.WEAR_DEPTH, "wear depth [nm]")):
+        assert maps.plot_map(fields, field).axes[1].get_ylabel() == text

@@ -1,0 +1,184 @@
+"""Exudyn's solvers with this package's errors, and runs that go on from a stored state."""
+
+from __future__ import annotations
+
+import pathlib
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.restart import SystemState, load_state
+from exudyn_ehd.status import EHDError, InputError, RunError
+
+JOINTS = "lubricatedJoints"
+
+
+def joints_of(mbs: Any) -> list[Any]:
+    """The lubricated joints of a system, in the order in which they were created."""
+    return mbs.variables.setdefault(JOINTS, [])
+
+
+def SolveDynamic(
+    mbs: Any, simulationSettings: Any, *, restart: SystemState | str | pathlib.Path | None = None, **options: Any
+) -> bool:
+    """``mbs.SolveDynamic`` with this package's errors, and with restarts.
+
+    A film that can't be evaluated ends a run with an Exudyn error whose cause is this package's; here it is the package's error itself.
+    A run that ends because Newton's method does not converge is explained by the last accepted state of every joint. Either way
+    ``joint.history`` holds all accepted steps, and `SaveState` stores the last one.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    simulationSettings : exudyn.SimulationSettings
+    restart : SystemState or path, optional
+        From `SystemState.of` or `SaveState`: the run goes on from there. ``startTime`` of the settings is set; ``endTime`` and ``numberOfSteps``
+        are those of the rest. With the same step size and full Newton it repeats what the run would have done without the
+        stop, to rounding: films with their memory, Exudyn's algorithmic accelerations and the histories.
+    **options
+        As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...
+
+    Returns
+    -------
+    bool
+        As ``mbs.SolveDynamic``.
+
+    Raises
+    ------
+    FilmError
+        If a film could not be evaluated.
+    RunError
+        If the solver ended otherwise without success.
+    InputError
+        If the restart belongs to another system.
+    """
+    going_on: AbstractContextManager[None] = nullcontext()
+    if restart is not None:
+        state = restart if isinstance(restart, SystemState) else load_state(restart)
+        going_on = _restarted(mbs, simulationSettings, state)
+    with going_on, own_errors(mbs, "SolveDynamic"):
+        return bool(mbs.SolveDynamic(simulationSettings, **options))
+
+
+def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
+    """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    simulationSettings : exudyn.SimulationSettings
+    **options
+        As in ``mbs.SolveStatic``.
+
+    Returns
+    -------
+    bool
+        As ``mbs.SolveStatic``.
+
+    Raises
+    ------
+    FilmError, RunError
+        As `SolveDynamic`.
+    """
+    with own_errors(mbs, "SolveStatic"):
+        return bool(mbs.SolveStatic(simulationSettings, **options))
+
+
+def SaveState(mbs: Any, path: str | pathlib.Path) -> SystemState:
+    """Store the last accepted state of a system with all its lubricated joints; the file appears whole or not at all.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        After a run, successful or not.
+    path : path
+        Ending in ``.npz``.
+
+    Returns
+    -------
+    SystemState
+        What was stored.
+    """
+    state = SystemState.of(mbs, joints_of(mbs))
+    state.save(path)
+    return state
+
+
+@contextmanager
+def own_errors(mbs: Any, where: str) -> Iterator[None]:
+    """Turn Exudyn's errors into this package's; errors of other user functions pass."""
+    try:
+        yield
+    except exu.ExudynError as error:
+        cause: BaseException = error
+        while cause.__cause__ is not None:
+            cause = cause.__cause__
+        if isinstance(cause, EHDError):
+            raise type(cause)(f"{cause} {_kept(mbs)}") from error
+        if cause is not error:
+            raise
+        raise RunError(f"{where}: {_story(mbs)}") from error
+
+
+def _kept(mbs: Any) -> str:
+    time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+    return f"The last accepted state is at t = {time:.9g} s; joint.history holds all steps up to it."
+
+
+def _story(mbs: Any) -> str:
+    """What the joints looked like when a solver gave up."""
+    time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+    parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
+    for joint in joints_of(mbs):
+        history = joint.history
+        if not history.time.size:
+            continue
+        parts.append(
+            f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum gap "
+            f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+        )
+    parts.append(
+        "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), smaller steps or a "
+        "StepControl, soften jumps of loads and speeds, and check constraints that leave nothing to move. joint.history holds all "
+        "accepted steps."
+    )
+    return "".join(parts)
+
+
+@contextmanager
+def _restarted(mbs: Any, settings: Any, state: SystemState) -> Iterator[None]:
+    """Put a state into a system for the run within; user functions and settings are given back afterwards."""
+    if not mbs.systemIsConsistent:
+        raise InputError("SolveDynamic.restart: the system is not assembled; call mbs.Assemble() first.")
+    state.put_into(mbs, joints_of(mbs))
+    integration = settings.timeIntegration
+    integration.startTime = state.time
+    if not integration.endTime > state.time:
+        raise InputError(
+            f"SolveDynamic.restart: endTime must be after the stored state's time {state.time:.9g} s, got {integration.endTime:.9g} s."
+        )
+    alpha = integration.generalizedAlpha
+    computes = alpha.computeInitialAccelerations
+    before = mbs.GetPreStepUserFunction()
+    before = before["function"] if isinstance(before, dict) else before
+    first = [True]
+
+    def pre_step(mbs: Any, t: float) -> bool:
+        if first[0]:
+            # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
+            mbs.systemData.SetODE2Coordinates_tt(state.accelerations, exu.ConfigurationType.Current)
+            first[0] = False
+        return bool(before(mbs, t)) if callable(before) else True
+
+    if state.algorithmic is not None:
+        alpha.computeInitialAccelerations = False
+        mbs.SetPreStepUserFunction(pre_step)
+    try:
+        yield
+    finally:
+        alpha.computeInitialAccelerations = computes
+        if state.algorithmic is not None:
+            mbs.SetPreStepUserFunction(before if callable(before) else 0)

@@ -1,0 +1,140 @@
+"""Stages of a film evaluation, effects on and off, steps of whole scenes, and how cost grows; ``-m benchmark``."""
+
+import dataclasses
+import time
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.gap import rigid_gap
+from exudyn_ehd.film.loads import pressure_integrals
+from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.studies import growth, moving_catalogue
+from exudyn_ehd.studies.front import order_changes
+from exudyn_ehd.studies.setting import Integration, Setting
+
+# processor time: what other processes of the machine do is no cost of the film
+pytestmark = pytest.mark.benchmark(timer=time.process_time)
+GRIDS = [(48, 6), (96, 10), (192, 16)]
+CLOSURES = {
+    "full Sommerfeld": ehd.FullSommerfeld(),
+    "Gumbel": ehd.Gumbel(),
+    "Swift-Stieber": ehd.SwiftStieber(),
+    "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5),
+}
+OIL = growth.plain_bearing().lubricant
+EFFECTS = {
+    "plain": {},
+    "no squeeze": {"squeeze": False},
+    "wall": {"contact": ehd.RegularisedWall(onset=1e-6)},
+    "asperities": {"asperity": ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1e11)},
+    "roughness": {"roughness": ehd.PatirCheng(composite_roughness=0.4e-6)},
+    "profile": {"profile": ehd.Crown(drop=1e-6)},
+    "groove": {"supply": (ehd.AxialGroove(angle=3.4, width_angle=0.3),)},
+    "liner": {"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)},
+    "Barus": {"lubricant": dataclasses.replace(OIL, pressure_law=ehd.BarusPressure(coefficient=1e-8))},
+    "Roelands": {"lubricant": dataclasses.replace(OIL, pressure_law=ehd.RoelandsPressure(coefficient=1.5e-8))},
+    "Carreau": {"lubricant": dataclasses.replace(OIL, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.8))},
+}
+
+
+def _stage_runs(grid):
+    """The parts of a plain Swift-Stieber evaluation, each on the state that the parts before have left."""
+    model = build_model(growth.plain_bearing(film=ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])))
+    states = growth.motions()
+    evaluation = model.evaluate(states[0])
+    s, g, y, z = model.solver, model.grid, model.solver.system, model.grid.z
+    vx = 0.5 * model.omega
+
+    def gap():
+        rigid_gap(model.pose, model.cos_x, model.sin_x, z, 1.0, s.H)
+        rigid_gap(model.pose, model.cos_f, model.sin_f, z, 1.0, s.HF)
+        rigid_gap(model.rate, model.cos_x, model.sin_x, z, 0.0, s.H_t)
+
+    def coefficients():
+        conductances(s.H, s.HF, g.width_x, g.width_z, g.link_x, g.link_z, 1.0, y.kx, y.kz)
+        couette_fluxes(s.H, s.HF, vx, 0.0, g.width_x, g.width_z, g.link_x, y.fx, y.fz)
+        right_hand_side(y.fx, y.fz, y.b)
+        add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
+
+    out = np.empty(4)
+    return {
+        "gap": gap,
+        "coefficients": coefficients,
+        "solve": lambda: s.closure.solve(y, s.work),
+        "tangent": evaluation.tangent,
+        "integrals": lambda: pressure_integrals(model.P, g.weight, model.cos_x, model.sin_x, z, out),
+        "loads": model._loads,
+        "quantities": model.quantities,
+    }
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g[0]}x{g[1]}")
+@pytest.mark.parametrize("stage", ["gap", "coefficients", "solve", "tangent", "integrals", "loads", "quantities"])
+def test_stage(benchmark, stage, grid):
+    benchmark.pedantic(_stage_runs(grid)[stage], rounds=200, iterations=5, warmup_rounds=5)
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g[0]}x{g[1]}")
+@pytest.mark.parametrize("closure", CLOSURES)
+def test_closure(benchmark, closure, grid):
+    """Twelve positions, a degree apart, force and tangent."""
+    film = ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])
+    model = build_model(growth.plain_bearing(film=film, cavitation=CLOSURES[closure]))
+    states = growth.motions()
+    history = model.initial_history(states[0])
+    benchmark.pedantic(growth._evaluate, args=(model, states, True, history), rounds=20, warmup_rounds=2)
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+def test_effect(benchmark, effect):
+    """Twelve positions, a degree apart, force and tangent, on 96 x 10."""
+    model = build_model(growth.plain_bearing(**EFFECTS[effect]))
+    states = growth.motions()
+    history = model.initial_history(states[0])
+    benchmark.pedantic(growth._evaluate, args=(model, states, True, history), rounds=30, warmup_rounds=2)
+
+
+@pytest.mark.parametrize("scene", ["orbit", "slider_pin", "big_end", "whirl", "start_stop"])
+def test_steps_of_a_scene(benchmark, scene):
+    """A whole run of every moving scene of the studies on 64 x 8."""
+    place = moving_catalogue.SCENES[scene]()
+    run = place.prepare(
+        Setting(
+            label="64 x 8", family="", model="", options={"film": moving_catalogue.CHEAP}, integration=Integration()
+        )
+    )
+    outcome = run()
+    benchmark.pedantic(run, rounds=3)
+    benchmark.extra_info["ms_per_step"] = 1e3 * benchmark.stats["median"] / place.steps
+    benchmark.extra_info["newton_per_step"] = outcome.newton
+    benchmark.extra_info["films_per_step"] = outcome.films
+
+
+def test_growth(capsys):
+    """Exponents of cost over grid, modes and joints; what would be a defect is a growth far beyond the algorithm's."""
+    growths = growth.all_growths(repeats=3)
+    with capsys.disabled():
+        print("\n" + growth.growth_text(growths))
+    by_name = {g.name: g for g in growths}
+    # a banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape; caches add at the end
+    assert by_name["SwiftStieber, force and tangent"].exponent < 2.0
+    assert by_name["ElrodAdams, force and tangent"].exponent < 2.3
+    assert by_name["modal bush, force and tangent"].exponent < 1.5
+    # every joint costs the same, whatever else is in the model
+    assert by_name["step of a model"].exponent < 1.25
+
+
+def test_times_keep_their_order():
+    """Settings whose times differ by more than both spreads keep their order over three runs of a quick study."""
+    from exudyn_ehd.studies import catalogue
+    from exudyn_ehd.studies.study import run_study
+
+    study = catalogue.quick_catalogue()["steady_800_film"]()
+    study = dataclasses.replace(study, quantities=("load",))
+    start = time.perf_counter()
+    tables = [run_study(study, repeats=7, progress=None) for _ in range(3)]
+    print(f"three runs in {time.perf_counter() - start:.0f} s")
+    assert order_changes(tables) == []

@@ -1,0 +1,217 @@
+"""A run that is stopped, stored and taken up by a new system is the run that was never stopped."""
+
+import dataclasses
+import zipfile
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+import pytest
+import scenes
+
+import exudyn_ehd as ehd
+
+CLEARANCE = 30e-6
+PLAIN = ehd.JournalBearing(
+    journal_radius=0.02, length=0.02, radial_clearance=CLEARANCE,
+    lubricant=ehd.oil("ISO VG 32", temperature=313.15), film=ehd.FiniteLength(n_theta=48, n_z=6),
+)  # fmt: skip
+ROUGH = ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=2e10)
+BEARINGS = {
+    "plain": PLAIN,
+    "oil content": dataclasses.replace(PLAIN, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)),
+    "temperature": dataclasses.replace(PLAIN, thermal=ehd.LumpedThermal(supply_temperature=313.15, capacity=5.0)),
+    "temperature field": dataclasses.replace(PLAIN, thermal=ehd.FilmEnergy(supply_temperature=313.15)),
+    "wear": dataclasses.replace(PLAIN, asperity=ROUGH, wear=ehd.ArchardWear(wear_rate=1e-14, acceleration=1e3)),
+    "liner": dataclasses.replace(PLAIN, bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)),
+}
+STEP, HALF, STEPS = 1e-4, 40, 100
+
+
+def system(bearing):
+    mbs = scenes.new_system()
+    ground = mbs.CreateGround()
+    body = mbs.AddNode(
+        eii.NodeRigidBodyRxyz(
+            referenceCoordinates=[0.0] * 6, initialCoordinates=[0, -0.3 * CLEARANCE, 0, 0, 0, 0],
+            initialVelocities=[0, 0, 0, 0, 0, 200.0],
+        )
+    )  # fmt: skip
+    body = mbs.AddObject(eii.ObjectRigidBody(mass=2.0, inertia=[2e-3, 2e-3, 1e-3, 0, 0, 0], nodeNumber=body))
+    marker = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body, localPosition=[0, 0, 1e-3]))
+    mbs.AddLoad(
+        eii.LoadForceVector(
+            markerNumber=marker, loadVector=[0, 0, 0],
+            loadVectorUserFunction=lambda mbs, t, v: [800.0 * np.sin(300 * t), -1500.0, 0],
+        )
+    )  # fmt: skip
+    joint = ehd.CreateLubricatedJoint(
+        mbs,
+        name="main",
+        itemNumbers=[ground, body],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=bearing,
+        axial=ehd.Free(),
+    )
+    mbs.Assemble()
+    return mbs, joint
+
+
+def settings(first, last, rho=0.8, **options):
+    s = scenes.settings(last * STEP, last - first)
+    s.timeIntegration.startTime = first * STEP
+    s.timeIntegration.generalizedAlpha.spectralRadius = rho
+    return ehd.ConfigureSolver(s, relativeTolerance=1e-9, **options)
+
+
+def assert_same(one, other, tolerance):
+    for field in dataclasses.fields(one):
+        a, b = np.asarray(getattr(one, field.name)), np.asarray(getattr(other, field.name))
+        assert a.shape == b.shape, field.name
+        scale = np.nanmax(np.abs(a), initial=0.0)
+        np.testing.assert_allclose(b, a, rtol=0.0, atol=tolerance * scale, err_msg=field.name)
+
+
+@pytest.mark.parametrize("what", BEARINGS)
+def test_run_goes_on(what, tmp_path):
+    mbs, joint = system(BEARINGS[what])
+    ehd.SolveDynamic(mbs, settings(0, STEPS))
+    whole = joint.history
+    mbs, _ = system(BEARINGS[what])
+    ehd.SolveDynamic(mbs, settings(0, HALF))
+    state = ehd.SaveState(mbs, tmp_path / "half.npz")
+    assert state.time == pytest.approx(HALF * STEP)
+    mbs, joint = system(BEARINGS[what])
+    ehd.SolveDynamic(mbs, rest(), restart=tmp_path / "half.npz")
+    again = joint.history
+    assert again.time.size == STEPS + 1
+    # times that sum up differently; liner and oil content stop at tolerances of their own
+    assert_same(whole, again, 1e-9)
+    assert mbs.GetPreStepUserFunction() in (0, None)
+
+
+def rest():
+    return settings(HALF, STEPS)
+
+
+def test_restart_in_the_same_system_and_from_memory():
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, settings(0, STEPS))
+    whole = joint.history
+    ehd.SolveDynamic(mbs, settings(0, HALF))
+    state = ehd.SystemState.of(mbs, [joint])
+    ehd.SolveDynamic(mbs, settings(0, 10))
+    ehd.SolveDynamic(mbs, rest(), restart=state)
+    assert_same(whole, joint.history, 1e-9)
+
+
+def test_without_memory_the_run_is_another():
+    """What the film remembers is needed: coordinates alone start with a bearing full of oil."""
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, settings(0, STEPS))
+    whole = joint.history
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, settings(0, HALF))
+    state = ehd.SystemState.of(mbs, [joint])
+    forgetful = dataclasses.replace(state.joints[0], memory=None)
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, rest(), restart=dataclasses.replace(state, joints=(forgetful,)))
+    assert np.abs(joint.history.motion[-1, :2] - whole.motion[-1, :2]).max() > 1e-6 * CLEARANCE
+
+
+def test_explicit_solver_goes_on():
+    kind = {"solverType": exu.DynamicSolverType.RK44}
+    mbs, joint = system(PLAIN)
+    fine = STEP / 10
+
+    def part(first, last):
+        s = settings(0, 10)
+        s.timeIntegration.startTime, s.timeIntegration.endTime = first * fine, last * fine
+        s.timeIntegration.numberOfSteps = last - first
+        return s
+
+    ehd.SolveDynamic(mbs, part(0, 60), **kind)
+    whole = joint.history
+    mbs, joint = system(PLAIN)
+    ehd.SolveDynamic(mbs, part(0, 30), **kind)
+    state = ehd.SystemState.of(mbs, [joint])
+    mbs, joint = system(PLAIN)
+    ehd.SolveDynamic(mbs, part(30, 60), restart=state, **kind)
+    assert_same(whole, joint.history, 1e-10)
+
+
+def test_state_of_a_failed_run_is_the_last_accepted_one(tmp_path):
+    mbs, joint = system(BEARINGS["oil content"])
+    count = [0]
+
+    def stop(mbs, t):
+        count[0] += 1
+        if count[0] == HALF + 1:
+            raise ValueError("enough")
+        return True
+
+    mbs.SetPreStepUserFunction(stop)
+    with pytest.raises(exu.ExudynError):
+        ehd.SolveDynamic(mbs, settings(0, STEPS))
+    state = ehd.SaveState(mbs, tmp_path / "stopped.npz")
+    assert state.time == pytest.approx(HALF * STEP)
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, settings(0, STEPS))
+    whole = joint.history
+    mbs, joint = system(BEARINGS["oil content"])
+    calls = []
+    mbs.SetPreStepUserFunction(lambda mbs, t: calls.append(t) or True)
+    ehd.SolveDynamic(mbs, rest(), restart=tmp_path / "stopped.npz")
+    assert_same(whole, joint.history, 1e-9)
+    # the user's own hook is called in every step, and stays
+    assert len(calls) == STEPS - HALF
+    assert callable(mbs.GetPreStepUserFunction()["function"])
+
+
+def test_files_are_whole_and_foreign_ones_are_refused(tmp_path):
+    mbs, _ = system(PLAIN)
+    with pytest.raises(ehd.InputError, match="no run"):
+        ehd.SaveState(mbs, tmp_path / "early.npz")
+    ehd.SolveDynamic(mbs, settings(0, 3))
+    good = tmp_path / "good.npz"
+    ehd.SaveState(mbs, good)
+    assert [p.name for p in tmp_path.iterdir()] == ["good.npz"]
+    with pytest.raises(ehd.InputError, match="npz"):
+        ehd.SaveState(mbs, tmp_path / "state.txt")
+    raw = good.read_bytes()
+    damaged = bytearray(raw)
+    damaged[len(raw) // 2] ^= 0xFF
+    files = {
+        "empty": b"", "text": b"not a state", "cut": raw[: len(raw) // 2], "damaged": bytes(damaged),
+    }  # fmt: skip
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    for name, content in files.items():
+        (tmp_path / f"{name}.npz").write_bytes(content)
+    with zipfile.ZipFile(tmp_path / "zip.npz", "w") as file:
+        file.writestr("readme", "hello")
+    for name in (*files, "other", "zip"):
+        mbs, _ = system(PLAIN)
+        with pytest.raises(ehd.InputError, match=rf"{name}\.npz"):
+            ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / f"{name}.npz")
+    with pytest.raises(FileNotFoundError):
+        ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / "absent.npz")
+
+
+def test_states_of_other_systems_are_refused():
+    mbs, joint = system(PLAIN)
+    ehd.SolveDynamic(mbs, settings(0, 3))
+    state = ehd.SystemState.of(mbs, [joint])
+    other, _ = system(dataclasses.replace(PLAIN, length=0.021))
+    with pytest.raises(ehd.InputError, match="another bearing"):
+        ehd.SolveDynamic(other, settings(3, 6), restart=state)
+    renamed = dataclasses.replace(state, joints=(dataclasses.replace(state.joints[0], name="x"),))
+    with pytest.raises(ehd.InputError, match="'x'"):
+        ehd.SolveDynamic(mbs, settings(3, 6), restart=renamed)
+    with pytest.raises(ehd.InputError, match="another system"):
+        ehd.SolveDynamic(mbs, settings(3, 6), restart=dataclasses.replace(state, joints=()))
+    short = dataclasses.replace(state, coordinates=(np.zeros(2), *state.coordinates[1:]))
+    with pytest.raises(ehd.InputError, match="another system"):
+        ehd.SolveDynamic(mbs, settings(3, 6), restart=short)
+    with pytest.raises(ehd.InputError, match="endTime"):
+        ehd.SolveDynamic(mbs, settings(0, 2), restart=state)

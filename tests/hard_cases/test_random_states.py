@@ -1,0 +1,29 @@
+"""The film solver's record over random states: none fails; see hard_random.py, and report.py for the long run."""
+
+import hard_random
+import pytest
+import report
+
+# Over 600 000 states at most 98; more would mean that sets cycle and pseudo time steps take over.
+LARGEST = 200
+
+
+def run(name, states):
+    record = hard_random.CAMPAIGNS[name](states, report.SEED)
+    print(f"{name}: {record.states} states, worst {record.worst}, mean {record.mean:.2f}, balance {record.balance:.1e}")
+    assert record.states == states
+    failed = [f for f in record.failed if f[0] != hard_random.SOLID]
+    assert record.failures == 0, failed[:3]
+    assert record.worst <= LARGEST
+    assert record.solid < 0.02 * states
+
+
+@pytest.mark.parametrize("name", hard_random.CAMPAIGNS)
+def test_random_states(name):
+    run(name, report.SHORT)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", hard_random.CAMPAIGNS)
+def test_many_random_states(name):
+    run(name, 10 * report.SHORT)
