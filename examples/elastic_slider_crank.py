@@ -296,10 +296,11 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     ideal, names = runs[CASES[0]], CASES[1:]
     colours = dict(zip(names, ("tab:green", "tab:orange", "tab:blue"), strict=True))
     styles = dict(zip(names, ("-", "-", "--"), strict=True))
-    end = round(math.degrees(ideal.angle[-1]) - 360.0 * start_up)
+    before = 360.0 * math.floor(start_up)
+    begin, end = round(360.0 * start_up - before), round(math.degrees(ideal.angle[-1]) - before)
     fig, axes = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
     late = _late(ideal, start_up)
-    degrees = np.degrees(ideal.angle[late]) - 360.0 * start_up
+    degrees = np.degrees(ideal.angle[late]) - before
     shown = (
         ("slider", 1e6, "position [µm]"),
         ("velocity", 1e3, "velocity [mm/s]"),
@@ -335,7 +336,7 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
             style = {"color": colour, "ls": "-" if name == CASES[2] else "--", "lw": 1.3}
             label = f"{joint}, {name.split(', ')[1]}"
             axes[1, 1].plot(*(h.eccentricity[kept].T / BEARING.radial_clearance), **style, label=label)
-            axes[1, 2].plot(np.degrees(SPEED * h.time[kept]) - 360.0 * start_up, 1e6 * h.minimum_gap[kept], **style)
+            axes[1, 2].plot(np.degrees(SPEED * h.time[kept]) - before, 1e6 * h.minimum_gap[kept], **style)
     axes[1, 1].set(
         xlabel="x / c (along the rod) [-]", ylabel="y / c [-]", aspect="equal", title="pins in the rod's eyes"
     )
@@ -343,9 +344,9 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     axes[1, 2].set(ylabel="minimum film [µm]", ylim=(0, None))
     for ax in (*axes[0], axes[1, 0], axes[1, 2]):
         ax.set(
-            xlabel="crank angle after start-up [deg]",
-            xlim=(0, end),
-            xticks=range(0, end + 1, 90 if end == 360 else 180),
+            xlabel="crank angle [deg]",
+            xlim=(begin, end),
+            xticks=range(begin, end + 1, 90 if end == begin + 360 else 180),
         )
         ax.grid(alpha=0.3)
     fig.savefig(path, dpi=90)

@@ -327,12 +327,14 @@ def figures(ideal: Run, run: Run, start_up: float, *, elastic: bool = False) -> 
 def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path: pathlib.Path) -> None:
     """Load and tilt of the right bearing, its films, and the tool against the ideal mechanism."""
     begin = start_up * 2.0 * math.pi / SPEED
-    end = round(math.degrees(SPEED * (runs[CASES[0]].time[-1] - begin)))
+    before = 360.0 * math.floor(start_up)
+    first = round(360.0 * start_up - before)
+    end = round(math.degrees(SPEED * runs[CASES[0]].time[-1]) - before)
     colours = dict(zip(CASES[1:], ("tab:orange", "tab:blue"), strict=True))
     fig, axes = plt.subplots(2, 2, figsize=(12, 8), layout="constrained")
 
     def degrees(t: np.ndarray) -> np.ndarray:
-        return np.degrees(SPEED * (t - begin))
+        return np.degrees(SPEED * t) - before
 
     for name, colour in colours.items():
         run = runs[name]
@@ -363,10 +365,10 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     )
     for ax, label in zip(axes.flat, labels, strict=True):
         ax.set(
-            xlabel="crank angle after start-up [deg]",
+            xlabel="crank angle from the rocker's dead centre [deg]",
             ylabel=label,
-            xlim=(0, end),
-            xticks=range(0, end + 1, 90 if end < 540 else 180),
+            xlim=(first, end),
+            xticks=range(first, end + 1, 90 if end == first + 360 else 180),
         )
         ax.grid(alpha=0.3)
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=9, frameon=False, columnspacing=1.0)

@@ -481,7 +481,7 @@ def main(*, quick: bool = False, output: str | pathlib.Path | None = "results/ro
         print(f"linear theory {rates[speed][0].real:+.2f} + {rates[speed][0].imag:.1f}i", flush=True)
     # the faster run-up leaves a whirl less time to grow: a firmer tap
     first, last, duration, step, force = (
-        (92.0, 170.0, 0.75, 1 / 3750, 4.0) if quick else (80.0, 170.0, 2.5, 1 / 5000, 0.4)
+        (92.0, 170.0, 0.75, 1 / 3000, 4.0) if quick else (80.0, 170.0, 2.5, 1 / 5000, 0.4)
     )
     print(f"  run-up from {first:g} to {last:g} Hz, {duration / step:.0f} steps ...", flush=True)
     ride = run_up(linear, first, last, duration, step, force)
