@@ -6,6 +6,7 @@ geometrically exact beams and cables, `MarkerSide` for any other rigid marker th
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Protocol
 
 import exudyn
@@ -265,6 +266,19 @@ class Side(Protocol):
 
     def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+
+
+def detached(side: Any) -> Any:
+    """Copy of a side with work arrays of its own, for other states than the solver's."""
+    out = copy.copy(side)
+    for name, value in vars(side).items():
+        if isinstance(value, np.ndarray):
+            setattr(out, name, value.copy())
+        elif isinstance(value, NodeSide):
+            setattr(out, name, detached(value))
+        elif isinstance(value, tuple) and value and isinstance(value[0], NodeSide):
+            setattr(out, name, tuple(detached(part) for part in value))
+    return out
 
 
 def read_state(mbs: Any, sides: tuple[Side, Side], configuration: Any) -> tuple[list[float], list[float]]:

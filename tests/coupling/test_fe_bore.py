@@ -13,6 +13,7 @@ from exudyn.FEM import ObjectFFRFreducedOrderInterface
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.sides import detached
 from exudyn_ehd.status import InputError
 
 C, SPEED, LOAD = 30e-6, 314.0, 15e3
@@ -229,3 +230,20 @@ def test_input_that_cannot_be_meant():
         } | options
         with pytest.raises(InputError, match=match):
             ehd.add_bore_modes(fem, **spec)
+
+
+def test_film_can_be_seen_and_judged_and_the_picture_leaves_the_solver_alone():
+    mbs, joint = moving()
+    element = joint.element
+    load = np.array(mbs.ComputeItem(joint.objectNumber, exu.ComputeItemType.ODE2LHS))
+    film = joint.film()
+    assert film.bush_displacement is None
+    assert film.pressure.max() > 0.0
+    side = element.sides[0]
+    copy = detached(side)
+    before = side.floating.frame.copy(), side.jac.copy()
+    copy.update(mbs, np.full(side.size, 1e-3), np.zeros(side.size), exu.ConfigurationType.Visualization)
+    np.testing.assert_array_equal(side.floating.frame, before[0])
+    np.testing.assert_array_equal(side.jac, before[1])
+    np.testing.assert_array_equal(np.array(mbs.ComputeItem(joint.objectNumber, exu.ComputeItemType.ODE2LHS)), load)
+    assert "elasticity" in str(joint.audit())
