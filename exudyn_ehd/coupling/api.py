@@ -27,6 +27,7 @@ from exudyn_ehd.status import InputError, require_vector
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import ElasticLiner
     from exudyn_ehd.joint.audit import Audit
+    from exudyn_ehd.joint.steady import EquilibriumResult
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -83,6 +84,36 @@ class LubricatedJoint(JointResults):
         starts a new one.
         """
         return self.element.snapshot(self.mbs)
+
+    def place_in_equilibrium(
+        self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
+    ) -> EquilibriumResult:
+        """Let the next run start where the film carries a steady load, with the film in its steady state.
+
+        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing but for its spin.
+        Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and loads that depend on the
+        place, settle in a static solve (`SolveStatic`) or a ramp of the load.
+
+        Parameters
+        ----------
+        load : (2,) [N]
+            Force on the journal in the joint's x and y that the film has to carry: what acts on its body, with inertia.
+        speed : float, optional
+            Relative spin, rad/s; by default that of the initial state.
+
+        Returns
+        -------
+        EquilibriumResult
+
+        Raises
+        ------
+        InputError
+            For a joint that does not turn, without a system assembled, or a journal that is not a rigid body.
+        FilmError
+            If no equilibrium was found.
+        """
+        place = importlib.import_module("exudyn_ehd.coupling.placing").place
+        return place(self.mbs, self.element, self.name, load, speed)
 
     def state(self) -> JointState:
         """What the joint knows beside Exudyn's coordinates at the last accepted state: memory of the film, and record.

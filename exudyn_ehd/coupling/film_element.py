@@ -348,6 +348,10 @@ class FilmElement:
             self._trial = None
         return time, memory, self._record.rows(row)
 
+    def no_rows(self) -> np.ndarray:
+        """A record (0, k) without steps."""
+        return self._record.rows(None)[:0]
+
     def resume(self, time: float, memory: Any, rows: np.ndarray) -> None:
         """Go on with ``memory`` and record in a run that starts at ``time``."""
         self._record.restore(rows)

@@ -136,7 +136,9 @@ class Scene:
             assert not generalized[: a.size].any()
             force += nodal.sum(axis=0)
             moment += np.cross(element.arms, nodal).sum(axis=0)
-        return max(np.abs(force).max() / np.abs(wrench[:3]).max(), np.abs(moment).max() / np.abs(wrench[3:]).max())
+        # a trial of Newton's may find a film without any pressure: then in N and Nm
+        sizes = [max(float(np.abs(w).max()), 1.0) for w in (wrench[:3], wrench[3:])]
+        return max(np.abs(force).max() / sizes[0], np.abs(moment).max() / sizes[1])
 
     def energies(self):
         """Kinetic and elastic energy, J; the liner's is not in it."""
