@@ -11,7 +11,9 @@ from typing import Any
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.choice import Film
 from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.reduce import ModalBush
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.studies import catalogue, cells, moving_catalogue
 from exudyn_ehd.studies.cells import Cell
@@ -220,6 +222,8 @@ def _compliance(bearing: JournalBearing) -> tuple[str, float]:
         return "rigid", 0.0
     if isinstance(bearing.bush, ElasticLiner):
         return "liner", bearing.bush.compliance
+    if not isinstance(bearing.bush, ModalBush | ANCFBush):
+        return "", 0.0
     mesh, material = bearing.bush.mesh, bearing.bush.material
     if not isinstance(mesh, HollowCylinder):
         return "", 0.0
