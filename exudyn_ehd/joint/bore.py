@@ -12,7 +12,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_modes, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.film.stencil import add_modes, add_transposed, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
 
@@ -51,7 +52,7 @@ class ModalBore:
 
     Parameters
     ----------
-    modes : BoreModes
+    modes : BoreModes or ReducedBore
     grid : FilmGrid
 
     Attributes
@@ -60,10 +61,10 @@ class ModalBore:
         S.
     stiffness : (k,) array
         Modal stiffness, N/m.
-    modes : BoreModes
+    modes : BoreModes or ReducedBore
     """
 
-    def __init__(self, modes: BoreModes, grid: FilmGrid) -> None:
+    def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
         self.modes = modes
         self.grid_shape = grid.shape
         self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
@@ -167,10 +168,9 @@ class NodalBore:
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
         """X^T B S (r, k)."""
-        stencil = csr_matrix(
-            (weight.ravel(), places.ravel(), 5 * np.arange(len(weight) + 1)), shape=(len(weight), self.shapes.shape[0])
-        )
-        return ((stencil @ self.shapes).T @ fields).T
+        at_vertices = np.zeros((self.shapes.shape[0], fields.shape[1]))
+        add_transposed(weight, places, fields, at_vertices)
+        return (self.transposed @ at_vertices).T
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
