@@ -22,9 +22,9 @@ from exudyn_ehd.studies.setting import Integration, Scene, Setting
 from exudyn_ehd.studies.steady import SteadyScene
 from exudyn_ehd.studies.table import Row, format_seconds, read_rows
 
-# Between cells the error ripples with the place of the rupture line on the grid; measured on random bearings inside the table, the
-# true error stays below this factor times the worst neighbouring cell.
-MARGIN = 1.5
+# Between cells the error ripples with the place of the rupture line on the grid. Over 40 random rigid bearings inside the table, six films
+# and seven quantities, the true error reached 1.45 times the worst neighbouring cell, 0.92 times over 20 with a liner.
+MARGIN = 1.75
 # What the cells were not measured with; each changes the film.
 _PLAIN = (
     "inlet",
