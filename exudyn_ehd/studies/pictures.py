@@ -215,8 +215,9 @@ def guide_text(folder: pathlib.Path) -> str:
 GUIDE = (
     ("steady_500_film", "load"), ("steady_800_film", "load"), ("steady_800_film", "peak pressure"),
     ("steady_950_film", "load"), ("steady_800_tilted_film", "load"), ("orbit_film", "path"),
-    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("whirl_film", "growth"),
-    ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
+    ("steady_800_bush", "peak pressure"), ("steady_800_bush", "minimum film"),
+    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("slider_pin_integration", "minimum film"),
+    ("whirl_film", "growth"), ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
 )  # fmt: skip
 HEADINGS = ["scene: ladder", "quantity", "reference, its own error", "within 10 %", "within 1 %", "within 0.1 %"]
 
