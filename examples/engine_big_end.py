@@ -139,9 +139,7 @@ def simulate(bearing: ehd.JournalBearing, *, start_up: float, steps_per_cycle: i
     kept = angle >= -1e-6
     return Cycle(
         angle=angle[kept],
-        history=dataclasses.replace(
-            history, **{f.name: getattr(history, f.name)[kept] for f in dataclasses.fields(history)}
-        ),
+        history=history.between(start_up * CYCLE),
         seconds_per_step=seconds,
         iterations_per_step=mbs.sys["dynamicSolver"].it.newtonStepsCount / steps,
     )

@@ -178,3 +178,23 @@ def test_hydrostatic_or_grooved(example, tmp_path):
     # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
     assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
     assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60
+
+
+def test_reading_results(example, tmp_path):
+    found = example("reading_results").main(quick=True, results=tmp_path)
+    assert [path.name for path in found["files"]] == [
+        "bearing.csv", "bearing.npz", "fill.png", "overview.png", "revolutions.csv"
+    ]  # fmt: skip
+    table, history, films = found["revolutions"], found["history"], found["films"]
+    # friction slows the flywheel by less than 1e-4 per turn, so that the second one is not finished
+    assert len(table) == 1
+    assert table.end[0] == pytest.approx(0.02, rel=1e-3)
+    # the static load and the unbalance on top of each other, and what is left of the start
+    assert table.largest_load[0] > 12.9e3
+    assert 5e-6 < table.minimum_gap[0] < 12e-6
+    # between Petroff's friction 2 pi mu R^3 L omega / c of a concentric full film, and a few of it
+    petroff = 2 * 3.14159 * 0.01 * 0.025**3 * 0.05 * 314.16 / 25e-6
+    assert 0.5 * petroff < -table.mean_friction_torque[0] < 3.0 * petroff
+    assert table.mean_power_loss[0] == pytest.approx(-table.mean_friction_torque[0] * 314.16, rel=0.2)
+    # every twenty-fourth of a turn
+    assert len(films) == 49 and films[-1].time == history.time[-1]

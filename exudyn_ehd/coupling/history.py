@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import enum
+import math
 import pathlib
 import zipfile
 from collections.abc import Mapping
@@ -134,6 +135,15 @@ class JointHistory(HistoryPictures):
     radial_clearance: float
     journal_radius: float
     length: float
+
+    def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
+        """The steps with ``start <= time <= end`` (s), a billionth of the record's length more on either side for rounding."""
+        if not start <= end:
+            raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
+        slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
+        kept = (self.time >= start - slack) & (self.time <= end + slack)
+        columns = {name: getattr(self, name)[kept] for name in _COLUMNS}
+        return dataclasses.replace(self, **columns)
 
     def save(self, path: str | pathlib.Path) -> None:
         """Write everything to a NumPy file (npz); it appears whole or not at all. `load_history` reads it.

@@ -16,9 +16,12 @@ which is exact for a rigid gap that is constant along the link, and that of the 
 volume is solved by Newton's method with the exact matrix on the vertices that carry pressure.
 
 `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
-the liner answers to the clipped one. `FullSommerfeld` has no film where tension pulls the liner shut. A step is shortened where it would use up more than 80 % of a gap, and halved while the
+the liner answers to the clipped one. `FullSommerfeld` has no film where surfaces part so fast that tension pulls the liner shut: followed
+from a stiff liner to a soft one, its smallest gap goes to zero at a finite compliance (status NO_FILM; take a closure that breaks). A step is shortened where it would use up more than 80 % of a gap, and halved while the
 residual does not fall. Should it not settle, the liner's own rate ``beta dP/dt`` carries the film through pseudo time to the
-steady state.
+steady state. With `SwiftStieber` there always is one: the balance is continuous and coercive on ``P >= Pc`` (no gap is smaller than with
+the cavity's pressure, and oil that is pressed together opens the liner until it can leave), so that its complementarity problem has a
+solution (Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271).
 
 In motion the liner's rate takes part in the squeeze, ``dH/dt = rigid rate + beta (P - P_old) / dt`` (backward Euler), with the deflection
 at the start of the step from the history: a soft liner feeds and drains the film as it gives way. Without a history (a prescribed
@@ -239,27 +242,31 @@ class LinerFilmSolver(FilmSolver):
     def _pseudo_transient(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
         """Implicit steps of the liner's own rate towards the target, from short to long; the last one is the target itself."""
         rate = abs(self.vx) + abs(self.vz) + float(np.max(np.abs(self.rigid[2]))) + inverse + 1e-300
-        extra, total = 100.0 * rate, 0
+        extra, total, unsettled = 100.0 * rate, 0, 0.1
         start = P.copy()
         for _ in range(MAX_PSEUDO_STEPS):
             deflection = self.beta * (np.maximum(start, self.system.cavity_pressure) if self.kind != FULL else start)
             blend = (inverse * delta_old + extra * deflection) / (inverse + extra)
             ok, steps = self._newton(P, inverse + extra, blend)
             total += steps
-            if ok:
-                start[:] = P
-                extra *= 0.3
-                if extra < 1e-3 * rate:
-                    ok, steps = self._newton(P, inverse, delta_old)
-                    total += steps
-                    if ok:
-                        return True, total
-                    P[:] = start
-            else:
+            if not ok:
                 P[:] = start
                 extra *= 8.0
                 if extra > LARGEST_PSEUDO_RATE * rate:
                     return False, total
+                continue
+            # from here on the set of the last film, too
+            self.work.warm = True
+            moved = float(np.max(np.abs(P - start)) / (np.max(np.abs(P)) + 1e-300))
+            start[:] = P
+            extra *= 0.3
+            if extra < 1e-3 * rate or moved < 0.1 * unsettled:
+                unsettled = min(moved, unsettled)
+                ok, steps = self._newton(P, inverse, delta_old)
+                total += steps
+                if ok:
+                    return True, total
+                P[:] = start
         return False, total
 
     def _finish(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> None:

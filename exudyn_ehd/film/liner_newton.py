@@ -17,6 +17,8 @@ MAX_NEWTON_STEPS = 80
 # Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
 ERROR_TOLERANCE = 1e-13
 STEP_TOLERANCE = 1e-8
+# Share of the smallest gap; a peak pressure that deflects the liner by less counts as one that does by so much.
+LEAST_DEFLECTION = 1e-10
 # A factor from so near counts as that of the solution.
 EXACT_STEP = 1e-7
 FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
@@ -317,7 +319,8 @@ def solve_liner(
             if count == 0 or norm == 0.0:
                 return True, step + 1, True, count, width
             moved = 0.0
-        peak = 0.0
+        # pressures that no gap answers to are none: a film at rest ends here
+        peak = LEAST_DEFLECTION * smallest / beta
         for k in range(count):
             i = order[k] // m
             j = order[k] - i * m

@@ -109,6 +109,40 @@ def combine_rows(weight, place, shapes, out):
 
 
 @njit(cache=True, fastmath=_FAST)
+def add_transposed(weight, place, fields, out):
+    """Add the transposed stencil times fields (count, k) to out (n m, k)."""
+    for r in range(len(weight)):
+        known = fields[r]
+        for c in range(5):
+            w, target = weight[r, c], out[place[r, c]]
+            for q in range(known.size):
+                target[q] += w * known[q]
+
+
+@njit(cache=True, fastmath=_FAST)
+def balance_change(motion, by_place, place, by_rate, change, moved, speed, out):
+    """Change of the balances at the unknowns.
+
+    Parameters
+    ----------
+    motion : (count, 10) array
+        Derivatives to the motion, whose change is ``change`` (10,).
+    by_place, place : (count, 5) arrays
+        Stencil for displacements ``moved`` (n m,).
+    by_rate : (count,) array
+        Derivative to the own vertex's rate ``speed`` (n m,).
+    out : (count,) array
+    """
+    for r in range(out.size):
+        total = by_rate[r] * speed[place[r, 0]]
+        for c in range(5):
+            total += by_place[r, c] * moved[place[r, c]]
+        for c in range(10):
+            total += motion[r, c] * change[c]
+        out[r] = total
+
+
+@njit(cache=True, fastmath=_FAST)
 def motion_columns(order, count, DX, DZ, SX, SZ, SZX, slope, AR, AC, cos_x, sin_x, cos_f, sin_f, z, out):
     """Derivatives of the balances at the unknowns to (scaled pose, scaled rates, vx, vz): out (count, 10).
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_modes, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.film.stencil import add_modes, add_transposed, combine_rows, sparse_product, weighted_rows
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
 
@@ -167,10 +167,9 @@ class NodalBore:
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
         """X^T B S (r, k)."""
-        stencil = csr_matrix(
-            (weight.ravel(), places.ravel(), 5 * np.arange(len(weight) + 1)), shape=(len(weight), self.shapes.shape[0])
-        )
-        return ((stencil @ self.shapes).T @ fields).T
+        at_vertices = np.zeros((self.shapes.shape[0], fields.shape[1]))
+        add_transposed(weight, places, fields, at_vertices)
+        return (self.transposed @ at_vertices).T
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from exudyn_ehd.joint.model import MOTION_SIZE
-from exudyn_ehd.status import InputError, Status
+from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.effects import History
@@ -75,11 +75,6 @@ def settle(model: ElasticBearingModel, motion: np.ndarray, history: History | No
     Starts from the model's last coordinates if they leave a gap, else from the undeformed bore. The status of the evaluation is
     NOT_CONVERGED if no equilibrium was found.
     """
-    if model.effects.thermal is not None:
-        raise InputError(
-            "steady: a flexible bush and a thermal effect together are for joints only, where both follow in time; leave "
-            "JournalBearing.thermal=None or bush=None."
-        )
     q = model.coordinates.copy()
     model.settling_steps = 0
     found = _newton(model, motion, history, q, 1.0)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.stencil import balance_change
 from exudyn_ehd.joint.elastic_tangent import Balances, contact_slope, load_weights, wrench_rows
 
 if TYPE_CHECKING:
@@ -64,9 +65,17 @@ class TangentProduct:
         if model.serial != self.serial:
             raise RuntimeError("TangentProduct: the model has evaluated another state since.")
         moved, speed = model.bore.displacements(place, rate)
-        residual = self.motion @ motion
-        residual += np.einsum("rc,rc->r", self.by_place, moved.ravel()[self.vertices])
-        residual += self.by_rate * speed.ravel()[self.places]
+        residual = np.empty(len(self.places))
+        balance_change(
+            self.motion,
+            self.by_place,
+            self.vertices,
+            self.by_rate,
+            motion,
+            moved.reshape(-1),
+            speed.reshape(-1),
+            residual,
+        )
         model.solver.direct(residual)
         field = np.zeros(moved.shape)
         field.reshape(-1)[self.places] = self.weight * residual

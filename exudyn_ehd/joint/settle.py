@@ -54,7 +54,8 @@ def _target(
     model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, T: float | np.ndarray
 ) -> np.ndarray | None:
     """Temperature in balance with the heat of the film at T; None without a film."""
-    if model.evaluate(motion, History(temperature=T)).status is not Status.CONVERGED:
+    # a flexible bore settles under the film of every temperature that is tried
+    if model.evaluate_steady(motion, History(temperature=T)).status is not Status.CONVERGED:
         return None
     return np.asarray(thermal.steady_temperature(model))
 

@@ -58,6 +58,7 @@ def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: A
     z = along / film.bearing.journal_radius
     hill = pressure_surface(around, z, p)
     journal = journal_surface(film, around, z)
+    own = ax is None
     with styled():
         figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
         quads, values = _quads(hill), _quads(unit(p)[..., None])[..., 0].mean(axis=1)
@@ -76,8 +77,9 @@ def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: A
         _finish_axes(ax, z, 1.0 + HILL, _camera(peak) if camera is None else camera)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
         figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02)
-        R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
-        ax.set_title(f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale", y=0.98)
+        if own:
+            R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
+            ax.set_title(f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale", y=0.98)
         return finish(figure, path)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from exudyn_ehd.pictures.data import History
 from exudyn_ehd.pictures.style import BLUE, COLUMN, finish, open_axes, styled
@@ -52,6 +53,7 @@ def plot_load(history: History, *, text: str = "", ax: Any = None, path: Any = N
             )
             ax.plot(angle[-1:], unit(size[-1:]), "o", color=line.get_color(), label="end" if own else "_end")
         ax.set_rlim(bottom=0.0)
+        ax.yaxis.set_major_locator(MaxNLocator(4))
         ax.set_rlabel_position(_freest(angle))
         ax.set_title(f"load of the journal on the bush [{unit.symbol}]")
         ax.grid(True, lw=0.4, color="#D0D0D0")

@@ -84,13 +84,16 @@ def plot_traces(
                 ax.grid(True, lw=0.4, color="#D0D0D0")
                 ax.margins(x=0.0)
             if kind in ("length", "ratio"):
-                ax.set_ylim(bottom=0.0)
+                largest = float(np.nanmax(shown(values)))
+                ax.set_ylim(0.0, max(ax.get_ylim()[1], 1.08 * largest))
             if text:
                 ax.legend()
         if angle is not None:
             # at most nine ticks on fractions or multiples of a turn
             span = float(np.ptp(unit(along))) if along.size else 0.0
             axes[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in _TICKS if span <= 8.0 * b)))
+        if own:
+            axes[0].figure.align_ylabels(list(axes))
         axes[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
         return finish(axes[0].figure, path)
 

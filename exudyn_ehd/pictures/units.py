@@ -34,7 +34,7 @@ _UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "depth": ((1e-3, Unit("mm", 1e3)), (1e-7, Unit("µm", 1e6)), (0.0, Unit("nm", 1e9))),
     "angle": ((0.0, Unit("°", 180.0 / np.pi)),),
     "time": ((1.0, Unit("s")), (1e-3, Unit("ms", 1e3)), (0.0, Unit("µs", 1e6))),
-    "force": ((1e4, Unit("kN", 1e-3)), (0.1, Unit("N")), (0.0, Unit("mN", 1e3))),
+    "force": ((2e3, Unit("kN", 1e-3)), (0.1, Unit("N")), (0.0, Unit("mN", 1e3))),
     "torque": ((0.5, Unit("N m")), (0.0, Unit("mN m", 1e3))),
     "power": ((1e4, Unit("kW", 1e-3)), (0.5, Unit("W")), (0.0, Unit("mW", 1e3))),
     "flow": ((1e-7, Unit("cm³/s", 1e6)), (0.0, Unit("mm³/s", 1e9))),

@@ -6,6 +6,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import scenes
+from test_bodies import AGAINST_CONNECTOR, joined
 from test_film_record import CLEARANCE, RADIUS, rotor, run, steel_bush
 
 import exudyn_ehd as ehd
@@ -114,6 +115,24 @@ def test_film_moves_with_its_housing(node):
     local = (edges.reshape(-1, 3) - place) @ matrix
     np.testing.assert_allclose(np.abs(local[:, 2]), 0.025, atol=1e-6)
     np.testing.assert_allclose(np.hypot(local[:, 0], local[:, 1]), (RADIUS + CLEARANCE) / np.cos(np.pi / 96), rtol=1e-5)
+
+
+@pytest.mark.parametrize("name", AGAINST_CONNECTOR)
+def test_frame_of_every_kind_of_housing(name):
+    """What is drawn stands where the joint is, in the state that the renderer shows."""
+    mbs, _, joint = joined(AGAINST_CONNECTOR[name], role="housing")
+    mbs.Assemble()
+    element, kind = joint.element, exu.ConfigurationType
+    element._look(mbs, 0.0, kind.Current)
+    start = element.sides[0].frame.copy()
+    np.testing.assert_allclose(element.display._frame(mbs), start, atol=1e-14)
+    mbs.SolveDynamic(scenes.settings(2e-3, 4, tolerance=1e-6, full_newton=False))
+    mbs.systemData.SetSystemState(mbs.systemData.GetSystemState(kind.Current), kind.Visualization)
+    element._look(mbs, mbs.systemData.GetTime(kind.Current), kind.Current)
+    frame = element.sides[0].frame
+    assert np.abs(frame - start).max() > 0.0
+    # position and rotation; rates aren't drawn
+    np.testing.assert_allclose(element.display._frame(mbs)[:, :4], frame[:, :4], atol=1e-14)
 
 
 def test_modal_bush_is_drawn_around_the_film():

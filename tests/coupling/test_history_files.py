@@ -162,3 +162,15 @@ def test_place_of_the_smallest_gap_is_in_the_record(history):
     row = np.arange(64.0)
     assert column(row, ehd.Quantity.MINIMUM_GAP_Z).size == 1
     assert history.minimum_gap_angle.shape == history.time.shape
+
+
+def test_part_of_a_history(history):
+    part = history.between(0.5 * TURN, 1.5 * TURN)
+    # 50 steps per turn, both ends included
+    assert part.time.size == 51
+    assert part.time[0] == pytest.approx(0.5 * TURN) and part.time[-1] == pytest.approx(1.5 * TURN)
+    np.testing.assert_array_equal(part.motion, history.motion[25:76])
+    assert part.radial_clearance == history.radial_clearance
+    assert history.between().time.size == history.time.size and history.between(9.0).time.size == 0
+    with pytest.raises(InputError, match="start must not lie after end"):
+        history.between(2.0, 1.0)

@@ -136,3 +136,13 @@ def test_nodal_and_modal_bush_agree_in_a_run():
     # what the modes' default tolerance promises
     assert np.allclose(nodal.minimum_gap, modal.minimum_gap, rtol=0.01)
     assert np.allclose(nodal.peak_pressure, modal.peak_pressure, rtol=0.01)
+
+
+def test_a_housing_that_can_not_carry_the_mesh_is_refused_and_the_modal_bush_named():
+    mbs = new_system()
+    housing = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05), create2D=True)
+    journal = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.3, 0.03, 2))
+    with pytest.raises(ehd.InputError, match=r"itemNumbers\[0\].*ANCFBush.*ModalBush"):
+        ehd.CreateLubricatedJoint(
+            mbs, name="b", itemNumbers=[housing, journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=BEARING
+        )

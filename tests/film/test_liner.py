@@ -193,3 +193,54 @@ def test_compliance():
 def test_refused_values(option, value):
     with pytest.raises(ehd.InputError, match=rf"ElasticLiner\.{option}"):
         ehd.ElasticLiner(**({"thickness": 1e-3, "youngs_modulus": 1e9} | {option: value}))
+
+
+@pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
+def test_a_film_at_rest_carries_nothing(closure):
+    """A soft liner, all but touched, without speed or rate: no pressure beside the one that would open it to its clearance, 1 / beta."""
+    solver = LinerFilmSolver(GRID, closure)
+    solver.beta = 0.1
+    solver.H[:], solver.HF[:], _ = gaps(0.994)
+    solver.H_t[:] = 0.0
+    assert solver.solve(0.0, 0.0, 0.0)[0] is ehd.Status.CONVERGED
+    assert np.abs(solver.pressure).max() < 1e-12 / solver.beta
+
+
+def test_a_film_that_breaks_always_exists():
+    """Soft to stiff liners, nearly touched, under speeds and rates of any direction and two orders of size: 150 films from afar and from
+    a dry guess."""
+    rng, solver = np.random.default_rng(3), LinerFilmSolver(GRID, ehd.SwiftStieber())
+    for k in range(150):
+        x, rate = 0.3 + GRID.x, 10.0 ** rng.uniform(-1.0, 4.0) * rng.choice([0.0, 1.0])
+        waves = rng.normal(size=2)[:, None] * np.array([np.cos(x), np.sin(x)])
+        solver.beta = 10.0 ** rng.uniform(-5.0, 0.5)
+        solver.H[:], solver.HF[:], _ = gaps(rng.choice([0.5, 0.9, 0.99, 0.995]))
+        solver.H_t[:] = rate * np.outer(waves.sum(axis=0), GRID.z / GRID.z.max() if k % 2 else np.ones(GRID.z.size))
+        if k % 3 == 0:
+            solver.forget()
+        status, _ = solver.solve(rng.choice([-50.0, 0.0, 15.0, 150.0]), rng.choice([0.0, 10.0]), 0.0)
+        assert status is ehd.Status.CONVERGED, k
+        assert solver.pressure.min() >= 0.0
+
+
+def test_separation_pulls_a_soft_liner_shut():
+    """Without cavitation the film between surfaces that part, followed from a stiff to a soft liner, loses its smallest gap before it
+    ends: to 1 % of the rigid one and less, so that no film of a softer liner is left to be found. Without separation it never ends.
+    """
+    closure, beta, factor = ehd.FullSommerfeld(), 1e-4, 2.0
+    solver = solve(closure, beta, eps=0.5, rate=-30.0)
+    while factor > 1.001:
+        solver.beta = factor * beta
+        solver.H[:], solver.HF[:], solver.H_t[:] = gaps(0.5, rate=-30.0)
+        before = solver.pressure.copy()
+        if solver.solve(50.0, 3.0, -np.inf)[0] is ehd.Status.CONVERGED:
+            beta, smallest = solver.beta, solver.H.min()
+        else:
+            factor = factor**0.5
+            solver.pressure[:] = before
+            solver.work.warm = True
+    assert smallest < 0.01 * 0.5
+    solver.beta = 4.0 * beta
+    solver.H[:], solver.HF[:], solver.H_t[:] = gaps(0.5, rate=-30.0)
+    assert solver.solve(50.0, 3.0, -np.inf)[0] is ehd.Status.NO_FILM
+    assert solve(closure, 1e4, eps=0.5).H.min() > 0.1

@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from exudyn_ehd.film.stencil import add_modes, combine_rows, gap_slopes, gap_stencil, transposed_slopes, weighted_rows
+from exudyn_ehd.film.stencil import (
+    add_modes,
+    add_transposed,
+    combine_rows,
+    gap_slopes,
+    gap_stencil,
+    transposed_slopes,
+    weighted_rows,
+)
 
 
 def test_slopes_are_central_differences_and_have_a_transpose():
@@ -48,6 +56,9 @@ def test_rows_and_sums_of_modes():
     out = np.empty((8, 6))
     combine_rows(weight, place, shapes, out)
     np.testing.assert_allclose(out, np.einsum("rc,rck->rk", weight, shapes[place]), rtol=1e-12, atol=1e-14)
+    back, fields = np.zeros((30, 3)), rng.normal(size=(8, 3))
+    add_transposed(weight, place, fields, back)
+    np.testing.assert_allclose(np.sum(back * shapes[:, :3]), np.sum(fields * out[:, :3]), rtol=1e-12)
     wide = np.zeros((8, 9))
     weighted_rows(shapes, place[:, 0], weight[:, 0], 2, wide)
     np.testing.assert_allclose(wide[:, 2:8], shapes[place[:, 0]] * weight[:, :1])

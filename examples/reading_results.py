@@ -1,0 +1,127 @@
+"""What can be read from a joint after a run: tables, files, pictures, an animation.
+
+A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an unbalance of 5 kN
+that turns with it. The numbers are made up; nothing is compared.
+
+Run ``python examples/reading_results.py``; everything is written to ``results/reading_results``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import pathlib
+
+import exudyn as exu
+import numpy as np
+from exudyn.utilities import RigidBodyInertia
+from matplotlib.figure import Figure
+
+import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import PAGE, styled
+
+SPEED = 3000.0 * 2.0 * math.pi / 60.0
+TURN = 2.0 * math.pi / SPEED
+LOAD, UNBALANCE = 8000.0, 5000.0
+
+
+def simulate(turns: int, steps_per_turn: int) -> ehd.LubricatedJoint:
+    """Run the journal from the middle of its bore; returns the joint."""
+    SC = exu.SystemContainer()
+    mbs = SC.AddSystem()
+    mbs.variables["container"] = SC  # the system lives as long as its container
+    journal = mbs.CreateRigidBody(
+        inertia=RigidBodyInertia(mass=5.0, inertiaTensor=np.diag([2.5, 2.5, 5.0])),
+        initialAngularVelocity=[0.0, 0.0, SPEED],
+        nodeType=exu.NodeType.RotationRotationVector,
+    )
+
+    def load(mbs, t, vector):
+        return [UNBALANCE * math.cos(SPEED * t), UNBALANCE * math.sin(SPEED * t) - LOAD, 0.0]
+
+    mbs.CreateForce(itemNumber=journal, loadVector=[0.0, -LOAD, 0.0], loadVectorUserFunction=load)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.05,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=0.01),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+    )
+    joint = ehd.CreateLubricatedJoint(
+        mbs,
+        name="bearing",
+        itemNumbers=[mbs.CreateGround(), journal],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=bearing,
+        axial=ehd.Held(),
+    )
+    joint.record_films(period=TURN / 24.0)
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime = turns * TURN
+    settings.timeIntegration.numberOfSteps = turns * steps_per_turn
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.5
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    mbs.SolveDynamic(settings)
+    return joint
+
+
+def overview(joint: ehd.LubricatedJoint, path: pathlib.Path) -> None:
+    """One page: every picture drawn into axes of its own."""
+    history = joint.history
+    with styled():
+        figure = Figure(figsize=(PAGE, 0.72 * PAGE), layout="constrained")
+        grid = figure.add_gridspec(2, 6)
+        joint.plot_orbit(ax=figure.add_subplot(grid[0, :2]))
+        joint.plot_load(ax=figure.add_subplot(grid[0, 2:4], projection="polar"))
+        joint.plot_bearing(ax=figure.add_subplot(grid[0, 4:], projection="3d", computed_zorder=False))
+        joint.plot_pressure(ax=figure.add_subplot(grid[1, :3]))
+        traces = grid[1, 3:].subgridspec(2, 1)
+        axes = [figure.add_subplot(traces[0]), figure.add_subplot(traces[1])]
+        joint.plot_traces(angle=SPEED * history.time, angle_text="shaft angle", axes=axes)
+        axes[0].tick_params(labelbottom=False)
+        figure.align_ylabels(axes)
+        figure.savefig(path, dpi=110)
+
+
+def main(*, quick: bool = False, results: str | pathlib.Path | None = "results/reading_results") -> dict:
+    """Run, print the table of revolutions, write everything.
+
+    Parameters
+    ----------
+    quick : bool
+        Fewer turns and no animation.
+    results : path or None
+        Folder; None writes nothing.
+
+    Returns
+    -------
+    dict
+        ``revolutions`` (the table), ``history``, ``films`` and ``files``.
+    """
+    joint = simulate(turns=2 if quick else 5, steps_per_turn=72)
+    table = joint.revolutions()
+    print(table)
+    files = []
+    if results is not None:
+        folder = pathlib.Path(results)
+        folder.mkdir(parents=True, exist_ok=True)
+        overview(joint, folder / "overview.png")
+        joint.save(folder / "bearing.npz")
+        joint.to_csv(folder / "bearing.csv")
+        table.to_csv(folder / "revolutions.csv")
+        joint.plot_fill(path=folder / "fill.png")
+        if not quick:
+            joint.animate(folder / "bearing.gif")
+        files = sorted(folder.iterdir())
+        again = ehd.load_history(folder / "bearing.npz")
+        assert np.array_equal(again.minimum_gap, joint.history.minimum_gap)
+    return {"revolutions": table, "history": joint.history, "films": joint.films, "files": files}
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--quick", action="store_true", help="fewer turns, no animation")
+    main(quick=parser.parse_args().quick)
