@@ -27,6 +27,7 @@ from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.reduce import ModalBush
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
@@ -80,7 +81,7 @@ class JournalBearing:
         Areas with a prescribed supply pressure; empty: none.
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
-    bush : ElasticLiner, ModalBush, ANCFBush or None
+    bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
         What gives way under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
@@ -109,7 +110,7 @@ class JournalBearing:
     contact: RegularisedWall | None = None
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
-    bush: ElasticLiner | ModalBush | ANCFBush | None = None
+    bush: ElasticLiner | ModalBush | ANCFBush | FEBore | ReducedBore | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -247,10 +248,11 @@ def _check_bush(bearing: JournalBearing) -> None:
     """Refuse a bush that is none, or whose bore is another than the film's."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.mesh import HollowCylinder
     from exudyn_ehd.solid.reduce import ModalBush
 
-    _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, type(None)))
+    _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None)))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
             f"JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got {type(bearing.film).__name__}(...)."

@@ -279,6 +279,11 @@ def CreateLubricatedJoint(
     housing, journal = _resolve_pair(mbs, itemNumbers)
     rotation = _joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = _joint_points(housing, journal, position, useGlobalFrame)
+    if housing.body is not None and getattr(bearing, "bush", None) is not None:
+        # imported here: a rigid bearing needs no solid
+        bearing, housing = importlib.import_module("exudyn_ehd.coupling.fe_bore").hold_fe_bore(
+            mbs, bearing, housing, points[0], rotation
+        )
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)

@@ -30,9 +30,10 @@ BEYOND_END = 1e-6
 def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Reference and initial coordinates and initial velocities (n,) of nodes."""
     data = [mbs.GetNode(node) for node in nodes]
+    rate = ["initialVelocities" if "initialVelocities" in d else "initialCoordinates_t" for d in data]
     reference, initial, velocities = (
-        np.concatenate([np.array(d[key], dtype=float) for d in data])
-        for key in ("referenceCoordinates", "initialCoordinates", "initialVelocities")
+        np.concatenate([np.array(d[key], dtype=float) for d, key in zip(data, keys, strict=True)])
+        for keys in (["referenceCoordinates"] * len(data), ["initialCoordinates"] * len(data), rate)
     )
     return reference, initial, velocities
 

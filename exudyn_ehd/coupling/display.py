@@ -8,14 +8,13 @@ state.
 
 from __future__ import annotations
 
-import copy
 from typing import TYPE_CHECKING, Any
 
 import exudyn
 import exudyn.graphics
 import numpy as np
 
-from exudyn_ehd.coupling.sides import read_state
+from exudyn_ehd.coupling.sides import detached, read_state
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
@@ -93,10 +92,7 @@ class FilmDisplay:
     def _frame(self, mbs: Any) -> np.ndarray:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
         if self._housing is None:
-            self._housing = copy.copy(self.element.sides[0])
-            for name, value in vars(self._housing).items():
-                if isinstance(value, np.ndarray):
-                    setattr(self._housing, name, value.copy())
+            self._housing = detached(self.element.sides[0])
         one: Any = (self._housing,)
         q, q_t = read_state(mbs, one, _VISUALIZATION)
         self._housing.update(mbs, np.array(q), np.array(q_t), _VISUALIZATION)

@@ -12,6 +12,7 @@ import numpy as np
 from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.bush_object import CarriedOuter, CreateFlexibleBush, FixedOuter
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.sides import MarkerSide, NodeSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
@@ -19,6 +20,7 @@ from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
 from exudyn_ehd.joint.bush import displacements_at_rest
 from exudyn_ehd.joint.elastic import ElasticBearingModel
+from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.status import InputError, Status
 
 # the index types exist at run time, but not in the type stubs
@@ -55,6 +57,10 @@ def attach_bush(
     """
     if not isinstance(model.bore, ModalBore):
         return _attach_nodes(mbs, model, sides, place, name, show), {}
+    if isinstance(sides[0], FloatingBoreSide):
+        # the body has nodes, mass and stiffness for the modes
+        _settle_modes(mbs, model, sides)
+        return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore.stiffness), {}
     start = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
@@ -68,6 +74,18 @@ def attach_bush(
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     return element, {} if start is None else {"massMatrix": _numerical_mass(element)}
+
+
+def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
+    """Let the modes of a reduced body start in equilibrium with the film, unless the scene has set them."""
+    bush: ReducedBore = model.bearing.bush
+    node = sides[0].nodes[-1]
+    if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
+        return
+    held = bush.held()
+    start = initial_coordinates(model, sides, ModalBore(held, model.grid))
+    if start is not None:
+        mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
 
 
 def _attach_nodes(
@@ -112,11 +130,11 @@ def _numerical_mass(element: ModalFilmElement) -> np.ndarray:
     return mass
 
 
-def initial_coordinates(model: Any, sides: tuple[Side, Side]) -> np.ndarray | None:
+def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) -> np.ndarray | None:
     """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
-    first instant is Swift-Stieber's.
+    first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
     """
     if any(isinstance(side, MarkerSide) for side in sides):
         return None
@@ -125,7 +143,7 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side]) -> np.ndarray | No
         closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
         bearing = dataclasses.replace(bearing, cavitation=closure)
     film = ElasticBearingModel(
-        bearing, lambda grid: model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
+        bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
     motion = np.empty(SIZE)
     kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)

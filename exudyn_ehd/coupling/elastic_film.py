@@ -15,6 +15,7 @@ import numpy as np
 from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.film_element import FilmElement, Trial
 from exudyn_ehd.coupling.sides import Side
+from exudyn_ehd.solid.fe_bore import ReducedBore
 
 # the index types exist at run time, but not in the type stubs
 exu: Any = exudyn
@@ -113,7 +114,9 @@ class ModalFilmElement(BoreFilmElement):
         whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
         return np.negative(whole, out=whole)
 
-    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
-        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last."""
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""
         model: Any = self.model
+        if isinstance(model.bore.modes, ReducedBore):
+            return None
         return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)

@@ -55,6 +55,8 @@ class Item:
         Frame of its node (or of global space for ground) in the reference configuration.
     reference_coordinates, initial_coordinates, initial_velocities : ndarray (n,)
         Of its nodes; empty if only Exudyn's marker knows.
+    body, node_kind : exudyn.ObjectIndex, int
+        The reduced finite-element body, and how its rigid node turns; None for any other item.
     build : function of point (3,) and joint rotation (3, 3), or None
         Makes the side; None for rigid nodes and ground.
     """
@@ -73,6 +75,8 @@ class Item:
     reference_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    body: Any = None
+    node_kind: int | None = None
     build: Callable[[np.ndarray, np.ndarray], Side] | None = None
 
     def side(self, point: np.ndarray, joint_rotation: np.ndarray) -> Side:
@@ -180,9 +184,10 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
             nodes=nodes,
             build=lambda point, rotation: beam_items.marker_on_body(mbs, where, body, nodes, point, rotation),
         )
+    if kind == "FFRFreducedOrder":
+        return _reduced_body_item(mbs, where, body, nodes)
     hints = {
         "KinematicTree": "give MarkerKinematicTreeRigid on one of its links",
-        "FFRFreducedOrder": _MESH_HINT,
         "FFRF": _MESH_HINT,
         "GenericODE2": _MESH_HINT,
     }
@@ -190,6 +195,30 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
         f"{where}: an object of type {kind} is no rigid body; "
         + hints.get(kind, "give a rigid body, a beam or cable element, a ground object, or a rigid marker on it")
         + "."
+    )
+
+
+def _reduced_body_item(mbs: Any, where: str, body: Any, nodes: tuple[Any, ...]) -> Item:
+    """Reduced finite-element body, which can hold a film in its bore and nothing else without a marker."""
+    rigid = _node_item(mbs, where, nodes[0])
+    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
+
+    def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
+        raise InputError(
+            f"{where}: an object of type FFRFreducedOrder is no rigid body; {_MESH_HINT}, or give the bearing bush=FEBore(fem=...) for a housing "
+            "whose bore deforms under the film."
+        )
+
+    return dataclasses.replace(
+        rigid,
+        kind=None,
+        node_kind=rigid.kind,
+        body=body,
+        nodes=nodes,
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+        build=refuse,
     )
 
 

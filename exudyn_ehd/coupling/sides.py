@@ -6,6 +6,7 @@ geometrically exact beams and cables, `MarkerSide` for any other rigid marker th
 
 from __future__ import annotations
 
+import copy
 from typing import Any, Protocol
 
 import exudyn
@@ -181,21 +182,38 @@ class FloatingSide(MarkerSide):
         self.floating = frame
 
     def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
-        floating, n = self.floating, self.floating.size
-        floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
-        arm = self.frame[:, 3] - floating.frame[:, 3]
-        turn = self.jac[1, :, :n].T
-        change = np.zeros((6, self.size, self.size))
-        for i, unit in enumerate(np.eye(3)):
-            floating.geometric(mbs, q[:n], np.zeros(3), unit, change[3 + i, :n, :n])
-            floating.geometric(mbs, q[:n], np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
-        # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
-        change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
-        for first in (0, 3):
-            columns = self.jac[first // 3, :, n:].T
-            change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
-        change[:3, :n, n:] = np.cross(turn[:, None, :], self.jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
-        return change
+        n = self.floating.size
+        self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
+
+
+def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.ndarray) -> np.ndarray:
+    """Entries d J[i, a] / dq_b (6, m, m) of the Jacobians of a point in a floating frame.
+
+    Parameters
+    ----------
+    floating : NodeSide
+        The rigid node's own frame.
+    q : ndarray (n,)
+        Its coordinates.
+    arm : ndarray (3,)
+        From the node to the point, global [m].
+    jac : ndarray (4, 3, m)
+        Jp and Jr of the point: the node's columns, then those of local coordinates.
+    """
+    n, size = floating.size, jac.shape[2]
+    turn = jac[1, :, :n].T
+    change = np.zeros((6, size, size))
+    for i, unit in enumerate(np.eye(3)):
+        floating.geometric(None, q, np.zeros(3), unit, change[3 + i, :n, :n])
+        floating.geometric(None, q, np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
+    # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
+    change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
+    for first in (0, 3):
+        columns = jac[first // 3, :, n:].T
+        change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
+    change[:3, :n, n:] = np.cross(turn[:, None, :], jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
+    return change
 
 
 class MeshSide(MarkerSide):
@@ -248,6 +266,19 @@ class Side(Protocol):
 
     def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+
+
+def detached(side: Any) -> Any:
+    """Copy of a side with work arrays of its own, for other states than the solver's."""
+    out = copy.copy(side)
+    for name, value in vars(side).items():
+        if isinstance(value, np.ndarray):
+            setattr(out, name, value.copy())
+        elif isinstance(value, NodeSide):
+            setattr(out, name, detached(value))
+        elif isinstance(value, tuple) and value and isinstance(value[0], NodeSide):
+            setattr(out, name, tuple(detached(part) for part in value))
+    return out
 
 
 def read_state(mbs: Any, sides: tuple[Side, Side], configuration: Any) -> tuple[list[float], list[float]]:

@@ -13,6 +13,7 @@ from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.stencil import add_modes, add_transposed, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
 
@@ -51,7 +52,7 @@ class ModalBore:
 
     Parameters
     ----------
-    modes : BoreModes
+    modes : BoreModes or ReducedBore
     grid : FilmGrid
 
     Attributes
@@ -60,10 +61,10 @@ class ModalBore:
         S.
     stiffness : (k,) array
         Modal stiffness, N/m.
-    modes : BoreModes
+    modes : BoreModes or ReducedBore
     """
 
-    def __init__(self, modes: BoreModes, grid: FilmGrid) -> None:
+    def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
         self.modes = modes
         self.grid_shape = grid.shape
         self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)

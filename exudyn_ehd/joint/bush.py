@@ -11,8 +11,10 @@ from exudyn_ehd.joint.bore_settle import DenseElasticity, ModalElasticity
 from exudyn_ehd.joint.elastic import ElasticBearingModel
 from exudyn_ehd.joint.model import Effects
 from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.reduce import ModalBush, bore_modes
+from exudyn_ehd.status import InputError
 
 
 def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
@@ -26,6 +28,20 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
             elasticity=ModalElasticity(modes.stiffness),
             start_angle=start_angle,
             effects=effects,
+        )
+    if isinstance(bush, ReducedBore):
+        reduced = bush
+        return ElasticBearingModel(
+            bearing,
+            lambda grid: ModalBore(reduced, grid),
+            elasticity=DenseElasticity(lambda: reduced.stiffness_matrix),
+            start_angle=start_angle,
+            effects=effects,
+        )
+    if isinstance(bush, FEBore):
+        raise InputError(
+            "JournalBearing.bush=FEBore(...) takes its modes from the body that is the joint's housing: give CreateLubricatedJoint an "
+            "ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by itself, take a ModalBush(...)."
         )
     assert isinstance(bush, ANCFBush)
     mesh = bush.build_mesh()

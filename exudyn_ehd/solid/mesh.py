@@ -182,7 +182,7 @@ class BushMesh:
     @cached_property
     def boundary(self) -> np.ndarray:
         """All faces that belong to one element only, shape (f, 8), mesh nodes."""
-        return _boundary_faces(self.elements)
+        return boundary_faces(self.elements)
 
     def surface(self, nodes: np.ndarray) -> Surface:
         """Return the boundary faces all of whose nodes are in ``nodes`` (mesh node numbers)."""
@@ -222,7 +222,8 @@ class BushMesh:
         return self.line(near)
 
 
-def _boundary_faces(elements: np.ndarray) -> np.ndarray:
+def boundary_faces(elements: np.ndarray) -> np.ndarray:
+    """Faces (f, 8) of 20-node hexahedra that belong to one element only."""
     faces = elements[:, FACES].reshape(-1, 8)
     _, index, count = np.unique(np.sort(faces[:, :4], axis=1), axis=0, return_index=True, return_counts=True)
     return faces[np.sort(index[count == 1])]
@@ -282,7 +283,7 @@ class HollowCylinder:
         theta = np.pi * j / self.circumferential
         z = self.length * (k / (2 * self.axial) - 0.5)
         nodes = np.stack([radius * np.cos(theta), radius * np.sin(theta), z], axis=1)
-        boundary = _boundary_faces(elements)
+        boundary = boundary_faces(elements)
         members = (i == 0, i == 2 * self.radial, k == 0, k == 2 * self.axial)
         bore, outer, end_low, end_high = (_surface(nodes, boundary, member) for member in members)
         return BushMesh(nodes=nodes, elements=elements, bore=bore, outer=outer, end_low=end_low, end_high=end_high)
@@ -363,7 +364,7 @@ def mesh_from_arrays(
     used, elements = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], elements.reshape(-1, 20)
     _check_volume(nodes, elements)
-    boundary = _boundary_faces(elements)
+    boundary = boundary_faces(elements)
     r, z = np.hypot(nodes[:, 0], nodes[:, 1]), nodes[:, 2]
     flat = 1e-4 * np.ptp(z)
     low, high = z < z.min() + flat, z > z.max() - flat

@@ -188,8 +188,8 @@ def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
     solutions[:, free] = factor.solve(np.ascontiguousarray(loads[free])).T
     radial = _radial(bore, solutions.reshape(len(solutions), -1, 3)[:, bore.nodes])
     compliance = solutions @ loads
-    chosen, error = _enough(compliance, radial, orders, bush)
-    coefficients = _orthogonal(compliance[np.ix_(chosen, chosen)], radial[chosen])
+    chosen, error = enough_modes(compliance, radial, orders, bush.tolerance, bush.tilted)
+    coefficients = orthogonal_modes(compliance[np.ix_(chosen, chosen)], radial[chosen])
     shape = coefficients @ radial[chosen]
     peak = shape[np.arange(len(shape)), np.argmax(np.abs(shape), axis=1)]
     coefficients /= peak[:, None]
@@ -201,7 +201,7 @@ def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
     )
 
 
-def _orthogonal(compliance: np.ndarray, radial: np.ndarray) -> np.ndarray:
+def orthogonal_modes(compliance: np.ndarray, radial: np.ndarray) -> np.ndarray:
     """Combinations (k, candidates) of unit strain energy, orthogonal in energy and on the bore; dependent candidates are dropped."""
     size = np.sqrt(np.diag(compliance))
     values, vectors = eigh(compliance / np.outer(size, size))
@@ -217,28 +217,28 @@ def _radial(bore: Surface, displacements: np.ndarray) -> np.ndarray:
     return np.einsum("kai,ai->ka", displacements[..., :2], direction)
 
 
-def _enough(
-    compliance: np.ndarray, radial: np.ndarray, orders: np.ndarray, bush: ModalBush
+def enough_modes(
+    compliance: np.ndarray, radial: np.ndarray, orders: np.ndarray, tolerance: float, tilted: bool
 ) -> tuple[np.ndarray, float]:
     """Indices of the candidates up to the smallest orders (N, L) that meet the tolerance, and the error."""
     count = len(orders)
     exact = radial[count:]
     scale = np.linalg.norm(exact, axis=1)
     best: tuple[np.ndarray, float] | None = None
-    least = 2 * max(0, ceil(log2(AXIAL_FROM / bush.tolerance) - 1e-9))
-    for axial in range(min(least, LARGEST_AXIAL), LARGEST_AXIAL + 1, 1 if bush.tilted else 2):
+    least = 2 * max(0, ceil(log2(AXIAL_FROM / tolerance) - 1e-9))
+    for axial in range(min(least, LARGEST_AXIAL), LARGEST_AXIAL + 1, 1 if tilted else 2):
         for wave in range(2, LARGEST_WAVE + 1):
             chosen = np.flatnonzero((orders[:, 0] <= wave) & (orders[:, 1] <= axial))
             if best is not None and len(chosen) >= len(best[0]):
                 break
             part = np.linalg.solve(compliance[np.ix_(chosen, chosen)], compliance[chosen, count:])
             error = float((np.linalg.norm(part.T @ radial[chosen] - exact, axis=1) / scale).max())
-            if error <= bush.tolerance:
+            if error <= tolerance:
                 best = chosen, error
                 break
     if best is None:
         raise InputError(
-            f"ModalBush.tolerance {bush.tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial order "
+            f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial order "
             f"{LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
         )
     return best

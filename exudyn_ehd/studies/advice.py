@@ -11,7 +11,9 @@ from typing import Any
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.choice import Film
 from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.reduce import ModalBush
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.studies import catalogue, cells, moving_catalogue
 from exudyn_ehd.studies.cells import Cell
@@ -20,9 +22,9 @@ from exudyn_ehd.studies.setting import Integration, Scene, Setting
 from exudyn_ehd.studies.steady import SteadyScene
 from exudyn_ehd.studies.table import Row, format_seconds, read_rows
 
-# Between cells the error ripples with the place of the rupture line on the grid; measured on random bearings inside the table, the
-# true error stays below this factor times the worst neighbouring cell.
-MARGIN = 1.5
+# Between cells the error ripples with the place of the rupture line on the grid. Over 40 random rigid bearings inside the table, six films
+# and seven quantities, the true error reached 1.45 times the worst neighbouring cell, 0.92 times over 20 with a liner.
+MARGIN = 1.75
 # What the cells were not measured with; each changes the film.
 _PLAIN = (
     "inlet",
@@ -220,6 +222,8 @@ def _compliance(bearing: JournalBearing) -> tuple[str, float]:
         return "rigid", 0.0
     if isinstance(bearing.bush, ElasticLiner):
         return "liner", bearing.bush.compliance
+    if not isinstance(bearing.bush, ModalBush | ANCFBush):
+        return "", 0.0
     mesh, material = bearing.bush.mesh, bearing.bush.material
     if not isinstance(mesh, HollowCylinder):
         return "", 0.0

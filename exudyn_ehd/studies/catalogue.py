@@ -120,7 +120,7 @@ def steady_effects() -> Study:
     bearing = loaded_bearing()
     oil = bearing.lubricant
     scene = dataclasses.replace(
-        steady_scene(0.85), name="steady_loaded", title="steady journal, eccentricity ratio 0.85, hot oil, rough surfaces",
+        steady_scene(0.85), name="steady_loaded", title="steady journal, eps 0.85, hot oil, rough surfaces",
         bearing=bearing, directions=2,
     )  # fmt: skip
     lumped = LumpedThermal(supply_temperature=353.15, housing_conductance=20.0)

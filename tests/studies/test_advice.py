@@ -9,7 +9,8 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.status import InputError
-from exudyn_ehd.studies import catalogue, cells
+from exudyn_ehd.studies import catalogue, cells, moving_catalogue
+from exudyn_ehd.studies.setting import Integration, Setting
 from exudyn_ehd.studies.steady import QUANTITIES, measure_motions, motion_at
 
 SPEED = 200.0
@@ -85,7 +86,7 @@ def test_random_bearings():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("make", "tilts", "count"), [(_rigid, [0.0, 0.2, 0.5], 40), (_liner, [0.0, 0.2], 16), (_solid, [0.0], 8)]
+    ("make", "tilts", "count"), [(_rigid, [0.0, 0.2, 0.5], 20), (_liner, [0.0, 0.2], 10), (_solid, [0.0], 4)]
 )
 def test_many_random_bearings(make, tilts, count):
     rng = np.random.default_rng(11)
@@ -143,6 +144,24 @@ def test_scene():
     # another eccentricity has no table of its own, but cells
     near = dataclasses.replace(scene, eccentricity_ratio=0.7)
     assert "L/D" in ehd.recommend(near, 0.01, "load").evidence[0]
+
+
+def test_moving_scene():
+    """Film and steps from their own tables; the run with both keeps the error."""
+    scene = moving_catalogue.step_load_orbit()
+    advice = ehd.recommend(scene, 0.01, "path")
+    assert advice.found
+    assert len(advice.evidence) == 2
+
+    def path(options, integration):
+        setting = Setting(label="", family="", model="", options=options, integration=integration)
+        return scene.prepare(setting)().values["path"]
+
+    fine = path({"film": ehd.FiniteLength(n_theta=128, n_z=12)}, Integration(steps=1200))
+    (quantity,) = (q for q in scene.quantities if q.name == "path")
+    assert quantity.distance(path(advice.options, advice.integration), fine) < 0.01
+    other = dataclasses.replace(scene, name="mine")
+    assert "none of the measured scenes" in ehd.recommend(other, 0.01, "path").reason
 
 
 def test_refuses():

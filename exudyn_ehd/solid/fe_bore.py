@@ -1,0 +1,417 @@
+"""The bore of a finite-element body that a user has reduced to modes: which faces carry the film, and how they move.
+
+The nodes on the bore are found by their place; the shape functions of their faces carry displacements to the film and pressures back. With Psi the
+bore nodes' displacements in the modes q,
+
+    u(theta, z) = S Psi q = P q + Theta q x r + residual,
+
+the first two terms being the rigid motion that fits u best on the film's area. The joint's frame takes part in it, so that the gap of
+the film sees the residual only, ``delta = e_r (S Psi - P - Theta x r) q``: a rod may bend by many clearances without error. Loads are
+carried back by the transposes.
+
+Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore as in `reduce`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags
+from scipy.sparse.linalg import splu
+
+from exudyn_ehd.solid.face_map import BoreFaces, surface_faces
+from exudyn_ehd.solid.reduce import (
+    LARGEST_TOLERANCE,
+    SMALLEST_TOLERANCE,
+    candidate_pressures,
+    enough_modes,
+    orthogonal_modes,
+    sample_pressures,
+)
+from exudyn_ehd.status import InputError, require_number, require_vector
+
+# Largest angle between neighbouring nodes of a bore, rad.
+LARGEST_SPACING = 0.6
+# Spread of the radii of nodes on one surface, over the radius: facets.
+SURFACE = 5e-3
+# How far a film may reach beyond the outermost nodes, in lengths: rounding.
+BEYOND_END = 1e-6
+# Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.
+AROUND, ALONG = 144, 16
+# Share of its energy that a new mode must have beyond the modes before it.
+NEW_ENERGY = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FEBore:
+    """The film acts on the bore of the housing, an ObjectFFRFreducedOrder; its modes deform under the oil pressure.
+
+    Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes let it.
+
+    Parameters
+    ----------
+    fem : FEMinterface
+        The mesh that the body was made of, with its elements.
+    nodes : sequence of int, optional
+        Mesh nodes on the bore; by default those on the cylinder around the joint's axis.
+    radius_tolerance : float
+        How far a node's radius may be from the bearing's bore radius, over that radius.
+    settled : bool
+        Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only where the body's modes
+        start at zero. False starts undeformed, with the oscillation that this brings.
+    """
+
+    fem: Any
+    nodes: tuple[int, ...] | None = None
+    radius_tolerance: float = 0.02
+    settled: bool = True
+
+    def __post_init__(self) -> None:
+        if not hasattr(self.fem, "elements"):
+            raise InputError(f"FEBore.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
+        if not isinstance(self.settled, bool):
+            raise InputError(f"FEBore.settled must be True or False, got {self.settled!r}.")
+        require_number("FEBore.radius_tolerance", self.radius_tolerance, above=0.0)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ReducedBore:
+    """A bore found in a reduced body, in the joint's frame; what `FEBore` becomes when its joint is made.
+
+    Parameters
+    ----------
+    faces : BoreFaces
+    displacements : ndarray, shape (n, 3, k)
+        Their displacements per unit of the modes.
+    stiffness_matrix : ndarray, shape (k, k)
+        Of the modes, with the body's frame held.
+    radius, length : float
+        Of the film's area [m].
+    settled : bool
+        As in `FEBore`.
+    """
+
+    faces: BoreFaces
+    displacements: np.ndarray
+    stiffness_matrix: np.ndarray
+    radius: float
+    length: float
+    settled: bool = True
+    rigid: np.ndarray = field(init=False)
+
+    def __post_init__(self) -> None:
+        theta, z, weight = quadrature(self.length)
+        field_ = self._interpolated(theta, z)
+        place = np.stack([self.radius * np.cos(theta), self.radius * np.sin(theta), z], axis=1)
+        object.__setattr__(self, "rigid", _rigid_fit(place, weight, field_))
+
+    @property
+    def count(self) -> int:
+        """Number of modes."""
+        return self.displacements.shape[2]
+
+    @cached_property
+    def stiffness(self) -> np.ndarray:
+        """What resists the modes in the film's object: nothing (k,), the body does it itself."""
+        return np.zeros(self.count)
+
+    def _interpolated(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        values = self.displacements.reshape(len(self.displacements), -1)
+        return (self.faces.interpolation(theta, z) @ values).reshape(len(theta), 3, self.count)
+
+    def held(self) -> ReducedBore:
+        """The same bore with all of its displacement left to the gap: for a frame that doesn't follow."""
+        out = dataclasses.replace(self)
+        object.__setattr__(out, "rigid", np.zeros_like(self.rigid))
+        return out
+
+    def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Radial displacement against the averaged rigid motion at the grid theta x z, shape (len(theta), len(z), k)."""
+        T, Z = np.meshgrid(theta, z, indexing="ij")
+        t, x = T.ravel(), Z.ravel()
+        normal = np.stack([np.cos(t), np.sin(t)], axis=1)
+        u = self._interpolated(t, x)[:, :2]
+        turn = np.stack([self.rigid[4][None] * x[:, None], -self.rigid[3][None] * x[:, None]], axis=1)
+        residual = u - self.rigid[None, :2] - turn
+        return np.ascontiguousarray(np.einsum("pik,pi->pk", residual, normal).reshape(*T.shape, self.count))
+
+
+def quadrature(length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points theta, z (p,) and weights (p,), of sum one, on a bore of this length."""
+    theta = 2.0 * np.pi * np.arange(AROUND) / AROUND - np.pi
+    node, weight = np.polynomial.legendre.leggauss(ALONG)
+    T, Z = np.meshgrid(theta, 0.5 * length * node, indexing="ij")
+    return T.ravel(), Z.ravel(), np.tile(weight, AROUND) / (2.0 * AROUND)
+
+
+def bore_faces(where: str, fem: Any, positions: np.ndarray, chosen: np.ndarray) -> tuple[BoreFaces, np.ndarray]:
+    """Faces of a mesh all of whose nodes are among ``chosen``, and the mesh nodes that they use.
+
+    Parameters
+    ----------
+    where : str
+        For messages.
+    fem : FEMinterface
+    positions : ndarray, shape (n, 3)
+        All nodes, bore frame [m].
+    chosen : ndarray of int
+        Mesh nodes on the bore.
+    """
+    faces = surface_faces(fem)
+    faces = faces[np.isin(faces, chosen).all(axis=1)]
+    if len(faces) == 0:
+        raise InputError(
+            f"{where}: none of the mesh's surface faces has all of its nodes among the {len(chosen)} on the bore; check "
+            "radius_tolerance, and that the FEMinterface is the body's own."
+        )
+    used, local = np.unique(faces, return_inverse=True)
+    return BoreFaces(positions=positions[used], faces=local.reshape(faces.shape)), used
+
+
+def find_bore(
+    where: str,
+    positions: np.ndarray,
+    radius: float,
+    length: float,
+    tolerance: float,
+    nodes: tuple[int, ...] | None = None,
+) -> np.ndarray:
+    """Numbers of the nodes on a bore.
+
+    Parameters
+    ----------
+    where : str
+        For messages.
+    positions : ndarray, shape (n, 3)
+        All nodes in the joint's frame [m].
+    radius, length : float
+        Of the film's area [m].
+    tolerance : float
+        On a node's radius, over the radius.
+    nodes : sequence of int, optional
+        Where to look; by default all.
+
+    Raises
+    ------
+    InputError
+        Too few nodes, or nodes that leave part of the film without support.
+    """
+    r = np.hypot(positions[:, 0], positions[:, 1])
+    if nodes is None:
+        # a little beyond the film: other bores on the same axis don't count
+        member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
+        if member.any():
+            # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
+            member &= r <= r[member].min() + SURFACE * radius
+        chosen = np.flatnonzero(member)
+    else:
+        chosen = np.array(nodes, dtype=int)
+        if chosen.size and (chosen.min() < 0 or chosen.max() >= len(r)):
+            raise InputError(
+                f"{where}: nodes must be mesh nodes 0 to {len(r) - 1}, got {chosen.min()} to {chosen.max()}."
+            )
+    if chosen.size < 12:
+        nearest = np.sort(np.abs(r - radius))[:12].max() / radius if len(r) >= 12 else np.inf
+        raise InputError(
+            f"{where}: {chosen.size} nodes lie on the bore of radius {radius:g} m within {tolerance:g} of it and {0.75 * length:g} m of "
+            f"the mid-plane, at least 12 are needed; the twelve nearest are within {nearest:.2g}. Check position, axis, journal radius and "
+            "units, or raise radius_tolerance."
+        )
+    angle = np.sort(np.arctan2(positions[chosen, 1], positions[chosen, 0]))
+    gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi)).max()
+    if gap > LARGEST_SPACING:
+        raise InputError(
+            f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most {LARGEST_SPACING:g} rad are allowed; give a "
+            "closed bore, or a finer mesh."
+        )
+    z = positions[chosen, 2]
+    if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > BEYOND_END * length:
+        raise InputError(
+            f"{where}: the bore's nodes must span the film, z = -{0.5 * length:g} to {0.5 * length:g} m about the mid-plane, got "
+            f"{z.min():.6g} to {z.max():.6g} m; check position and bearing length."
+        )
+    return chosen
+
+
+def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.ndarray:
+    """Translations and rotations (6, k) that fit displacements (p, 3, k) at places (p, 3) best."""
+    x, y, z = place.T
+    zero, one = np.zeros_like(x), np.ones_like(x)
+    # u = t + phi x r
+    rows = np.stack(
+        [
+            np.stack([one, zero, zero, zero, z, -y], axis=1),
+            np.stack([zero, one, zero, -z, zero, x], axis=1),
+            np.stack([zero, zero, one, y, -x, zero], axis=1),
+        ],
+        axis=1,
+    )
+    normal = np.einsum("p,pia,pib->ab", weight, rows, rows)
+    return np.linalg.solve(normal, np.einsum("p,pia,pik->ak", weight, rows, field_))
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoreModesReport:
+    """What `add_bore_modes` did.
+
+    Parameters
+    ----------
+    added, total : int
+        Modes added, and modes now in the basis.
+    error_before, error : float
+        Error of the bore's displacement under sampled films, as in `ModalBush`, of the basis before and now; 1 where nothing moves.
+    """
+
+    added: int
+    total: int
+    error_before: float
+    error: float
+
+
+def add_bore_modes(
+    fem: Any,
+    *,
+    position: Any,
+    axis: Any,
+    radius: float,
+    length: float,
+    fixed_nodes: Any,
+    tolerance: float = 0.02,
+    tilted: bool = True,
+    radius_tolerance: float = 0.02,
+    nodes: tuple[int, ...] | None = None,
+) -> BoreModesReport:
+    """Add to the mode basis of a ``FEMinterface`` what its bore does under an oil film.
+
+    The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with ``fixed_nodes``
+    held; they are orthogonal in energy to the modes that are there. Call it after the modes of the interfaces
+    (``ComputeHurtyCraigBamptonModes``) and before the ObjectFFRFreducedOrder is made.
+
+    Parameters
+    ----------
+    fem : FEMinterface
+        With nodes, elements, stiffness matrix, and a mode basis or none.
+    position, axis : three numbers
+        Mid-plane point [m] and direction of the bore's axis, in the body's frame.
+    radius, length : float
+        Of the bore under the film [m].
+    fixed_nodes : sequence of int
+        Mesh nodes held: those of the first interface, which carries the body's frame.
+    tolerance, tilted
+        As in `ModalBush`.
+    radius_tolerance, nodes
+        As in `FEBore`.
+
+    Raises
+    ------
+    InputError
+        No bore there, a body that isn't held, or a tolerance that takes more waves than the search allows.
+    """
+    where = "add_bore_modes"
+    point = require_vector(f"{where} position", position, 3, "m")
+    rotation = _any_frame(require_vector(f"{where} axis", axis, 3))
+    radius = require_number(f"{where} radius", radius, "m", above=0.0)
+    length = require_number(f"{where} length", length, "m", above=0.0)
+    tolerance = require_number(f"{where} tolerance", tolerance, at_least=SMALLEST_TOLERANCE)
+    if tolerance > LARGEST_TOLERANCE:
+        raise InputError(f"{where} tolerance must be at most {LARGEST_TOLERANCE:g}, got {tolerance:g}.")
+    place = (np.asarray(fem.nodes["Position"], dtype=float) - point) @ rotation
+    bore = find_bore(where, place, radius, length, radius_tolerance, nodes)
+    fixed = np.unique(np.asarray(fixed_nodes, dtype=int))
+    if fixed.size < 3 or np.isin(fixed, bore).any():
+        raise InputError(
+            f"{where} fixed_nodes must be three nodes or more off the bore that hold the body, got {fixed.size}, "
+            f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your mode basis."
+        )
+    faces, bore = bore_faces(where, fem, place, bore)
+    H, weight, theta, zeta = _radial_map(faces, length, rotation)
+    pressures, orders = candidate_pressures(tilted)
+    area = weight * (2.0 * np.pi * radius * length)
+    fields = np.stack([p(theta, zeta) * area for p in [*pressures, *sample_pressures(tilted)]], axis=1)
+    coordinates = (3 * bore[:, None] + np.arange(3)).ravel()
+    K = csr_matrix(fem.stiffnessMatrix)
+    loads = np.zeros((K.shape[0], fields.shape[1]))
+    loads[coordinates] = H.T @ fields
+    solutions = _solve_held(K, fixed, loads)
+    # rows scaled such that the norm is the mean square over the film's area
+    observe = diags(np.sqrt(weight)) @ H
+    radial = (observe @ solutions[coordinates]).T
+    compliance = solutions.T @ loads
+    chosen, _ = enough_modes(compliance, radial, orders, tolerance, tilted)
+    coefficients = orthogonal_modes(compliance[np.ix_(chosen, chosen)], radial[chosen])
+    modes = solutions[:, chosen] @ coefficients.T
+    modes /= np.abs(H @ modes[coordinates]).max(axis=0)
+    old = np.asarray(fem.modeBasis["matrix"], dtype=float) if len(fem.modeBasis) else np.zeros((K.shape[0], 0))
+    modes = _beyond(K, old, modes)
+    basis = np.hstack([old, modes])
+    samples = slice(len(orders), None)
+    error_before, error = (
+        _error(K, B, loads[:, samples], observe, coordinates, radial[samples].T) for B in (old, basis)
+    )
+    fem.modeBasis = {"matrix": basis, "type": fem.modeBasis.get("type", "HCBmodes")}
+    return BoreModesReport(added=modes.shape[1], total=basis.shape[1], error_before=error_before, error=error)
+
+
+def _any_frame(axis: np.ndarray) -> np.ndarray:
+    """Columns x, y, z = axis."""
+    size = np.linalg.norm(axis)
+    if not size > 0.0:
+        raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
+    z = axis / size
+    x = np.eye(3)[int(np.argmin(np.abs(z)))]
+    x = x - z * (z @ x)
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _radial_map(
+    faces: BoreFaces, length: float, rotation: np.ndarray
+) -> tuple[csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
+    """Map H (p, 3 n) from bore nodes' displacements in the body's frame to radial ones at quadrature points; weights, theta, zeta."""
+    theta, z, weight = quadrature(length)
+    S = faces.interpolation(theta, z).tocoo()
+    normal = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1) @ rotation.T
+    values = S.data[:, None] * normal[S.row]
+    rows, columns = np.repeat(S.row, 3), (3 * S.col[:, None] + np.arange(3)).ravel()
+    H = csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
+    return H, weight, theta, 2.0 * z / length
+
+
+def _solve_held(K: csr_matrix, fixed: np.ndarray, loads: np.ndarray) -> np.ndarray:
+    free = np.ones(K.shape[0], dtype=bool)
+    free[(3 * fixed[:, None] + np.arange(3)).ravel()] = False
+    solutions = np.zeros_like(loads)
+    try:
+        factor = splu(
+            K[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+        solutions[free] = factor.solve(np.ascontiguousarray(loads[free]))
+    except RuntimeError as error:
+        raise InputError(
+            f"add_bore_modes fixed_nodes don't hold the body: its stiffness is singular ({error})."
+        ) from None
+    return solutions
+
+
+def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:
+    """New modes without what the old ones can do, orthogonal in energy to them; those with nothing left are dropped."""
+    if old.shape[1] == 0:
+        return new
+    energy = np.einsum("ij,ij->j", new, K @ new)
+    rest = new - old @ np.linalg.lstsq(old.T @ (K @ old), old.T @ (K @ new), rcond=None)[0]
+    return rest[:, np.einsum("ij,ij->j", rest, K @ rest) > NEW_ENERGY * energy]
+
+
+def _error(
+    K: csr_matrix, basis: np.ndarray, loads: np.ndarray, observe: csr_matrix, coordinates: np.ndarray, exact: np.ndarray
+) -> float:
+    """Largest error of the bore's displacement in a basis (3 n, k) under loads, over the displacement."""
+    if basis.shape[1] == 0:
+        return 1.0
+    q = np.linalg.lstsq(basis.T @ (K @ basis), basis.T @ loads, rcond=None)[0]
+    shown = observe @ (basis[coordinates] @ q)
+    return float((np.linalg.norm(shown - exact, axis=0) / np.linalg.norm(exact, axis=0)).max())
