@@ -130,17 +130,17 @@ def test_rotor_oil_whirl(example, tmp_path):
     # Rayleigh's frequency of disc and 17/35 of the shaft, 74.2 Hz; four linear beams are 5 % too stiff
     assert 74.2 < n["first_bending_Hz"] < 1.06 * 74.2
     # growth in time against the eigenvalues of shaft, K and C; the rotor of one mass leaves out the shaft's own inertia
-    assert n["threshold_simulated_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.01)
-    assert n["threshold_one_mass_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.03)
+    assert n["threshold_simulated_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.003)
+    assert n["threshold_one_mass_Hz"] == pytest.approx(n["threshold_linear_Hz"], rel=0.02)
     assert n["ratio_at_threshold"] == pytest.approx(0.5, abs=0.02)
-    # half-frequency whirl, far above the threshold and below twice the bending frequency
-    assert 0.45 < n["whirl_ratio_lowest"] < n["whirl_ratio_highest"] < 0.5
+    # half-frequency whirl, well above the threshold and below twice the bending frequency
+    assert 0.45 < n["whirl_ratio_lowest"] < n["whirl_ratio_highest"] < 0.505
     # whip: near the bending frequency, and no longer half the spin (a change of 0.5 per Hz)
     assert 0.9 * n["first_bending_Hz"] < n["whip_Hz"] < n["first_bending_Hz"]
-    assert n["whip_ratio"] < 0.47 and n["whip_change_per_Hz"] < 0.3
-    # the shaft bends by several clearances of 0.12 mm, the journals stay inside theirs
-    assert n["largest_disc_amplitude_mm"] > 0.6
-    assert n["largest_eccentricity_ratio"] < 0.97 and n["smallest_film_um"] > 0.5
+    assert n["whip_ratio"] < 0.485 and n["whip_change_per_Hz"] < 0.35
+    # the shaft bends by many clearances of 0.1 mm, the journals stay on their films
+    assert n["largest_disc_amplitude_mm"] > 1.0
+    assert n["largest_eccentricity_ratio"] < 0.99 and n["smallest_film_um"] > 1.0
 
 
 def test_four_bar_spatial(example, tmp_path):

@@ -257,16 +257,20 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
     n, m = gap.shape
     steps = table.shape[0]
     scale = inverse_sigma / TABLE_MIDDLE
+    last = -1.0
+    f = f_h = 0.0
     for i in range(n):
         for j in range(m):
-            y = 1.0 / (1.0 + gap[i, j] * scale)
-            u = y * steps
-            k = min(int(u), steps - 1)
-            u -= k
-            b = table[k, 1]
-            c2 = table[k, 2]
-            c3 = table[k, 3]
-            f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
-            f_h = share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
+            if gap[i, j] != last:  # an aligned journal has one gap per column
+                last = gap[i, j]
+                y = 1.0 / (1.0 + last * scale)
+                u = y * steps
+                k = min(int(u), steps - 1)
+                u -= k
+                b = table[k, 1]
+                c2 = table[k, 2]
+                c3 = table[k, 3]
+                f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
+                f_h = share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
             value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
             value[i, j] *= f

@@ -162,6 +162,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
     i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
     thermal = b.thermal
+    shape = model.shape()
     return Sample(
         speed=math.hypot(g.reference_length * model.omega, model.axial_speed),
         minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
@@ -177,7 +178,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         tilt_loss=tilt_loss(b, model.motion),
         squeeze_share=squeeze_share(b, model.motion),
         deflection=_deflection(model),
-        shape=0.0 if model.extra is None else float(np.ptp(model.extra)) * b.radial_clearance,
+        shape=0.0 if shape is None else float(np.ptp(shape)) * b.radial_clearance,
         columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
         rows=intervals_at_half(pressure[i], int(j)),
     )

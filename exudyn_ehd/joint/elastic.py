@@ -151,6 +151,11 @@ class ElasticBearingModel(BearingModel):
         place, rate = self.bore.displacements(self.coordinates, self.rates)
         self.term.displacement, self.term.rate = place / c, rate / c
 
+    def shape(self) -> np.ndarray | None:
+        """As `BearingModel.shape`: without the bore's displacement."""
+        fields = [field for field in self.gap_fields if field is not self.term.displacement]
+        return np.sum(fields, axis=0) if fields else None
+
     def _add_gap_terms(self, history: History | None) -> None:
         super()._add_gap_terms(history)
         if self.solver.squeeze:

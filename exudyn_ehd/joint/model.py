@@ -538,6 +538,10 @@ class BearingModel:
         """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
         return self.evaluate(motion, history)
 
+    def shape(self) -> np.ndarray | None:
+        """Scaled height of profile and wear (n, m), of undeformed surfaces, at the last evaluation; None for cylinders."""
+        return self.extra
+
     def bore_fields(self) -> dict[str, np.ndarray]:
         """Displacement and coordinates of a flexible bore by name; empty for a rigid one."""
         return {}

@@ -138,6 +138,22 @@ def test_nodal_and_modal_bush_agree_in_a_run():
     assert np.allclose(nodal.peak_pressure, modal.peak_pressure, rtol=0.01)
 
 
+def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():
+    motions, steps = [], 8
+    for own in (False, True):
+        mbs, joint = scene("body", load=0.0)
+        options = settings(steps * 5e-5, steps, tolerance=1e-8)
+        if own:
+            run = ehd.SolveDynamicSparse(mbs, options)
+        else:
+            mbs.SolveDynamic(options)
+            full = mbs.sys["dynamicSolver"].it.newtonStepsCount
+        motions.append(joint.history.motion[:, :4])
+    # both to a relative residual of 1e-8; the iterations of full Newton, and up to one more per step
+    assert abs(motions[1] - motions[0]).max() < 1e-6 * C
+    assert run.iterations <= full + steps
+
+
 def test_a_housing_that_can_not_carry_the_mesh_is_refused_and_the_modal_bush_named():
     mbs = new_system()
     housing = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05), create2D=True)

@@ -202,3 +202,15 @@ def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
     assert eq.eccentricity_ratio > 1.2
     assert eq.film.minimum_gap > 0.0
     assert np.allclose(eq.film.force[:2], (0.0, 20.0), atol=1e-8 * 20.0)
+
+
+def test_the_audit_takes_the_profile_from_the_undeformed_bore():
+    """A soft bush deflects by more than its crown's height: the profile's indicator is that of a rigid bush with the same crown, for
+    the smallest gap of the film at hand; without a crown there is none."""
+    crown = ehd.Crown(drop=1e-6)
+    film = solve(modal(2.1e10), profile=crown)
+    value = film.audit()["profile"].value
+    heights = np.ptp(build_model(make_bearing(None, profile=crown)).effects.gap_terms[0].field(None)) * C
+    assert value == pytest.approx(heights / film.minimum_gap, rel=1e-9)
+    assert film.audit()["elasticity"].value > 2.0 * value
+    assert "profile" not in str(solve(modal(2.1e10)).audit())
