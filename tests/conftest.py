@@ -7,6 +7,9 @@ import sys
 from collections.abc import Callable
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+# the matrices are small: threads of BLAS in every worker only wait for each other
+for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
+    os.environ.setdefault(name, "1")
 
 import pytest
 
