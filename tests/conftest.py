@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 os.environ.setdefault("MPLBACKEND", "Agg")
 # the matrices are small: threads of BLAS in every worker only wait for each other
-for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ.setdefault(name, "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
 
