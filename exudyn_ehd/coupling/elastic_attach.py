@@ -21,6 +21,7 @@ from exudyn_ehd.joint.build import collect_effects
 from exudyn_ehd.joint.bush import displacements_at_rest
 from exudyn_ehd.joint.elastic import ElasticBearingModel
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.reduce import BoreModes
 from exudyn_ehd.status import InputError, Status
 
 # the index types exist at run time, but not in the type stubs
@@ -73,7 +74,8 @@ def attach_bush(
         )
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
-    mass = model.bore.modes.mass
+    modes = model.bore.modes
+    mass = modes.mass if isinstance(modes, BoreModes) else None
     if mass is None and start is not None:
         mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
     return element, {} if mass is None else {"massMatrix": _mass_matrix(element, mass)}
