@@ -197,7 +197,9 @@ def test_thin_eye_on_a_shank_keeps_what_the_film_sees(measured):
     Full mesh against modes under a pressure of its own, (1 - (x / 0.8)^2)^2 over the angle x: error over the deformation beyond two waves,
     0.009. A tolerance over the whole displacement would be met by modes of two waves, with an error of 0.12.
     """
-    mesh = ehd.HollowCylinder(inner_radius=0.03, thickness=0.006, length=0.03, axial=2, radial=1, circumferential=40).mesh()
+    mesh = ehd.HollowCylinder(
+        inner_radius=0.03, thickness=0.006, length=0.03, axial=2, radial=1, circumferential=40
+    ).mesh()
     fem = bodies.fem_of(mesh, material(2.1e11))
     held = mesh.outer.nodes[np.abs(mesh.outer.theta) < 0.3]
     ehd.add_bore_modes(
