@@ -90,7 +90,10 @@ def require_number(
     tail = f"; {hint}" if hint else "."
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
         raise InputError(f"{where} must be a number {expected}, got {value!r}{tail}")
-    number = float(value)
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
     bad = not math.isfinite(number)
     bad = bad or (above is not None and not number > above)
     bad = bad or (at_least is not None and not number >= at_least)
@@ -112,8 +115,17 @@ def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, u
     expected = f"must be {size} finite numbers" + (f" in {unit}" if unit else "")
     try:
         vector = np.array(value, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{where} {expected}, got {value!r}.") from None
     if vector.shape != (size,) or not np.all(np.isfinite(vector)):
         raise InputError(f"{where} {expected}, got {value!r}.")
     return vector
+
+
+def require_size(where: str, value: float | np.ndarray, unit: str, *, smallest: float, largest: float) -> None:
+    """Raise `InputError` if a size is neither 0 nor within limits far beyond any machine, where numbers overflow or vanish."""
+    size = float(np.max(np.abs(value)))
+    if size != 0.0 and not smallest <= size <= largest:
+        raise InputError(
+            f"{where} must be 0 or within {smallest:g} and {largest:g} {unit} in size, got {value!r}; check its unit."
+        )

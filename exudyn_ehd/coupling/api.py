@@ -270,6 +270,7 @@ def CreateLubricatedJoint(
         raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
+    require_vector(f"{_WHERE}.color", color, 4)
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     if mbs.systemIsConsistent:
@@ -409,7 +410,7 @@ def _checked_rotation(matrix: Any) -> np.ndarray:
     where = f"{_WHERE}.rotationMatrixAxes"
     try:
         rotation = np.array(matrix, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         rotation = np.zeros(0)
     if rotation.shape != (3, 3) or not np.all(np.isfinite(rotation)):
         raise InputError(f"{where} must be a rotation matrix (3, 3), got {matrix!r}.")

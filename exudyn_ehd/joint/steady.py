@@ -17,9 +17,11 @@ from exudyn_ehd.joint.fields import grid_fields
 from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.joint.settle import settle
 from exudyn_ehd.pictures.methods import FilmPictures
-from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
 
 LARGEST_LOAD_STEPS = 100
+SPEEDS = {"smallest": 1e-30, "largest": 1e6}
+LOADS = {"smallest": 1e-30, "largest": 1e15}
 LARGEST_CREEP_STEPS = 300
 STEP_HALVINGS = 8
 LOAD_TOLERANCE = 1e-10
@@ -159,6 +161,9 @@ def steady(
     v = require_vector("steady: velocity", velocity, 2, "m/s")
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
+    require_size("steady: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("steady: velocity", v, "m/s", **SPEEDS)
+    require_size("steady: axial_speed", w, "m/s", **SPEEDS)
     require_oil(bearing, "steady", w)
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
@@ -311,8 +316,10 @@ def equilibrium(
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
     size = float(np.hypot(*force))
-    if size == 0.0 or omega == 0.0:
+    if size == 0.0 or omega * bearing.journal_radius == 0.0:
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("equilibrium: load", size, "N", **LOADS)
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "equilibrium")

@@ -59,6 +59,14 @@ class ANCFBush:
                 f"ANCFBush.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
                 "own mesh with mesh_from_fem or mesh_from_arrays."
             )
+        if not isinstance(self.material, SaintVenantKirchhoff):
+            raise InputError(f"ANCFBush.material must be a SaintVenantKirchhoff(...), got {self.material!r}.")
+        if not isinstance(self.quadrature, Quadrature):
+            raise InputError(f"ANCFBush.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
+        if not isinstance(self.damping, Rayleigh | None):
+            raise InputError(f"ANCFBush.damping must be a Rayleigh(...) or None, got {self.damping!r}.")
+        if not isinstance(self.parallel, bool):
+            raise InputError(f"ANCFBush.parallel must be True or False, got {self.parallel!r}.")
 
     def build_mesh(self) -> BushMesh:
         """Return the mesh, bush frame."""

@@ -1,0 +1,143 @@
+"""Any value in any field of a public description builds, or raises the documented error that names the argument."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+import math
+import warnings
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import exudyn_ehd as ehd
+
+OIL = ehd.Lubricant(viscosity=0.02)
+MESH = ehd.HollowCylinder(inner_radius=0.02, thickness=0.01, length=0.02, axial=2, radial=1, circumferential=8)
+STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+# One good example of every public description.
+GOOD = [
+    ehd.JournalBearing(journal_radius=0.02, length=0.02, radial_clearance=2e-5, lubricant=OIL),
+    ehd.Lubricant(viscosity=0.02, temperature=310.0),
+    ehd.FiniteLength(),
+    ehd.ShortBearing(),
+    ehd.LongBearing(),
+    ehd.ImpedanceMap(),
+    ehd.ClassicSOR(),
+    ehd.Gumbel(),
+    ehd.SwiftStieber(),
+    ehd.ElrodAdams(),
+    ehd.RegularisedWall(onset=1e-6),
+    ehd.GreenwoodTripp(composite_roughness=4e-7, composite_modulus=1e11),
+    ehd.PatirCheng(composite_roughness=4e-7),
+    ehd.ArchardWear(wear_rate=1e-16),
+    ehd.AxialGroove(angle=0.3, width_angle=0.5),
+    ehd.CircumferentialGroove(width=2e-3),
+    ehd.Hole(angle=0.3, diameter=3e-3),
+    ehd.Pocket(angle=0.3, width_angle=0.5, length=5e-3),
+    ehd.LumpedThermal(supply_temperature=313.0),
+    ehd.FilmEnergy(supply_temperature=313.0),
+    ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9),
+    ehd.BarusPressure(coefficient=2e-8),
+    ehd.RoelandsPressure(coefficient=2e-8),
+    ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2),
+    ehd.DowsonHigginson(),
+    ehd.OutOfRound(amplitude=1e-6, order=2),
+    ehd.Crown(drop=1e-6),
+    ehd.EdgeRelief(drop=1e-6, relief_length=2e-3),
+    ehd.AxialProfile(positions=(-0.01, 0.01), depths=(0.0, 1e-6)),
+    ehd.VogelTemperature(first=(313.0, 0.04), second=(373.0, 0.006)),
+    ehd.WaltherTemperature(first=(313.0, 0.04), second=(373.0, 0.006)),
+    ehd.ReynoldsTemperature(point=(313.0, 0.04), coefficient=0.03),
+    ehd.StepControl(),
+    ehd.FactorReuse(),
+    ehd.Rayleigh(),
+    ehd.HollowCylinder(inner_radius=0.02, thickness=0.01, length=0.02, axial=2, radial=1, circumferential=8),
+    STEEL,
+    ehd.ModalBush(mesh=MESH, material=STEEL),
+    ehd.ANCFBush(mesh=MESH, material=STEEL),
+]
+NUMBERS = st.one_of(
+    st.floats(),
+    st.sampled_from(
+        [0, -1, 1, 1e-300, 1e300, math.inf, -math.inf, math.nan, 5e-324, np.float64(0.5), np.int64(3), 10**400]
+    ),
+    st.integers(-5, 2000),
+)
+ANYTHING = st.one_of(
+    NUMBERS,
+    st.none(),
+    st.booleans(),
+    st.text(max_size=5),
+    st.tuples(NUMBERS, NUMBERS),
+    st.lists(NUMBERS, max_size=3),
+    st.sampled_from([OIL, ehd.SwiftStieber, ehd.SwiftStieber(), object(), {}, np.zeros(2), np.zeros((2, 2)), 1j, b"x"]),
+)
+SETTINGS = {"deadline": None, "suppress_health_check": list(HealthCheck), "derandomize": True, "database": None}
+
+
+def attempt(make):
+    """Call; any error must be the documented one. Returns what was built, or None."""
+    with warnings.catch_warnings():
+        # clearances outside the usual range warn
+        warnings.simplefilter("ignore", UserWarning)
+        try:
+            return make()
+        except ehd.InputError as error:
+            return error
+
+
+def check_replaced(good, name, value):
+    built = attempt(lambda: dataclasses.replace(good, **{name: value}))
+    if isinstance(built, ehd.InputError):
+        text = str(built)
+        # the message names class or argument, or the other one that it clashes with, and says more than that
+        assert type(good).__name__ in text or name in text, text
+        assert len(text) > 30
+    else:
+        # what was accepted can be written down, compared and changed again
+        assert repr(built)
+        for field in dataclasses.fields(built):
+            got = getattr(built, field.name)
+            if isinstance(got, float):
+                assert math.isfinite(got) or got == getattr(good, field.name), (field.name, got)
+
+
+def _fields():
+    for good in GOOD:
+        for field in dataclasses.fields(good):
+            yield pytest.param(good, field.name, id=f"{type(good).__name__}.{field.name}")
+
+
+FIELDS = list(_fields())
+
+
+@pytest.mark.parametrize(("good", "name"), FIELDS)
+@settings(max_examples=12, **SETTINGS)
+@given(value=ANYTHING)
+def test_any_value_in_any_field(good, name, value):
+    check_replaced(good, name, value)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("good", "name"), FIELDS)
+@settings(max_examples=300, **SETTINGS)
+@given(value=ANYTHING)
+def test_many_values_in_any_field(good, name, value):
+    check_replaced(good, name, value)
+
+
+# made of a mesh's own surfaces and lines
+OF_A_MESH = {"DeadPressure", "FollowerPressure", "LineLoad", "SurfaceLoad", "Support", "ProfileTable"}
+
+
+def test_every_public_description_takes_part():
+    public = {getattr(ehd, name) for name in ehd.__all__}
+    specs = {
+        c for c in public
+        if inspect.isclass(c) and dataclasses.is_dataclass(c) and c.__dataclass_params__.frozen and hasattr(c, "__post_init__")
+    }  # fmt: skip
+    missing = specs - {type(good) for good in GOOD}
+    assert {c.__name__ for c in missing} <= OF_A_MESH
