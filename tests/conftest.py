@@ -7,6 +7,9 @@ import sys
 from collections.abc import Callable
 
 os.environ.setdefault("MPLBACKEND", "Agg")
+# the matrices are small: threads of BLAS in every worker only wait for each other
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import pytest
 

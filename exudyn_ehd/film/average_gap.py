@@ -60,17 +60,23 @@ def average_gap(H, sigma, residual, slope_out, curvature_out):
     n, m = H.shape
     limit = SMOOTH_BEYOND * sigma
     inverse = 1.0 / sigma
+    last = math.nan
+    mean = share = curvature = 0.0
     for i in range(n):
         for j in range(m):
             h = H[i, j]
             if h > limit:
                 slope_out[i, j] = 1.0
                 curvature_out[i, j] = 0.0
-            else:
+                continue
+            if h != last:  # an aligned journal has one gap per column
+                last = h
                 y = h * inverse - residual
                 density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
                 # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
                 share = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
-                H[i, j] = sigma * (residual + max(y * share + density, 0.0))
-                slope_out[i, j] = share
-                curvature_out[i, j] = density * inverse
+                mean = sigma * (residual + max(y * share + density, 0.0))
+                curvature = density * inverse
+            H[i, j] = mean
+            slope_out[i, j] = share
+            curvature_out[i, j] = curvature

@@ -1,9 +1,11 @@
-"""Integrals of contact pressures and of shear between rough surfaces, with gradients; chain rule through a gap limiter.
+"""Wrench of contact pressures with its gradient, shear between rough surfaces; chain rule through a gap limiter.
 
 Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z (m,); basis e = (cos, sin, z cos, z sin, 1).
 """
 
 from __future__ import annotations
+
+import math
 
 from numba import njit
 
@@ -11,10 +13,27 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, fastmath=_FAST)
-def contact_integrals(P, weight, cos_x, sin_x, z, out):
-    """sum P weight e -> out (5,)."""
+def contact_wrench(P, weight, cos_x, sin_x, z, motion, friction, transition, R, integrals_out, drag_out, wrench):
+    """Integrals ``sum P weight e`` of one contact's pressures, their wrench and that of their Coulomb friction.
+
+    The pressures do no work on the journal's spin, so that their torque about O is e x F; friction acts at the bore's points against the
+    slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
+
+    Parameters
+    ----------
+    P, weight : (n, m) arrays
+        Contact pressure, Pa, and integration weights.
+    motion : (10,) array
+        Of the journal, SI units; pose and speeds are read.
+    friction, transition, R : float
+        Friction coefficient, v0 (m/s) and journal radius (m).
+    integrals_out : (5,) array
+        Overwritten.
+    drag_out, wrench : (6,) arrays
+        Friction is added to both, the pressures to ``wrench``; N and Nm about O.
+    """
     n, m = P.shape
-    out[:] = 0.0
+    sc = ss = szc = szs = sn = 0.0
     for i in range(n):
         s0 = 0.0
         s1 = 0.0
@@ -22,18 +41,44 @@ def contact_integrals(P, weight, cos_x, sin_x, z, out):
             pw = P[i, j] * weight[i, j]
             s0 += pw
             s1 += pw * z[j]
-        out[0] += s0 * cos_x[i]
-        out[1] += s0 * sin_x[i]
-        out[2] += s1 * cos_x[i]
-        out[3] += s1 * sin_x[i]
-        out[4] += s0
+        sc += s0 * cos_x[i]
+        ss += s0 * sin_x[i]
+        szc += s1 * cos_x[i]
+        szs += s1 * sin_x[i]
+        sn += s0
+    integrals_out[0], integrals_out[1], integrals_out[2], integrals_out[3], integrals_out[4] = sc, ss, szc, szs, sn
+    if sn == 0.0:
+        return
+    area = R * R
+    wrench[0] -= area * sc
+    wrench[1] -= area * ss
+    wrench[3] += area * R * szs
+    wrench[4] -= area * R * szc
+    wrench[5] += area * (motion[1] * sc - motion[0] * ss + R * (motion[3] * szc - motion[2] * szs))
+    if friction == 0.0:
+        return
+    v = R * motion[8]
+    w = motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a = friction * area * v / size
+    b = friction * area * w / size
+    drag = (a * ss, -a * sc, -b * sn, R * (a * szc - b * ss), R * (a * szs + b * sc), -a * R * sn)
+    for r in range(6):
+        drag_out[r] += drag[r]
+        wrench[r] += drag[r]
 
 
 @njit(cache=True, fastmath=_FAST)
-def contact_gradients(slope, weight, cos_x, sin_x, z, out):
-    """Gradients of the integrals to the scaled pose, ``-sum slope weight e (cos, sin, z cos, z sin)`` -> out (5, 4)."""
+def contact_tangent(
+    slope, weight, cos_x, sin_x, z, motion, pose_scale, friction, transition, R, integrals, grads_out, tangent
+):
+    """Add d(wrench of `contact_wrench`) / d(motion) to ``tangent`` (6, 10), from the ``slope`` (n, m) of the pressure with the scaled gap.
+
+    ``grads_out`` (5, 4): gradients ``-sum slope weight e (cos, sin, z cos, z sin)`` of the ``integrals`` (5,) to the scaled pose.
+    """
     n, m = slope.shape
-    out[:] = 0.0
+    G = grads_out
+    G[:] = 0.0
     for i in range(n):
         s0 = 0.0
         s1 = 0.0
@@ -47,25 +92,67 @@ def contact_gradients(slope, weight, cos_x, sin_x, z, out):
             continue
         c = cos_x[i]
         s = sin_x[i]
-        out[0, 0] -= s0 * c * c
-        out[0, 1] -= s0 * c * s
-        out[1, 1] -= s0 * s * s
-        out[2, 0] -= s1 * c * c
-        out[2, 1] -= s1 * c * s
-        out[3, 1] -= s1 * s * s
-        out[2, 2] -= s2 * c * c
-        out[2, 3] -= s2 * c * s
-        out[3, 3] -= s2 * s * s
-        out[4, 0] -= s0 * c
-        out[4, 1] -= s0 * s
-        out[4, 2] -= s1 * c
-        out[4, 3] -= s1 * s
-    out[1, 0] = out[0, 1]
-    out[3, 0] = out[2, 1]
-    out[0, 2] = out[2, 0]
-    out[0, 3] = out[1, 2] = out[2, 1]
-    out[1, 3] = out[3, 1]
-    out[3, 2] = out[2, 3]
+        G[0, 0] -= s0 * c * c
+        G[0, 1] -= s0 * c * s
+        G[1, 1] -= s0 * s * s
+        G[2, 0] -= s1 * c * c
+        G[2, 1] -= s1 * c * s
+        G[3, 1] -= s1 * s * s
+        G[2, 2] -= s2 * c * c
+        G[2, 3] -= s2 * c * s
+        G[3, 3] -= s2 * s * s
+        G[4, 0] -= s0 * c
+        G[4, 1] -= s0 * s
+        G[4, 2] -= s1 * c
+        G[4, 3] -= s1 * s
+    G[1, 0] = G[0, 1]
+    G[3, 0] = G[2, 1]
+    G[0, 2] = G[2, 0]
+    G[0, 3] = G[1, 2] = G[2, 1]
+    G[1, 3] = G[3, 1]
+    G[3, 2] = G[2, 3]
+    sc, ss, szc, szs, sn = integrals[0], integrals[1], integrals[2], integrals[3], integrals[4]
+    v = R * motion[8]
+    w = motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a = v / size
+    b = w / size
+    for q in range(4):
+        scale = R * R * pose_scale[q]
+        gc, gs, gzc, gzs, gn = G[0, q] * scale, G[1, q] * scale, G[2, q] * scale, G[3, q] * scale, G[4, q] * scale
+        tangent[0, q] += friction * a * gs - gc
+        tangent[1, q] -= friction * a * gc + gs
+        tangent[2, q] -= friction * b * gn
+        tangent[3, q] += R * (gzs + friction * (a * gzc - b * gs))
+        tangent[4, q] += R * (friction * (a * gzs + b * gc) - gzc)
+        tangent[5, q] += motion[1] * gc - motion[0] * gs + R * (motion[3] * gzc - motion[2] * gzs - friction * a * gn)
+    area = R * R
+    tangent[5, 0] -= area * ss
+    tangent[5, 1] += area * sc
+    tangent[5, 2] -= area * R * szs
+    tangent[5, 3] += area * R * szc
+    # the slip (a, b) with omega and with the axial speed
+    scale = friction * area / size
+    for q, at, bt in ((8, (1.0 - a * a) * R, -a * b * R), (9, -a * b, 1.0 - b * b)):
+        at *= scale
+        bt *= scale
+        tangent[0, q] += at * ss
+        tangent[1, q] -= at * sc
+        tangent[2, q] -= bt * sn
+        tangent[3, q] += R * (at * szc - bt * ss)
+        tangent[4, q] += R * (at * szs + bt * sc)
+        tangent[5, q] -= at * R * sn
+
+
+@njit(cache=True, fastmath=_FAST)
+def chain_links(slope, curvature, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
+    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place, ``curvature`` as in `chain_limiter`."""
+    n, m = slope.shape
+    for i in range(n):
+        for j in range(m):
+            DX[i, j] *= face_slope[i, j]
+            gap_out[i, j] = by_gap[i, j] * slope[i, j] + by_rate[i, j] * curvature[i, j]
+            rate_out[i, j] = by_rate[i, j] * slope[i, j]
 
 
 @njit(cache=True)

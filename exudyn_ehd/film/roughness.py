@@ -255,22 +255,33 @@ class RoughShear:
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
     """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)); in place."""
     n, m = gap.shape
-    steps = table.shape[0]
     scale = inverse_sigma / TABLE_MIDDLE
-    last = -1.0
-    f = f_h = 0.0
     for i in range(n):
-        for j in range(m):
-            if gap[i, j] != last:  # an aligned journal has one gap per column
-                last = gap[i, j]
-                y = 1.0 / (1.0 + last * scale)
-                u = y * steps
-                k = min(int(u), steps - 1)
-                u -= k
-                b = table[k, 1]
-                c2 = table[k, 2]
-                c3 = table[k, 3]
-                f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
-                f_h = share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
-            value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
-            value[i, j] *= f
+        uniform = True
+        for j in range(1, m):
+            uniform &= gap[i, j] == gap[i, 0]
+        if uniform:  # an aligned journal has one gap per column
+            f, f_h = _table_factor(gap[i, 0], scale, table, base, share)
+            for j in range(m):
+                value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
+                value[i, j] *= f
+        else:
+            for j in range(m):
+                f, f_h = _table_factor(gap[i, j], scale, table, base, share)
+                value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
+                value[i, j] *= f
+
+
+@njit(cache=True, fastmath=_FAST, inline="always")
+def _table_factor(gap, scale, table, base, share):
+    """(f, df/dgap) of `multiply_by_table`."""
+    steps = table.shape[0]
+    y = 1.0 / (1.0 + gap * scale)
+    u = y * steps
+    k = min(int(u), steps - 1)
+    u -= k
+    b = table[k, 1]
+    c2 = table[k, 2]
+    c3 = table[k, 3]
+    f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
+    return f, share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)

@@ -8,6 +8,7 @@ q and q_t, which costs as much as one of them.
 
 from __future__ import annotations
 
+import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,6 @@ from exudyn_ehd.film.stencil import gap_stencil, motion_columns, transposed_slop
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
-    friction_rows,
     shear_needs_adjoint,
     swept_derivatives,
     wrench_tangent,
@@ -229,3 +229,12 @@ def _add_contact_motion(model: ElasticBearingModel, block: np.ndarray) -> None:
 def _add_contact_loads(model: ElasticBearingModel, block: np.ndarray, by_gap: float) -> None:
     """Add ``by_gap`` times the gradient of the contacts' part of the bore's loads to q, (k, k)."""
     block += model.bore.product(contact_slope(model)) * (by_gap / model.bearing.radial_clearance)
+
+
+@functools.cache
+def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
+    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
+    theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
+    theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
+    axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R
+    return theta, axial

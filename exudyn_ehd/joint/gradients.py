@@ -7,12 +7,11 @@ two more for their slopes.
 
 from __future__ import annotations
 
-import functools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.contact_loads import chain_limiter, contact_gradients, couette_gradient_ratio
+from exudyn_ehd.film.contact_loads import chain_limiter, chain_links, contact_tangent, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
@@ -21,7 +20,6 @@ from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradien
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
-    from exudyn_ehd.joint.effects import Contact
     from exudyn_ehd.joint.model import BearingModel, ContactFields
 
 SIZE = 10
@@ -101,10 +99,9 @@ def swept_derivatives(model: BearingModel) -> tuple[LinkDerivatives, np.ndarray,
     by_rate, by_gap = s.storage_weights()
     slope, f = s.ones, model.limiter_fields
     if f is not None:
-        d.DX *= f.face_slope
         slope = f.slope
-        by_gap = by_gap * f.slope + by_rate * f.curvature
-        by_rate = by_rate * f.slope
+        chain_links(slope, f.curvature, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
+        by_rate, by_gap = f.by_rate, f.by_gap
     return d, slope, by_rate, by_gap
 
 
@@ -212,37 +209,12 @@ def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
 def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
     """Add the gradient of the contacts' wrench, pressures and friction, to ``out`` (6, 10), SI units."""
     g, R = model.grid, model.grid.reference_length
-    if not f.integrals[:, 4].any():
-        return
-    grads = np.empty((5, 4))
-    total = np.zeros((5, 4))
-    for k, contact in enumerate(model.effects.contacts):
-        contact_gradients(f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, grads)
-        total += grads
-        if contact.friction_coefficient > 0.0:
-            _add_friction(model, contact, grads, f.integrals[k], out)
-    gc, gs, gzc, gzs, _ = total * (R**2 * model.pose_scale)
-    sc, ss, szc, szs, _ = f.integrals.sum(axis=0) * R**2
-    x, y, bx, by = model.motion[:4].tolist()
-    out[0, :4] -= gc
-    out[1, :4] -= gs
-    out[3, :4] += R * gzs
-    out[4, :4] -= R * gzc
-    out[5, :4] += y * gc - x * gs + R * (by * gzc - bx * gzs) + (-ss, sc, -R * szs, R * szc)
-
-
-def _add_friction(
-    model: BearingModel, contact: Contact, grads: np.ndarray, integrals: np.ndarray, out: np.ndarray
-) -> None:
-    """Add the gradient of one contact's friction; ``grads`` (5, 4) of its ``integrals`` (5,), Pa, to the scaled pose."""
-    R = model.grid.reference_length
-    scale = contact.friction_coefficient * R**2
-    g_theta, g_z, dg = model.slip(contact)
-    theta, axial = friction_rows(R)
-    out[:, :4] += (g_theta * theta + g_z * axial) @ (grads * (scale * model.pose_scale))
-    along, across = scale * (theta @ integrals), scale * (axial @ integrals)
-    out[:, 8] += along * dg[0, 0] + across * dg[1, 0]
-    out[:, 9] += along * dg[0, 1] + across * dg[1, 1]
+    for k, (friction, transition) in enumerate(f.friction):
+        if f.integrals[k, 4] != 0.0:
+            contact_tangent(
+                f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, model.motion, model.pose_scale, friction, transition, R,
+                f.integrals[k], f.gradients, out,
+            )  # fmt: skip
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:
@@ -256,12 +228,3 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
     out = np.zeros((1, 4))
     contract_pose(field, model.cos_x, model.sin_x, model.grid.z, out)
     return out[0]
-
-
-@functools.cache
-def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
-    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
-    theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
-    theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
-    axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R
-    return theta, axial

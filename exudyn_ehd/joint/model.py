@@ -21,7 +21,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.choice import film_grid, film_solver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.contact_loads import contact_integrals, couette_integral_law
+from exudyn_ehd.film.contact_loads import contact_wrench, couette_integral_law
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
 from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
@@ -138,6 +138,8 @@ class ContactFields:
         self.P = [np.zeros(shape) for _ in contacts]
         self.slope = [np.zeros(shape) for _ in contacts]
         self.integrals = np.zeros((len(contacts), 5))
+        self.gradients = np.zeros((5, 4))
+        self.friction = [(float(c.friction_coefficient), float(c.transition_speed)) for c in contacts]
 
 
 class LimiterFields:
@@ -146,6 +148,7 @@ class LimiterFields:
     def __init__(self, shape: tuple[int, int]) -> None:
         self.slope, self.curvature = np.zeros(shape), np.zeros(shape)
         self.face_slope, self.face_curvature = np.zeros(shape), np.zeros(shape)
+        self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 
 class BearingModel:
@@ -453,8 +456,6 @@ class BearingModel:
             self.extra_z += (
                 math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
             )
-        if self.contact_fields is not None:
-            self._contact_loads(self.contact_fields)
         self.couette, self.couette_unbroken = self._couette()
         x, y, bx, by = self.pose
         sc, ss, szc, szs = self.integrals
@@ -481,23 +482,12 @@ class BearingModel:
 
     def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
         """Add the contacts' pressures and friction to ``wrench`` (6,); their friction stays in ``contact_wrench``."""
-        if not f.integrals[:, 4].any():
-            return
-        self._add_contact_friction(f)
-        wrench += self.contact_wrench + self._contact_normal_wrench(f)
-
-    def _contact_normal_wrench(self, f: ContactFields) -> np.ndarray:
-        """Wrench (6,) of the contact pressures: they do no work on the journal's spin, so that their torque about O is e x F."""
-        R = self.grid.reference_length
-        sc, ss, szc, szs, _ = (f.integrals.sum(axis=0) * R**2).tolist()
-        x, y, bx, by = self.motion[:4].tolist()
-        return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
-
-    def _contact_loads(self, f: ContactFields) -> None:
-        """Integrals of the contact pressures, in Pa."""
-        g = self.grid
-        for k in range(len(f.P)):
-            contact_integrals(f.P[k], g.weight, self.cos_x, self.sin_x, g.z, f.integrals[k])
+        g, R = self.grid, self.grid.reference_length
+        for k, (friction, transition) in enumerate(f.friction):
+            contact_wrench(
+                f.P[k], g.weight, self.cos_x, self.sin_x, g.z, self.motion, friction, transition, R, f.integrals[k],
+                self.contact_wrench, wrench,
+            )  # fmt: skip
 
     def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
         """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
@@ -507,23 +497,6 @@ class BearingModel:
         a, b = v / size, w / size
         slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
         return a, b, slope
-
-    def _add_contact_friction(self, f: ContactFields) -> None:
-        """Coulomb friction of the contacts at the bore's points: force against the slip, with its lever arms."""
-        R = self.grid.reference_length
-        for k, contact in enumerate(self.effects.contacts):
-            if contact.friction_coefficient == 0.0:
-                continue
-            g_theta, g_z, _ = self.slip(contact)
-            c, s, zc, zs, n = (f.integrals[k] * (contact.friction_coefficient * R**2)).tolist()
-            self.contact_wrench += (
-                g_theta * s,
-                -g_theta * c,
-                -g_z * n,
-                R * (g_theta * zc - g_z * s),
-                R * (g_theta * zs + g_z * c),
-                -g_theta * R * n,
-            )
 
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10) of the last evaluation; nan without a film.

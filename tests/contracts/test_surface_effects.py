@@ -124,7 +124,7 @@ def test_absent_effects_change_no_bit_and_call_nothing(closure, monkeypatch):
 
     for module, names in (
         (asperity, ["asperity_pressure", "contact_table"]), (average_gap, ["average_gap"]),
-        (contact_loads, ["contact_integrals", "contact_gradients", "chain_limiter", "couette_integral_law"]),
+        (contact_loads, ["contact_wrench", "contact_tangent", "chain_limiter", "chain_links", "couette_integral_law"]),
         (liner, ["solve_liner", "deformed_film", "factor_liner"]), (profile, ["ProfileTerm"]),
         (roughness, ["multiply_by_table", "flow_tables"]), (wear, ["WearDepth"]),
     ):  # fmt: skip

@@ -117,7 +117,7 @@ def test_step_beyond_the_limit_raises(solver):
     step = 1.1 * LIMITS[solver] * MASS / largest_damping(load)
     at = ehd.equilibrium(BEARING, speed=SPIN, load=load).position
     mbs, joint = rotor(load, at)
-    with pytest.raises(ehd.FilmError, match="'pin' at t = .* explicit solver's step .* smaller steps") as caught:
+    with pytest.raises(ehd.FilmError, match=r"'pin' at t = .* explicit solver's step .* smaller steps") as caught:
         run(mbs, 1000 * step, step, solver)
     text = str(caught.value)
     assert "eccentricity ratio" in text and "implicit" in text and "N s/m" in text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.oils import ISO_GRADES, SAE_GRADES
+from exudyn_ehd.film.oils import ISO_GRADES, MULTIGRADES, SAE_GRADES
 
 T40, T100 = 313.15, 373.15
 
@@ -48,7 +48,70 @@ def test_iso_grades_meet_their_mid_point(name):
     assert oil.at(T100).viscosity / oil.density * 1e6 == pytest.approx(ISO_GRADES[name][1], rel=1e-12)
 
 
-# SAE J300: kinematic viscosity at 100 degrees Celsius in mm2/s.
+# ISO 3448: limits at 40 degrees Celsius, 10 % around the mid-point, in mm2/s.
+ISO_3448 = {
+    "ISO VG 22": (19.8, 24.2),
+    "ISO VG 32": (28.8, 35.2),
+    "ISO VG 46": (41.4, 50.6),
+    "ISO VG 68": (61.2, 74.8),
+    "ISO VG 100": (90.0, 110.0),
+    "ISO VG 150": (135.0, 165.0),
+    "ISO VG 220": (198.0, 242.0),
+    "ISO VG 320": (288.0, 352.0),
+    "ISO VG 460": (414.0, 506.0),
+}
+
+
+def test_iso_grades_lie_in_the_standard_limits():
+    assert ISO_3448.keys() == ISO_GRADES.keys()
+    for name, (low, high) in ISO_3448.items():
+        oil = ehd.oil(name)
+        assert low < 1e6 * oil.viscosity / oil.density < high
+
+
+# SAE J300 (2015), high-temperature grades: kinematic viscosity at 100 degrees Celsius in mm2/s.
+J300_HOT = {"20": (6.9, 9.3), "30": (9.3, 12.5), "40": (12.5, 16.3), "50": (16.3, 21.9)}
+# Another oil of the grade: nu at 40 and at 100 degrees Celsius in mm2/s. 10W-40: mean of five oils tested by the Petroleum Quality Institute
+# of America, May 2016; 5W-30: SBK Diamond 7000; the others: Casstek (makers' data sheets).
+OTHER_OILS = {
+    "SAE 0W-20": (47.6, 8.6),
+    "SAE 5W-30": (60.4, 9.8),
+    "SAE 10W-40": (102.3, 14.85),
+    "SAE 15W-40": (116.0, 15.2),
+    "SAE 20W-50": (172.0, 19.5),
+}
+
+
+@pytest.mark.parametrize("name", list(MULTIGRADES))
+def test_multigrades_lie_in_their_class_and_near_other_oils_of_it(name):
+    oil = ehd.oil(name)
+    nu40, nu100 = (1e6 * oil.at(T).viscosity / oil.density for T in (T40, T100))
+    assert (nu40, nu100) == pytest.approx(MULTIGRADES[name][:2], rel=1e-12)
+    low, high = J300_HOT[name.split("-")[-1]]
+    assert low <= nu100 < high
+    # oils of one grade differ by that much
+    assert (nu40, nu100) == pytest.approx(OTHER_OILS[name], rel=0.1)
+
+
+def test_multigrades_thin_less_with_temperature_than_single_grades():
+    for multi, single in (("SAE 5W-30", "SAE 30"), ("SAE 10W-40", "SAE 40"), ("SAE 20W-50", "SAE 50")):
+        thinning = [ehd.oil(name).viscosity / ehd.oil(name, temperature=T100).viscosity for name in (multi, single)]
+        assert thinning[0] < 0.8 * thinning[1]
+
+
+# Mobil Delvac 1330, 1340, 1350 (ExxonMobil's data sheet): nu at 40 and at 100 degrees Celsius in mm2/s.
+DELVAC = {"SAE 30": (106.0, 11.8), "SAE 40": (146.0, 14.6), "SAE 50": (231.0, 19.9)}
+
+
+@pytest.mark.parametrize("name", list(DELVAC))
+def test_sae_grades_are_near_present_oils(name):
+    """Within 18 %: the fits of 1982 are of oils of a viscosity index below the 99 of these, which thin more with temperature."""
+    oil = ehd.oil(name)
+    for T, nu, density in zip((T40, T100), DELVAC[name], (875.0, 837.0), strict=True):
+        assert oil.at(T).viscosity == pytest.approx(1e-6 * nu * density, rel=0.18)
+
+
+# SAE J300 before 2013, when the grade 20 began at 5.6: kinematic viscosity at 100 degrees Celsius in mm2/s.
 J300 = {
     "SAE 20": (5.6, 9.3),
     "SAE 30": (9.3, 12.5),
@@ -75,6 +138,11 @@ def test_names_are_forgiving_but_not_guessed():
     assert ehd.oil("iso vg46") == ehd.oil("ISO VG 46")
     with pytest.raises(ehd.InputError, match="ISO VG 22, ISO VG 32"):
         ehd.oil("ISO VG 47")
+    assert ehd.oil("sae5w-30") == ehd.oil("SAE 5W-30")
+    with pytest.raises(
+        ehd.InputError, match="SAE 60, SAE 0W-20, SAE 5W-30, SAE 10W-40, SAE 15W-40, SAE 20W-50, got 'SAE 5W-31'"
+    ):
+        ehd.oil("SAE 5W-31")
     with pytest.raises(ehd.InputError, match="name must be one of"):
         ehd.oil(46)
 

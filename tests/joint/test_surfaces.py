@@ -1,12 +1,15 @@
 """Mixed friction, wear, profile and liner in the bearing model: statics, balances, histories and what is refused."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.contact_loads import contact_tangent, contact_wrench
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.elastic_tangent import friction_rows
 
 R, L, C, SPEED = 0.02, 0.03, 20e-6, 200.0
 SIGMA = 0.4e-6
@@ -49,6 +52,70 @@ def brute_force(model, motion):
     return F, M
 
 
+def normal_wrench(integrals, motion):
+    """Wrench of contact pressures with the integrals (c, s, zc, zs, 1) in N, z over R: torque e x F about O."""
+    sc, ss, szc, szs, _ = integrals
+    x, y, bx, by = motion[:4]
+    return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
+
+
+def plain_contact(model, contact, P, motion):
+    """Integrals (5,), friction (6,) and whole wrench (6,) of contact pressures P (n, m) in arrays: the plain reference of the kernels."""
+    g = model.grid
+    basis = np.stack([model.cos_x[:, None] + 0 * g.z, model.sin_x[:, None] + 0 * g.z])
+    basis = np.concatenate([basis, basis * g.z, np.ones((1, *g.shape))])
+    integrals = np.sum(basis * (P * g.weight), axis=(1, 2))
+    theta, axial = friction_rows(R)
+    a, b, _ = model.slip(contact)
+    drag = contact.friction_coefficient * R**2 * (a * theta + b * axial) @ integrals
+    return basis, integrals, drag, drag + normal_wrench(integrals * R**2, motion)
+
+
+def plain_contact_tangent(model, contact, P, slope, motion):
+    """Gradient (6, 10) of `plain_contact`'s wrench for pressures with ``slope`` (n, m) in the scaled gap."""
+    basis, integrals, _, _ = plain_contact(model, contact, P, motion)
+    grads = -np.einsum("aij,bij,ij->ab", basis, basis[:4], slope * model.grid.weight) * (R**2 * model.pose_scale)
+    out = np.zeros((6, 10))
+    out[:, :4] = np.stack([normal_wrench(column, motion) for column in grads.T], axis=1)
+    c, s, zc, zs, _ = integrals * R**2
+    out[5, :4] += (-s, c, -R * zs, R * zc)
+    theta, axial = friction_rows(R)
+    a, b, by_speed = model.slip(contact)
+    out[:, :4] += contact.friction_coefficient * (a * theta + b * axial) @ grads
+    out[:, 8:] += (
+        contact.friction_coefficient * R**2 * np.stack([theta @ integrals, axial @ integrals], axis=1) @ by_speed
+    )
+    return out
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED, 0.1, 0.0])
+@pytest.mark.parametrize("tilt", [(0.0, 0.0), (1e-4, -5e-5)])
+@pytest.mark.parametrize("friction", [0.0, 0.08])
+def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
+    """Both kernels add to what is there and do what the array formulas do, to rounding."""
+    asperity = replace(ASPERITY, friction_coefficient=friction)
+    motion = at(0.98, 0.4, speed, axial=0.5, tilt=tilt)
+    model = build_model(bearing(asperity=asperity))
+    assert model.evaluate(motion).status is ehd.Status.CONVERGED
+    f, g, contact = model.contact_fields, model.grid, model.effects.contacts[0]
+    _, integrals, drag, wrench = plain_contact(model, contact, f.P[0], motion)
+    found, drag_out, wrench_out = np.empty(5), np.ones(6), np.ones(6)
+    arrays = (g.weight, model.cos_x, model.sin_x, g.z, motion)
+    contact_wrench(f.P[0], *arrays, friction, contact.transition_speed, R, found, drag_out, wrench_out)
+    np.testing.assert_allclose(found, integrals, rtol=1e-12, atol=1e-13 * integrals[4])
+    size = integrals[4] * R**2
+    scale = np.array([size, size, size, R * size, R * size, R * size])
+    np.testing.assert_allclose((drag_out - 1.0) / scale, drag / scale, atol=1e-12)
+    np.testing.assert_allclose((wrench_out - 1.0) / scale, wrench / scale, atol=1e-12)
+    tangent = np.zeros((6, 10))
+    contact_tangent(
+        f.slope[0], *arrays, model.pose_scale, friction, contact.transition_speed, R, found, np.empty((5, 4)), tangent
+    )
+    expected = plain_contact_tangent(model, contact, f.P[0], f.slope[0], motion)
+    columns = np.abs(expected).max(axis=0) + 1e-300
+    np.testing.assert_allclose(tangent / columns, expected / columns, atol=1e-12)
+
+
 @pytest.mark.parametrize("speed", [SPEED, -SPEED, 0.1, 0.0])
 @pytest.mark.parametrize("tilt", [(0.0, 0.0), (1e-4, -5e-5)])
 def test_contact_wrench_point_by_point(speed, tilt):
@@ -56,7 +123,7 @@ def test_contact_wrench_point_by_point(speed, tilt):
     motion = at(0.98, 0.4, speed, axial=0.5, tilt=tilt)
     model, wrench = contact_only(motion)
     F, M = brute_force(model, motion)
-    normal = model._contact_normal_wrench(model.contact_fields)
+    normal = normal_wrench(model.contact_fields.integrals[0] * R**2, motion)
     x, y, bx, by = motion[:4]
     own = normal[5] - (x * normal[1] - y * normal[0] - bx * normal[3] - by * normal[4])
     assert own == pytest.approx(0.0, abs=1e-12 * R * np.abs(F).max())
