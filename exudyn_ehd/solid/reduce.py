@@ -279,12 +279,17 @@ def _radial(bore: Surface, displacements: np.ndarray) -> np.ndarray:
 
 
 def enough_modes(
-    compliance: np.ndarray, radial: np.ndarray, orders: np.ndarray, tolerance: float, tilted: bool
+    compliance: np.ndarray,
+    radial: np.ndarray,
+    orders: np.ndarray,
+    tolerance: float,
+    tilted: bool,
+    scale: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float]:
-    """Indices of the candidates up to the smallest orders (N, L) that meet the tolerance, and the error."""
+    """Indices of the candidates up to the smallest orders (N, L) that meet the tolerance, and the error over each sample's scale."""
     count = len(orders)
     exact = radial[count:]
-    scale = np.linalg.norm(exact, axis=1)
+    scale = np.linalg.norm(exact, axis=1) if scale is None else scale
     best: tuple[np.ndarray, float] | None = None
     least = 2 * max(0, ceil(log2(AXIAL_FROM / tolerance) - 1e-9))
     for axial in range(min(least, LARGEST_AXIAL), LARGEST_AXIAL + 1, 1 if tilted else 2):
@@ -292,7 +297,11 @@ def enough_modes(
             chosen = np.flatnonzero((orders[:, 0] <= wave) & (orders[:, 1] <= axial))
             if best is not None and len(chosen) >= len(best[0]):
                 break
-            part = np.linalg.solve(compliance[np.ix_(chosen, chosen)], compliance[chosen, count:])
+            try:
+                part = np.linalg.solve(compliance[np.ix_(chosen, chosen)], compliance[chosen, count:])
+            except np.linalg.LinAlgError:
+                # more waves than the mesh has nodes for
+                break
             error = float((np.linalg.norm(part.T @ radial[chosen] - exact, axis=1) / scale).max())
             if error <= tolerance:
                 best = chosen, error
