@@ -21,6 +21,7 @@ from exudyn_ehd.joint.build import collect_effects
 from exudyn_ehd.joint.bush import displacements_at_rest
 from exudyn_ehd.joint.elastic import ElasticBearingModel
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.reduce import BoreModes
 from exudyn_ehd.status import InputError, Status
 
 # the index types exist at run time, but not in the type stubs
@@ -73,7 +74,11 @@ def attach_bush(
         )
     )
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
-    return element, {} if start is None else {"massMatrix": _numerical_mass(element)}
+    modes = model.bore.modes
+    mass = modes.mass if isinstance(modes, BoreModes) else None
+    if mass is None and start is not None:
+        mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
+    return element, {} if mass is None else {"massMatrix": _mass_matrix(element, mass)}
 
 
 def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
@@ -119,15 +124,16 @@ def _attach_nodes(
     return NodalFilmElement(model, *sides, nodes, name, bush)
 
 
-def _numerical_mass(element: ModalFilmElement) -> np.ndarray:
-    """Mass (n + k, n + k) that gives Exudyn's initial accelerations a solution; far too small to be felt.
+def _mass_matrix(element: ModalFilmElement, mass: np.ndarray) -> np.ndarray:
+    """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the sides.
 
-    Only for a bore that starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
+    A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be felt;
+    only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
     """
     n, k = element.rigid_size, element.stiffness.size
-    mass = np.zeros((n + k, n + k))
-    mass[np.arange(n, n + k), np.arange(n, n + k)] = element.stiffness * NUMERICAL_PERIOD**2
-    return mass
+    whole = np.zeros((n + k, n + k))
+    whole[n:, n:] = mass
+    return whole
 
 
 def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) -> np.ndarray | None:

@@ -152,6 +152,10 @@ class Scene:
         if hasattr(element, "stiffness"):
             q = np.array(self.mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
             elastic = 0.5 * float(q @ (element.stiffness * q))
+            mass = element.model.bore.modes.mass
+            if mass is not None:
+                q_t = np.array(self.mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates_t))
+                kinetic += 0.5 * float(q_t @ mass @ q_t)
         return kinetic, elastic
 
     def liner_energy(self):

@@ -16,6 +16,7 @@ BUSHES = {
     "rigid": None,
     "liner": ehd.ElasticLiner(thickness=5e-4, youngs_modulus=1e9),
     "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
+    "dynamic": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, dynamics=True),
     "nodal": NODAL,
     "damped": dataclasses.replace(NODAL, damping=ehd.Rayleigh(stiffness_time=2e-7)),
 }
@@ -42,6 +43,8 @@ def slow(*case):
         ("rigid", True, 80, 3.0),
         ("modal", False, 40, 3.0),
         ("modal", True, 40, 3.0),
+        ("dynamic", False, 40, 3.0),
+        slow("dynamic", True, 40, 3.0),
         ("nodal", False, 40, 3.0),
         slow("nodal", True, 40, 3.0),
         slow("damped", True, 40, 3.0),

@@ -87,8 +87,10 @@ def test_free_journal_runs_over_load_periods_and_newton_costs_what_it_does_on_a_
     assert np.abs(elastic.motion[100:, 2:4]).max() > 1e-5
 
 
-def test_jacobian_is_the_derivative_of_the_force():
-    mbs, joint, _, _ = scene(BEARING, housing="body", matrix=rotation([0.4, -0.7, 0.3]))
+@pytest.mark.parametrize("dynamics", [False, True])
+def test_jacobian_is_the_derivative_of_the_force(dynamics):
+    bush = dataclasses.replace(BEARING.bush, dynamics=dynamics)
+    mbs, joint, _, _ = scene(dataclasses.replace(BEARING, bush=bush), housing="body", matrix=rotation([0.4, -0.7, 0.3]))
     element = joint.element
     rng = np.random.default_rng(3)
     q = np.array(mbs.systemData.GetODE2Coordinates())[mbs.systemData.GetObjectLTGODE2(joint.objectNumber)]
