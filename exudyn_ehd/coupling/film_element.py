@@ -17,6 +17,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import advice
 from exudyn_ehd.coupling import kinematics, solvers
+from exudyn_ehd.coupling.chatter import ChatterWatch
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
 from exudyn_ehd.coupling.display import FilmDisplay
 from exudyn_ehd.coupling.film_record import FilmRecorder
@@ -77,6 +78,7 @@ class FilmElement:
         self.recorder: FilmRecorder | None = None
         self.display = FilmDisplay(self)
         self.watch: GapWatch | None = None
+        self._chatter: ChatterWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
         self._start = np.nan
@@ -229,13 +231,28 @@ class FilmElement:
                 else "the journal's axis has left the bearing's (tilt near 90 degrees); "
             )
         else:
-            mid, largest = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-            gap = bearing.radial_clearance * (1.0 - largest)
-            state = (
-                f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid "
-                f"surfaces {gap:.6g} m; "
-            )
+            state = self._place(trial)
         return where + state + advice(trial.status, bearing)
+
+    def _place(self, trial: Trial) -> str:
+        bearing = self.model.bearing
+        mid, largest = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
+        gap = bearing.radial_clearance * (1.0 - largest)
+        return (
+            f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid "
+            f"surfaces {gap:.6g} m; "
+        )
+
+    def _chatter_message(self, t: float, step: float, trial: Trial, error: float) -> str:
+        assert trial.evaluation is not None
+        damping = -trial.evaluation.tangent()[:2, 4:6]
+        largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
+        return (
+            f"LubricatedJoint '{self.name}' at t = {t:.9g} s: the explicit solver's step of {step:.3g} s is too large for this film, the "
+            f"journal chatters: its last velocities miss its last displacement by {error:.3g} m; {self._place(trial)}with the journal's mass m "
+            f"and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with forward Euler and 2.8 m / C with RK44, "
+            "tilting motions alike: use smaller steps, DOPRI5 with its automatic steps, or an implicit solver."
+        )
 
     # --- accepted steps -------------------------------------------------------------------------------------------
 
@@ -245,6 +262,7 @@ class FilmElement:
         if run[0] is not self._run[0] or run[1] is not self._run[1]:
             self._solver = solvers.running_solver(self._run, run)
             self._run = run
+            self._chatter = ChatterWatch(self.model.bearing) if solvers.is_explicit(self._solver) else None
             # the time of a static solve is a load parameter: the film is the steady one
             self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
             # a run that starts behind the record goes on with it, any other begins anew
@@ -276,7 +294,9 @@ class FilmElement:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
                 self._trial = None
-        self._start = start
+        last, self._start = self._start, start
+        if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
+            raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
 
     def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""

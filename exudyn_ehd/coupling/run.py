@@ -49,7 +49,7 @@ def SolveDynamic(
     Raises
     ------
     FilmError
-        If a film could not be evaluated.
+        If a film could not be evaluated, or if the steps of an explicit solver are too large for it.
     RunError
         If the solver ended otherwise without success.
     InputError

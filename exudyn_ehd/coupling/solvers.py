@@ -32,6 +32,11 @@ def is_static(solver: Any) -> bool:
     return isinstance(solver, exu.MainSolverStatic)
 
 
+def is_explicit(solver: Any) -> bool:
+    """Whether ``solver`` is an explicit integrator."""
+    return isinstance(solver, exu.MainSolverExplicit)
+
+
 def is_finished(solver: Any) -> bool:
     """Whether the run of ``solver`` has come to its end; a failed one never does."""
     return solver is None or bool(solver.output.finishedSuccessfully)

@@ -33,6 +33,7 @@ from scipy.sparse import coo_matrix, csc_matrix, issparse
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
+from exudyn_ehd.coupling.run import own_errors
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # the index types exist at run time, but not in the type stubs
@@ -130,8 +131,8 @@ def SolveDynamicSparse(
     ------
     InputError
         The model holds coordinates that this solver can't update.
-    exudyn.SolverError
-        The integration failed, as in ``mbs.SolveDynamic``.
+    FilmError, RunError
+        As `SolveDynamic`; ``joint.history`` holds all accepted steps.
     """
     settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
     run = SparseRun()
@@ -145,15 +146,13 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        run.success = bool(solver.SolveSystem(mbs, settings))
+        with own_errors(mbs, "SolveDynamicSparse"):
+            run.success = bool(solver.SolveSystem(mbs, settings))
+            if not run.success:
+                raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
     finally:
         settings.linearSolver.solverType = chosen
     run.seconds = time.perf_counter() - start
-    if not run.success:
-        raise exu.SolverError(
-            f"SolveDynamicSparse: the integration stopped at t = {mbs.systemData.GetTime():g} s; reduce the step size "
-            "or look at the state there."
-        )
     return run
 
 

@@ -38,7 +38,7 @@ import numpy as np
 from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 
-from exudyn_ehd.cache import cached_arrays
+from exudyn_ehd.cache import Shapes, cached_arrays
 from exudyn_ehd.solid import vibrations
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature, face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface
@@ -198,7 +198,8 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         modes = compute_modes(bush, mesh)
         return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
 
-    data = cached_arrays("bush_modes", _content(bush, mesh), compute)
+    shapes: Shapes = {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",)}
+    data = cached_arrays("bush_modes", _content(bush, mesh), {**shapes, "error": ()}, compute)
     static = BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
     )
@@ -206,7 +207,10 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         return static
     content = _content(bush, mesh) + repr((bush.material.density, *vibrations.SETTINGS)).encode()
     data = cached_arrays(
-        "bush_vibrations", content, lambda: vibration_modes(_solid(bush, mesh), static.displacements, static.stiffness)
+        "bush_vibrations",
+        content,
+        {**shapes, "mass": ("m", "m")},
+        lambda: vibration_modes(_solid(bush, mesh), static.displacements, static.stiffness),
     )
     return BoreModes(
         mesh=mesh,

@@ -6,6 +6,7 @@ import argparse
 import pathlib
 import time
 
+from exudyn_ehd.status import InputError
 from exudyn_ehd.studies import catalogue, cells, growth, pictures
 from exudyn_ehd.studies.study import Study, machine, run_study
 from exudyn_ehd.studies.table import format_rows, read_rows, write_atomic, write_rows
@@ -26,6 +27,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--processes", type=int, default=1, help="more than 1: side by side, errors only, no times")
     parser.add_argument("--ship", action="store_true", help="write the tables into the package's data")
     parser.add_argument("--draw", action="store_true", help="measure nothing, draw the shipped tables")
+    parser.add_argument(
+        "--guide", type=pathlib.Path, metavar="README", help="renew the guide's table in this file and stop"
+    )
     parser.add_argument("--list", action="store_true", help="list what there is and stop")
     options = parser.parse_args(arguments)
     studies = catalogue.quick_catalogue() if options.quick else catalogue.full_catalogue()
@@ -33,6 +37,9 @@ def main(arguments: list[str] | None = None) -> None:
     names = [n for n in [*studies, *extra] if not options.only or any(part in n for part in options.only)]
     if options.list:
         print("\n".join(names))
+        return
+    if options.guide:
+        renew_guide(options.guide)
         return
     tables = DATA if options.ship or options.draw else options.results
     start = time.perf_counter()
@@ -71,6 +78,15 @@ def draw(tables: list[pathlib.Path], folder: pathlib.Path) -> None:
     if lines:
         write_atomic(folder / "summary.md", pictures.summary_text(lines))
         pictures.save(pictures.summary_figure(lines, found[0][1][1].split(";")[1].strip()), folder / "summary.png")
+
+
+def renew_guide(path: pathlib.Path) -> None:
+    """Put the table of the shipped data in place of the one in a Markdown file."""
+    before, head, rest = path.read_text(encoding="utf-8").partition(f"| {pictures.HEADINGS[0]} |")
+    if not head:
+        raise InputError(f"--guide: {path} has no table that begins with '| {pictures.HEADINGS[0]} |'.")
+    after = rest.partition("\n\n")[2]
+    write_atomic(path, f"{before}{pictures.guide_text(DATA)}\n{after}")
 
 
 def main_text() -> str:

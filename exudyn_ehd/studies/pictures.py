@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter
+from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, styled
 from exudyn_ehd.studies.front import cheapest, pareto_front
@@ -85,6 +85,11 @@ def draw_points(axes: Axes, rows: Sequence[Row], per: str) -> None:
     axes.plot(*line.T, color=BLACK, lw=0.8, zorder=2, label="Pareto front")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: format_seconds(value)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100.0 * value:.4g} %"))
+    # within two decades the labels of the ticks between are needed, else they would crowd
+    wide = axes.get_xlim()[1] > 200.0 * axes.get_xlim()[0]
+    between = FuncFormatter(lambda value, _: format_seconds(value) if f"{value:.0e}"[0] in "25" else "")
+    axes.xaxis.set_minor_formatter(NullFormatter() if wide else between)
+    axes.yaxis.set_minor_formatter(NullFormatter())
     axes.grid(True, which="major")
     axes.figure.legend(loc="outside lower center", ncols=4)
 
@@ -215,8 +220,9 @@ def guide_text(folder: pathlib.Path) -> str:
 GUIDE = (
     ("steady_500_film", "load"), ("steady_800_film", "load"), ("steady_800_film", "peak pressure"),
     ("steady_950_film", "load"), ("steady_800_tilted_film", "load"), ("orbit_film", "path"),
-    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("whirl_film", "growth"),
-    ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
+    ("steady_800_bush", "peak pressure"), ("steady_800_bush", "minimum film"),
+    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("slider_pin_integration", "minimum film"),
+    ("whirl_film", "growth"), ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
 )  # fmt: skip
 HEADINGS = ["scene: ladder", "quantity", "reference, its own error", "within 10 %", "within 1 %", "within 0.1 %"]
 

@@ -5,11 +5,12 @@ import math
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+import pytest
 
 import exudyn_ehd as ehd
 
 
-def _model():
+def _model(load=-500.0, function=0):
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddObject(eii.ObjectGround())
     node = mbs.AddNode(
@@ -17,7 +18,7 @@ def _model():
     )
     body = mbs.AddObject(eii.ObjectRigidBody(nodeNumber=node, mass=2.0, inertia=[1e-2, 1e-2, 1e-2, 0, 0, 0]))
     centre = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
-    mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0, -500, 0]))
+    mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0, load, 0], loadVectorUserFunction=function))
     bearing = ehd.JournalBearing(
         journal_radius=0.025, length=0.025, radial_clearance=50e-6, lubricant=ehd.Lubricant(viscosity=0.02),
         film=ehd.FiniteLength(n_theta=48, n_z=6),
@@ -50,3 +51,40 @@ def test_same_orbit_as_exudyns_own_solver():
     assert np.allclose(got.time, expected.time)
     # both iterate to a relative residual of 1e-6
     assert np.allclose(got.eccentricity, expected.eccentricity, atol=1e-4 * 50e-6)
+
+
+def test_a_film_that_fails_is_named():
+    mbs, joint, settings = _model(load=-1e6)
+    with pytest.raises(
+        ehd.FilmError, match=r"'film' can't be evaluated at t = .* gap closed .* last accepted state"
+    ) as caught:
+        ehd.SolveDynamicSparse(mbs, settings)
+    assert isinstance(caught.value.__cause__, exu.ExudynError)
+    h = joint.history
+    assert h.time.size > 1 and np.all(np.isfinite(h.motion))
+
+
+def test_newton_that_does_not_converge_is_explained():
+    mbs, joint, settings = _model()
+    chosen = settings.linearSolver.solverType
+    settings.timeIntegration.newton.relativeTolerance = 1e-13
+    settings.timeIntegration.newton.absoluteTolerance = 1e-300
+    settings.timeIntegration.newton.maxIterations = 1
+    with pytest.raises(ehd.RunError, match=r"SolveDynamicSparse: .*'film': eccentricity ratio .* ConfigureSolver"):
+        ehd.SolveDynamicSparse(mbs, settings)
+    assert settings.linearSolver.solverType == chosen
+    assert joint.history.time.size >= 1
+
+
+def test_errors_of_other_user_functions_pass():
+    def load(mbs, t, vector):
+        if t > 2e-3:
+            raise ValueError("no such load")
+        return vector
+
+    mbs, joint, settings = _model(function=load)
+    with pytest.raises(exu.ExudynError) as caught:
+        ehd.SolveDynamicSparse(mbs, settings)
+    assert not isinstance(caught.value, ehd.EHDError)
+    assert "no such load" in str(caught.value) or isinstance(caught.value.__cause__, ValueError)
+    assert 1e-3 < joint.history.time[-1] <= 2e-3 + 1e-9

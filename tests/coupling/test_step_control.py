@@ -54,7 +54,7 @@ def test_a_control_that_has_nothing_to_do_changes_no_bit():
 
 def test_explicit_solvers_are_not_touched():
     control = ehd.StepControl(largest_gap_change=0.01)
-    plain, watched = (run(c, 2e-5, exu.DynamicSolverType.RK44) for c in (None, control))
+    plain, watched = (run(c, 1e-5, exu.DynamicSolverType.RK44) for c in (None, control))
     np.testing.assert_array_equal(watched.history.motion, plain.history.motion)
 
 

@@ -5,6 +5,7 @@ import pathlib
 import pytest
 from matplotlib.text import Annotation
 
+from exudyn_ehd.status import InputError
 from exudyn_ehd.studies import cells, growth, pictures
 from exudyn_ehd.studies.__main__ import main
 from exudyn_ehd.studies.front import cheapest
@@ -75,3 +76,13 @@ def test_growth_runs(tmp_path):
 def test_the_guide_says_what_the_tables_say():
     guide = (pathlib.Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
     assert pictures.guide_text(cells.DATA) in guide
+
+
+def test_the_guide_is_renewed_and_nothing_else_of_its_file(tmp_path):
+    path = tmp_path / "guide.md"
+    path.write_text("# Title\n\n| scene: ladder | old |\n|---|---|\n| gone | 1 |\n\nText after.\n", encoding="utf-8")
+    main(["--guide", str(path)])
+    assert path.read_text(encoding="utf-8") == f"# Title\n\n{pictures.guide_text(cells.DATA)}\nText after.\n"
+    path.write_text("no table", encoding="utf-8")
+    with pytest.raises(InputError, match="has no table"):
+        main(["--guide", str(path)])
