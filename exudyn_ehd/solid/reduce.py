@@ -116,6 +116,8 @@ class ModalBush:
                 f"ModalBush.tolerance must be within {SMALLEST_TOLERANCE:g} and {LARGEST_TOLERANCE:g}, got "
                 f"{tolerance:g}; 0.02 is a good start."
             )
+        if not isinstance(self.quadrature, Quadrature):
+            raise InputError(f"ModalBush.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
         for name in ("tilted", "dynamics"):
             if not isinstance(getattr(self, name), bool):
                 raise InputError(f"ModalBush.{name} must be True or False, got {getattr(self, name)!r}.")

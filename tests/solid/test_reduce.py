@@ -180,3 +180,10 @@ def test_waves_that_a_coarse_mesh_cannot_show_make_no_modes():
     modes = bore_modes(ModalBush(mesh=coarse, material=STEEL, tolerance=0.05))
     # some displace no bore node at all, and would have a stiffness of rounding's inverse, 1e39
     assert modes.stiffness.max() < 1e4 * modes.stiffness.min()
+
+
+@pytest.mark.parametrize("kind", [ModalBush, TotalLagrange])
+def test_quadrature_that_is_none_is_refused(kind):
+    for value in (np.inf, 14, None, "IRONS14"):
+        with pytest.raises(InputError, match=rf"{kind.__name__}.quadrature must be IRONS14, GAUSS27 or GAUSS8"):
+            kind(mesh=CYLINDER.mesh(), material=STEEL, quadrature=value)
