@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
@@ -20,7 +19,7 @@ from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
 from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.film.supply import SupplyArea, check_supply
+from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
@@ -136,7 +135,10 @@ class JournalBearing:
         _require_type("wear", self.wear, (ArchardWear, type(None)))
         for profile in self.profiles:
             _require_type("profile", profile, PROFILE_TYPES)
-        require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
+        ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
+        # a list or an array compares and hashes like the pair that it is
+        object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
+        require_areas(self.supply)
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
         open_ring = isinstance(self.inlet, MaximumGap)
@@ -169,7 +171,7 @@ class JournalBearing:
             )
 
     def _check_supply(self) -> None:
-        if self.supply == ():
+        if not self.supply:
             return
         check_supply(self.supply, self.journal_radius, self.length, self.film)
         if isinstance(self.inlet, MaximumGap):
@@ -186,11 +188,14 @@ class JournalBearing:
 
     def _check_pressures(self) -> None:
         pc = self.cavitation.cavity_pressure
-        lowest = min(*self.end_pressures, 0.0 if isinstance(self.inlet, MaximumGap) else math.inf)
+        lowest = min(self.end_pressures)
+        edges = f"JournalBearing.end_pressures {self.end_pressures!r} Pa"
+        if isinstance(self.inlet, MaximumGap) and lowest > 0.0:
+            lowest, edges = 0.0, "the ambient pressure (0 Pa) of inlet=MaximumGap()"
         if pc > lowest:
             raise InputError(
-                f"{type(self.cavitation).__name__}.cavity_pressure must not exceed the pressures at the film's edges "
-                f"({lowest:g} Pa), got {pc:g} Pa; both are gauge pressures."
+                f"{type(self.cavitation).__name__}.cavity_pressure must not exceed {edges}, got {pc:g} Pa; all are gauge pressures, "
+                "lower the cavity pressure."
             )
 
     def _check_clearance(self) -> None:

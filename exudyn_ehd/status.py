@@ -115,6 +115,9 @@ def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, u
     expected = f"must be {size} finite numbers" + (f" in {unit}" if unit else "")
     try:
         vector = np.array(value, dtype=float)
+        # numpy reads numbers out of strings, arithmetic does not
+        if np.asarray(value).dtype.kind in "SU":
+            raise TypeError
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"{where} {expected}, got {value!r}.") from None
     if vector.shape != (size,) or not np.all(np.isfinite(vector)):

@@ -7,11 +7,18 @@ from typing import Any
 from exudyn_ehd.status import require_number
 
 
-def ConfigureSolver(simulationSettings: Any, relativeTolerance: float = 1e-6, useModifiedNewton: bool = False) -> Any:
+def ConfigureSolver(
+    simulationSettings: Any,
+    relativeTolerance: float = 1e-6,
+    useModifiedNewton: bool = False,
+    absoluteTolerance: float = 1e-8,
+) -> Any:
     """Set what a model with lubricated joints needs in dynamic and static solves; everything else stays.
 
     - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries
       rounding noise of about 1e-10, so that residuals can't always fall by eight orders.
+    - Newton's absolute tolerance 1e-8 in place of 1e-10, where it is tighter: next to a wall of 1e11 N/m the rounding of a position alone makes 1e-9 N, so that a journal
+      at rest on it would never pass and be refused.
     - Full Newton: the Jacobian of the film is exact and cheap (one tangent from the factor the force has left), and
       saves film evaluations. Set ``useModifiedNewton=True`` for models with large flexible bodies, where a new
       factorisation costs more than several film evaluations.
@@ -23,6 +30,8 @@ def ConfigureSolver(simulationSettings: Any, relativeTolerance: float = 1e-6, us
         Changed in place.
     relativeTolerance : float
         Newton's relative tolerance.
+    absoluteTolerance : float
+        Newton's absolute tolerance; a larger one that is set already stays.
     useModifiedNewton : bool
         Keep the Jacobian over several steps.
 
@@ -32,8 +41,10 @@ def ConfigureSolver(simulationSettings: Any, relativeTolerance: float = 1e-6, us
         The same object.
     """
     tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
+    smallest = require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, above=0.0)
     for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
         solver.newton.relativeTolerance = tolerance
+        solver.newton.absoluteTolerance = max(smallest, solver.newton.absoluteTolerance)
         solver.newton.useModifiedNewton = useModifiedNewton
         solver.adaptiveStep = True
     return simulationSettings

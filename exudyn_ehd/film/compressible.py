@@ -52,6 +52,8 @@ from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives, plain_
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
+# Share of the law's range at which a film that was not found presses against its end.
+AT_THE_END = 1.0 - 1e-9
 
 
 class CompressibleFilmSolver(FilmSolver):
@@ -120,7 +122,7 @@ class CompressibleFilmSolver(FilmSolver):
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
         """Solve for the gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
-        s, w = self.system, self.work
+        w = self.work
         if mass_old is not None and step <= 0.0:
             # What an instant keeps is the volume: a full film follows the gap with the density that its pressure gives it.
             at_cavity = self.law.density.ratio(self._cavity_in_pascal(cavity_pressure))
@@ -139,12 +141,17 @@ class CompressibleFilmSolver(FilmSolver):
             return status, steps
         self._set_store()
         # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
-        out = bool(np.any(s.linear_pressure * self.pressure_scale >= self.law.kernel_table.highest))
+        out = self._reaches(self.law.kernel_table.highest)
         ok, count = self._newton(1.0) if out else self._switch_on()
         steps += count
         if not ok:
+            out = out or self._reaches(AT_THE_END * self.law.kernel_table.highest)
             return (Status.NO_PRESSURE if out else Status.NOT_CONVERGED), steps
         return self._finish(steps)
+
+    def _reaches(self, transformed: float) -> bool:
+        """Whether the film's transformed pressure, Pa, reaches a value."""
+        return bool(np.any(self.system.linear_pressure * self.pressure_scale >= transformed))
 
     def _cavity_in_pascal(self, cavity_pressure: float) -> np.ndarray:
         q = np.array([[cavity_pressure * self.pressure_scale]])
@@ -203,6 +210,8 @@ class CompressibleFilmSolver(FilmSolver):
                 start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
                 share *= 2.0
                 continue
+            if self._reaches(AT_THE_END * self.law.kernel_table.highest):
+                return False, total
             s.linear_pressure[:], s.fill[:], w.active[:] = start
             share *= 0.25
             if share < SMALLEST_SHARE:

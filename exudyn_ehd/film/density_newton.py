@@ -23,6 +23,10 @@ SET_TOLERANCE = 1e-12
 ERROR_TOLERANCE = 1e-14
 # A step so small leaves an error of its square; a factor from so near, or one with which steps shrink so fast, counts as exact.
 LAST_STEP = 1e-7
+# Steps without a limit; then the share of the way to the end of the law's range that one may cover, and steps in a row that may want more.
+WHOLE_STEPS = 16
+TO_THE_END = 0.9
+MAX_CUT_STEPS = 16
 EXACT_RATIO = 1e-8
 FULL, CLIPPED, COMPLEMENTARY, FILLED = 0, 1, 2, 3
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -200,9 +204,14 @@ def factor_compressible(fill, film, kind, full, b):
 
 
 @njit(cache=True)
-def _take(P, fill, full, order, count, x, pc, kind):
-    """Add the step x; returns its largest share of the peak pressure (or of a full film)."""
+def _take(P, fill, full, order, count, x, pc, kind, end):
+    """Add the step x; returns its largest share of the peak pressure (or of a full film), the peak and how often the law's end cut it.
+
+    The density climbs ever more steeply towards ``end``, where the pressure has no bound (viscosity laws whose integral is finite), and is
+    taken as constant beyond, so that whole steps across it can bounce back for ever. Cut steps cover nine tenths of the way.
+    """
     m = P.shape[1]
+    cuts = 0
     reference = 0.0 if kind == FULL else pc
     peak = 1e-300
     by_pressure = 0.0
@@ -211,13 +220,17 @@ def _take(P, fill, full, order, count, x, pc, kind):
         i = order[r] // m
         j = order[r] - i * m
         if full[i, j]:
-            P[i, j] += x[r]
+            if P[i, j] < end <= P[i, j] + x[r]:
+                P[i, j] += TO_THE_END * (end - P[i, j])
+                cuts += 1
+            else:
+                P[i, j] += x[r]
             peak = max(peak, abs(P[i, j] - reference))
             by_pressure = max(by_pressure, abs(x[r]))
         else:
             fill[i, j] += x[r]
             by_fill = max(by_fill, abs(x[r]))
-    return max(by_pressure / peak, by_fill), peak
+    return max(by_pressure / peak, by_fill), peak, cuts
 
 
 @njit(cache=True)
@@ -275,7 +288,8 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     """Newton from P, fill and the sets in ``full``; returns (ok, steps, exact, count, width).
 
     A factor serves further steps as long as the sets stay and each step is five times smaller than the last; the first step takes
-    that of the last film (``count``, ``width``) if there is one (``held``). ``exact`` says that the last factor is that of the
+    that of the last film (``count``, ``width``) if there is one (``held``). A film that presses against the end of the law's range for
+    `MAX_CUT_STEPS` has no pressure there. ``exact`` says that the last factor is that of the
     solution.
     """
     floor = -np.inf if kind == FULL else pc
@@ -284,6 +298,8 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     _balance_at(P, fill, film, scale, floor, law, share, b)
     last = moved = 0.0
     fresh = not held
+    end = law.highest / scale
+    cut_steps = 0
     for step in range(MAX_NEWTON_STEPS):
         if fresh:
             ok, count, width = factor_compressible(fill, film, kind, full, b)
@@ -294,7 +310,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
             i = b.order[r] // m
             b.x[r] = -b.residual[i, b.order[r] - i * m]
         solve_lu(b.lower, b.upper, b.inv_diag, count, width, b.x.reshape(1, b.x.size))
-        size, peak = _take(P, fill, full, b.order, count, b.x, pc, kind)
+        size, peak, cuts = _take(P, fill, full, b.order, count, b.x, pc, kind, end if step >= WHOLE_STEPS else np.inf)
         if not size < 1e300:
             return False, step + 1, False, count, width
         if size <= ERROR_TOLERANCE:
@@ -307,6 +323,10 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
         if changes > 0:
             # those that left had the cavity's density already
             compressible_balance(P, fill, b.fields[4], film, b.residual)
+        cut_steps = cut_steps + 1 if cuts > 0 else 0
+        if cut_steps > MAX_CUT_STEPS:
+            return False, step + 1, False, count, width
+        if changes > 0 or cuts > 0:
             fresh = True
             continue
         borrowed = held and step == 0

@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
-from exudyn_ehd.cache import cached_arrays
+from exudyn_ehd.cache import Shapes, cached_arrays
 from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
@@ -333,7 +333,8 @@ def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: floa
         return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
 
     key = repr((FORMAT, film, type(closure).__name__, float(length_to_radius), SAMPLES))
-    data = cached_arrays("impedance", key.encode(), compute)
+    shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
+    data = cached_arrays("impedance", key.encode(), shapes, compute)
     v = data["scalars"]
     return ImpedanceTable(
         nodes=data["nodes"],

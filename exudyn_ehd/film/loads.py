@@ -144,11 +144,11 @@ def scatter(values, order, count, out):
 
 
 @njit(cache=True)
-def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, active, fixed):
+def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full):
     """Scaled volume flow that leaves through z = -L/2 and z = +L/2.
 
     The flux through the link next to the end, corrected by the balance of the end's half control volume where the film
-    next to it is unbroken.
+    next to it is ``full`` (n, m): unbroken, or fed by a supply area.
     """
     n, m = P.shape
     lower = 0.0
@@ -156,14 +156,14 @@ def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, active, fixed):
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
         q = -(fz[i, 0] - kz[i, 0] * (P[i, 1] - P[i, 0]))
-        if active[i, 1]:
+        if full[i, 1]:
             q -= fx[i, 0] - fx[prv, 0]
             if squeeze:
                 q -= H_t[i, 0] * width_x[i] * width_z[0]
         lower += q
         e = m - 1
         q = fz[i, e - 1] - kz[i, e - 1] * (P[i, e] - P[i, e - 1])
-        if active[i, e - 1]:
+        if full[i, e - 1]:
             q -= fx[i, e] - fx[prv, e]
             if squeeze:
                 q -= H_t[i, e] * width_x[i] * width_z[e]

@@ -18,6 +18,9 @@ from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
 from exudyn_ehd.status import InputError, require_integer, require_number
 
+# Of given points (m or rad), far beyond any machine's: where slopes between them overflow.
+LARGEST_SIZE, SMALLEST_STEP = 1e6, 1e-12
+
 
 @dataclass(frozen=True, kw_only=True)
 class OutOfRound:
@@ -205,17 +208,20 @@ class ProfileTerm:
 def _finite(where: str, values: object) -> np.ndarray:
     try:
         array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputError(f"{where} must be finite numbers in rows of equal length, got {values!r}.") from None
     if not np.all(np.isfinite(array)):
         raise InputError(f"{where} must be finite, got {values!r}; fill the gaps of a measured table first.")
+    if np.any(np.abs(array) > LARGEST_SIZE):
+        raise InputError(f"{where} must not exceed {LARGEST_SIZE:g} in size, got {values!r}; give metres and radians.")
     return array
 
 
 def _increasing(where: str, values: object, at_least: int, unit: str) -> np.ndarray:
     array = _finite(where, values)
-    if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) > 0.0):
+    if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) >= SMALLEST_STEP):
         raise InputError(
-            f"{where} must be at least {at_least} increasing numbers in {unit}, got {values!r}; sort the points."
+            f"{where} must be at least {at_least} increasing numbers in {unit}, at least {SMALLEST_STEP:g} {unit} apart, got "
+            f"{values!r}; sort the points."
         )
     return array

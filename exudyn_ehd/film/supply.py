@@ -213,13 +213,17 @@ class _FilmSize(Protocol):
     def stretch(self) -> float: ...
 
 
-def check_supply(supply: Sequence[SupplyArea], radius: float, length: float, film: _FilmSize) -> None:
-    """Raise `InputError` for areas without a vertex of the film grid inside, or areas that overlap at different pressures."""
+def require_areas(supply: object) -> None:
+    """Raise `InputError` for anything but a tuple of supply areas."""
     if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
         raise InputError(
             "JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or Pocket(...), got "
             f"{supply!r}; for a single one write supply=(AxialGroove(...),)."
         )
+
+
+def check_supply(supply: Sequence[SupplyArea], radius: float, length: float, film: _FilmSize) -> None:
+    """Raise `InputError` for areas without a vertex of the film grid inside, or areas that overlap at different pressures."""
     masks = []
     for k, area in enumerate(supply):
         mask = _covered(area, radius, length, film.n_theta, film.n_z, film.stretch)

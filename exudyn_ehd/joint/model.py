@@ -612,7 +612,8 @@ class BearingModel:
             inflow = s.inflow()
             return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
         fx, fz, rate = s.couette_flows()
-        return end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, s.work.active, g.fixed)
+        full = s.work.active if self.supply is None else np.logical_or.reduce([s.work.active, *self.supply.masks])
+        return end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
 
     def minimum_place(self) -> tuple[float, float]:
         """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.

@@ -78,6 +78,16 @@ class FEBore:
         if not isinstance(self.settled, bool):
             raise InputError(f"FEBore.settled must be True or False, got {self.settled!r}.")
         require_number("FEBore.radius_tolerance", self.radius_tolerance, above=0.0)
+        if self.nodes is not None:
+            try:
+                numbers = np.asarray(self.nodes)
+                good = numbers.ndim == 1 and numbers.size > 0 and numbers.dtype.kind in "iu" and numbers.min() >= 0
+            except (TypeError, ValueError):
+                good = False
+            if not good:
+                raise InputError(
+                    f"FEBore.nodes must be mesh node numbers (integers from 0), got {self.nodes!r}; None finds the bore's nodes."
+                )
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

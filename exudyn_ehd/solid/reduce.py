@@ -38,7 +38,7 @@ import numpy as np
 from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 
-from exudyn_ehd.cache import cached_arrays
+from exudyn_ehd.cache import Shapes, cached_arrays
 from exudyn_ehd.solid import vibrations
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature, face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface
@@ -116,6 +116,8 @@ class ModalBush:
                 f"ModalBush.tolerance must be within {SMALLEST_TOLERANCE:g} and {LARGEST_TOLERANCE:g}, got "
                 f"{tolerance:g}; 0.02 is a good start."
             )
+        if not isinstance(self.quadrature, Quadrature):
+            raise InputError(f"ModalBush.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
         for name in ("tilted", "dynamics"):
             if not isinstance(getattr(self, name), bool):
                 raise InputError(f"ModalBush.{name} must be True or False, got {getattr(self, name)!r}.")
@@ -198,7 +200,8 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         modes = compute_modes(bush, mesh)
         return {"displacements": modes.displacements, "stiffness": modes.stiffness, "error": np.array(modes.error)}
 
-    data = cached_arrays("bush_modes", _content(bush, mesh), compute)
+    shapes: Shapes = {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",)}
+    data = cached_arrays("bush_modes", _content(bush, mesh), {**shapes, "error": ()}, compute)
     static = BoreModes(
         mesh=mesh, displacements=data["displacements"], stiffness=data["stiffness"], error=float(data["error"])
     )
@@ -206,7 +209,10 @@ def bore_modes(bush: ModalBush) -> BoreModes:
         return static
     content = _content(bush, mesh) + repr((bush.material.density, *vibrations.SETTINGS)).encode()
     data = cached_arrays(
-        "bush_vibrations", content, lambda: vibration_modes(_solid(bush, mesh), static.displacements, static.stiffness)
+        "bush_vibrations",
+        content,
+        {**shapes, "mass": ("m", "m")},
+        lambda: vibration_modes(_solid(bush, mesh), static.displacements, static.stiffness),
     )
     return BoreModes(
         mesh=mesh,

@@ -81,6 +81,8 @@ class TotalLagrange:
     parallel: bool = False
 
     def __post_init__(self) -> None:
+        if not isinstance(self.quadrature, Quadrature):
+            raise InputError(f"TotalLagrange.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
         require_number("TotalLagrange.viscosity_time", self.viscosity_time, "s", at_least=0.0)
 
     @cached_property

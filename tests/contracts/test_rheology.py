@@ -216,3 +216,50 @@ def test_couette_kernel_equals_its_twin():
     total, unbroken = couette_integral_ratio(H, weight, ratio, share, whole)
     assert total == pytest.approx(float(np.sum(weight * ratio * share / H)), rel=1e-14)
     assert unbroken == pytest.approx(float(np.sum((weight * ratio / H)[whole])), rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("cavitation", "coefficient"),
+    [
+        (ehd.SwiftStieber(), 1e-8),
+        (ehd.Gumbel(), 1e-8),
+        (ehd.FullSommerfeld(), 1e-8),
+        (ehd.ElrodAdams(cavity_pressure=-1e5), 1.5e-8),  # its film here is steady, without the pressure of the squeeze
+    ],
+    ids=["swift", "gumbel", "full", "elrod"],
+)
+def test_density_near_the_end_of_the_pressure_law(cavitation, coefficient):
+    """Barus' transformed pressure (1 - exp(-alpha p)) / alpha ends at 1/alpha; an orbit brings films of constant density beyond it and compressible ones near.
+
+    The density's slope has no bound there, and whole Newton steps bounce back and forth across the end. From the last state or from nothing,
+    every state is found within 64 linear solves, with the same force; the tangent is exact (central differences, 1e-6 of the clearance).
+    """
+    R, C, speed = 0.02, 20e-6, 300.0
+    laws = {"pressure_law": ehd.BarusPressure(coefficient=coefficient), "density_law": ehd.DowsonHigginson()}
+    options = {
+        "journal_radius": R, "length": 0.03, "radial_clearance": C, "film": ehd.FiniteLength(n_theta=96, n_z=10),
+        "cavitation": cavitation,
+    }  # fmt: skip
+    model = build_model(ehd.JournalBearing(lubricant=ehd.Lubricant(viscosity=0.03, **laws), **options))
+    cold = build_model(ehd.JournalBearing(lubricant=ehd.Lubricant(viscosity=0.03, **laws), **options))
+    peaks = []
+    for k in np.radians(np.arange(10, 28, 2)):
+        e = C * (0.85 + 0.05 * np.sin(5 * k))
+        v = 0.3 * speed * e
+        motion = np.array([e * np.cos(k), e * np.sin(k), 0, 0, -v * np.sin(k), v * np.cos(k), 0, 0, speed, 0])
+        found = model.evaluate(motion)
+        cold.forget()
+        again = cold.evaluate(motion)
+        assert found.status is again.status is ehd.Status.CONVERGED
+        assert max(found.iterations, again.iterations) <= 64
+        peaks.append(found.quantities()["peak_pressure"])
+        # at alpha p = 12 the density's slope, exp(alpha p), is 2e5 times that at ambient pressure and magnifies what Newton leaves
+        near = coefficient * peaks[-1] < 9.0
+        np.testing.assert_allclose(again.wrench[:2], found.wrench[:2], rtol=1e-8 if near else 1e-6)
+    assert 1.0 - np.exp(-coefficient * max(peaks)) > 0.97
+    tangent = found.tangent()[:2, :2]
+    h = 1e-6 * C
+    for j in range(2):
+        step = h * np.eye(10)[j]
+        slope = (cold.evaluate(motion + step).wrench - cold.evaluate(motion - step).wrench)[:2] / (2.0 * h)
+        np.testing.assert_allclose(tangent[:, j], slope, atol=1e-5 * np.abs(tangent).max())

@@ -84,6 +84,21 @@ def _bearing(**options):
     [
         ({"supply": ehd.Hole(angle=0.0, diameter=0.01)}, "must be a tuple"),
         ({"supply": ("hole",)}, "must be a tuple"),
+        ({"supply": np.zeros(2)}, "JournalBearing.supply must be a tuple"),
+        ({"supply": 3, "film": ehd.LongBearing()}, "JournalBearing.supply must be a tuple"),
+        (
+            {"end_pressures": (0, -1)},
+            r"SwiftStieber.cavity_pressure must not exceed JournalBearing.end_pressures \(0.0, -1.0\)",
+        ),
+        (
+            {
+                "end_pressures": (5.0, 5.0),
+                "cavitation": ehd.SwiftStieber(cavity_pressure=1.0),
+                "inlet": ehd.MaximumGap(),
+            },
+            "must not exceed the ambient pressure",
+        ),
+        ({"end_pressures": ("1", "2")}, "JournalBearing.end_pressures must be 2 finite numbers"),
         ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "grid of n_theta=.*would do"),
         ({"supply": (ehd.Hole(angle=0.1, z=1.0, diameter=0.001),)}, "outside the bearing"),
         ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "no vertex"),
@@ -106,6 +121,12 @@ def _bearing(**options):
 def test_refused_supply(options, message):
     with pytest.raises(ehd.InputError, match=message):
         _bearing(**options)
+
+
+def test_end_pressures_in_an_array_are_a_pair():
+    given = np.array([0.0, 0.0])
+    assert _bearing(end_pressures=given) == _bearing(end_pressures=(0.0, 0.0))
+    assert _bearing(end_pressures=given, film=ehd.ImpedanceMap()).end_pressures == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(

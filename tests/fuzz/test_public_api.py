@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
+import types
 import warnings
 
 import numpy as np
@@ -58,6 +59,7 @@ GOOD = [
     STEEL,
     ehd.ModalBush(mesh=MESH, material=STEEL),
     ehd.ANCFBush(mesh=MESH, material=STEEL),
+    ehd.FEBore(fem=types.SimpleNamespace(elements=[])),
 ]
 NUMBERS = st.one_of(
     st.floats(),

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
+import io
 import math
+import zipfile
 
 import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.impedance import ImpedanceTable, impedance_force, impedance_table, interpolate
+from exudyn_ehd.film.impedance import FORMAT, SAMPLES, ImpedanceTable, impedance_force, impedance_table, interpolate
 from exudyn_ehd.joint.build import build_model
 
 SMALL = ehd.ImpedanceMap(n_theta=64, n_z=8, n_eccentricity=12, n_direction=17, largest_eccentricity_ratio=0.9)
@@ -191,6 +194,17 @@ def test_studies_solve_the_film_behind_the_map(make_bearing):
     )
 
 
+def _bytes(write):
+    buffer = io.BytesIO()
+    write(buffer)
+    return buffer.getvalue()
+
+
+def _cut_member(file):
+    with zipfile.ZipFile(file, "w") as archive:
+        archive.writestr("nodes.npy", b"\x93NUMPY\x01\x00")
+
+
 def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_path):
     film, closure = dataclasses.replace(SMALL, n_direction=18), ehd.SwiftStieber()
     monkeypatch.setenv("EXUDYN_EHD_CACHE", str(tmp_path / "new"))
@@ -220,6 +234,31 @@ def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_pa
     foreign.write_bytes(raw)
     with pytest.warns(UserWarning, match="damaged"):
         np.testing.assert_array_equal(impedance_table(film, ehd.Gumbel(), 2.0).nodes, other.nodes)
+    # the right digest does not make it the right content
+    key = hashlib.sha256(repr((FORMAT, film, type(closure).__name__, 2.0, SAMPLES)).encode()).digest()
+    assert hashlib.sha256(key + raw[32:]).digest() == raw[:32]
+    nodes = first.nodes
+    contents = (
+        {"a": nodes},
+        {"nodes": nodes},
+        {"nodes": nodes[:-1], "scalars": np.zeros(6)},
+        {"nodes": nodes.astype(complex), "scalars": np.zeros(6)},
+        {"nodes": np.where(nodes == nodes[3, 3, 0], np.nan, nodes), "scalars": np.zeros(6)},
+        {"nodes": nodes, "scalars": np.array(1.0)},
+        {"nodes": nodes, "scalars": np.zeros(6), "more": nodes},
+        {"nodes": np.array([None]), "scalars": np.zeros(6)},
+    )
+    payloads = [b"", b"no archive", b"PK\x03\x04 hardly one", _bytes(lambda f: np.save(f, nodes))]
+    payloads += [_bytes(lambda f, c=content: np.savez(f, **c)) for content in contents]
+    # an archive with a member that is cut short
+    payloads.append(_bytes(_cut_member))
+    # built already: what matters is that it is built, and replaces the file
+    monkeypatch.setattr("exudyn_ehd.film.impedance.build_table", lambda *args: first)
+    for payload in payloads:
+        path.write_bytes(hashlib.sha256(key + payload).digest() + payload)
+        with pytest.warns(UserWarning, match="no file of this package"):
+            np.testing.assert_array_equal(impedance_table(film, closure, 2.0).nodes, nodes)
+        assert path.read_bytes() == raw
     blocked = tmp_path / "file"
     blocked.write_text("not a folder")
     monkeypatch.setenv("EXUDYN_EHD_CACHE", str(blocked))

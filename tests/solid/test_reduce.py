@@ -1,6 +1,8 @@
 """Modes of a bush's bore: what they must span, and what the tolerance promises."""
 
 import dataclasses
+import hashlib
+import io
 
 import numpy as np
 import pytest
@@ -163,6 +165,14 @@ def test_modes_are_kept_on_disk_by_content(monkeypatch, tmp_path):
     with pytest.warns(UserWarning, match="damaged"):
         assert np.array_equal(bore_modes(bush).stiffness, first.stiffness)
     assert path.read_bytes() == raw
+    # the right digest over modes that don't belong together
+    payload = io.BytesIO()
+    np.savez(payload, displacements=first.displacements[1:], stiffness=first.stiffness, error=np.array(first.error))
+    key = hashlib.sha256(reduce._content(bush, bush.build_mesh())).digest()
+    path.write_bytes(hashlib.sha256(key + payload.getvalue()).digest() + payload.getvalue())
+    with pytest.warns(UserWarning, match="no file of this package's version"):
+        assert np.array_equal(bore_modes(bush).displacements, first.displacements)
+    assert path.read_bytes() == raw
 
 
 def test_waves_that_a_coarse_mesh_cannot_show_make_no_modes():
@@ -170,3 +180,10 @@ def test_waves_that_a_coarse_mesh_cannot_show_make_no_modes():
     modes = bore_modes(ModalBush(mesh=coarse, material=STEEL, tolerance=0.05))
     # some displace no bore node at all, and would have a stiffness of rounding's inverse, 1e39
     assert modes.stiffness.max() < 1e4 * modes.stiffness.min()
+
+
+@pytest.mark.parametrize("kind", [ModalBush, TotalLagrange])
+def test_quadrature_that_is_none_is_refused(kind):
+    for value in (np.inf, 14, None, "IRONS14"):
+        with pytest.raises(InputError, match=rf"{kind.__name__}.quadrature must be IRONS14, GAUSS27 or GAUSS8"):
+            kind(mesh=CYLINDER.mesh(), material=STEEL, quadrature=value)
