@@ -238,7 +238,7 @@ def roughness(case: Case) -> Finding:
 
 
 def contact(case: Case) -> Finding:
-    """Load that the contacts carry and how often, or the film thickness at which there should be one."""
+    """Load that the contacts carry, how often and when, or the film thickness at which there should be one."""
     b, record = case.bearing, case.record
     if b.contact is None and b.asperity is None:
         return _finding(
@@ -248,7 +248,11 @@ def contact(case: Case) -> Finding:
     share = max(s.contact_load / max(s.load, s.contact_load, 1e-300) for s in case.samples)
     often = ""
     if record is not None:
-        often = f", acting in {np.mean(record.contact_load > 1e-6 * case.largest('load')):.0%} of the steps"
+        acting = record.contact_load > 1e-6 * case.largest("load")
+        often = f", acting in {np.mean(acting):.0%} of the steps"
+        if np.any(acting):
+            times, most = record.time[acting], record.time[int(np.nanargmax(record.contact_load))]
+            often += f", {times[0]:.4g} to {times[-1]:.4g} s, most at {most:.4g} s"
     return _finding(
         "contact", f"share of the load{often}", share, CONTACT, True,
         needless="contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None."),

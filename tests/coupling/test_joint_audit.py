@@ -98,6 +98,15 @@ def test_contact_is_counted_over_the_steps():
     _run(mbs)
     finding = joint.audit()["contact"]
     assert finding.in_vain and "acting in 0% of the steps" in finding.indicator
+    assert "most at" not in finding.indicator
+    mbs, joint = _joint(load=2e5, contact=ehd.RegularisedWall(onset=1e-5))
+    _run(mbs)
+    finding, history = joint.audit()["contact"], joint.history
+    assert finding.matters
+    first, most = history.time[np.argmax(history.contact_load > 0)], history.time[np.argmax(history.contact_load)]
+    assert f", {first:.4g} to {history.time[-1]:.4g} s, most at {most:.4g} s" in finding.indicator
+    mbs, joint = _joint(contact=ehd.RegularisedWall(onset=1e-6))
+    _run(mbs)
     share = joint.audit(measure_time=True)["contact"].time_share
     assert share is not None and 0.0 <= share < 1.0
 
