@@ -1,6 +1,7 @@
 """Two joints of different fidelity in one model with the user's own hooks and sensors: each does what it does alone."""
 
 import numpy as np
+import pytest
 import scenes
 
 import exudyn_ehd as ehd
@@ -69,3 +70,40 @@ def test_two_joints_with_hooks_and_sensors_do_what_each_does_alone(measured):
     fine, coarse = (joints[name].history.eccentricity for name in FILMS)
     assert np.abs(fine - coarse).max() > 1e-2 * CLEARANCE
     assert joints["fine"].history.time.size == STEPS + 1
+
+
+def test_two_joints_with_hooks_and_sensors_go_on_from_a_stored_state(tmp_path):
+    def scene():
+        mbs = scenes.new_system()
+        joints = [add_journal(mbs, name, place) for name, place in (("fine", 0.0), ("coarse", 0.5))]
+        sensor = joints[0].AddSensor(ehd.Quantity.MINIMUM_GAP)
+        calls = []
+
+        def hook(mbs, t):
+            calls.append(t)
+            return True
+
+        mbs.SetPostStepUserFunction(hook)
+        mbs.Assemble()
+        return mbs, joints, sensor, calls
+
+    def settings(first, last):
+        s = scenes.settings(last * STEP, last - first)
+        s.timeIntegration.startTime = first * STEP
+        s.solution.sensors.writePeriod = 1e-12
+        return ehd.ConfigureSolver(s, relativeTolerance=1e-9)
+
+    through, whole, _, _ = scene()
+    ehd.SolveDynamic(through, settings(0, STEPS))
+    first, _, _, _ = scene()
+    ehd.SolveDynamic(first, settings(0, STEPS // 2))
+    ehd.SaveState(first, tmp_path / "state.npz")
+    second, parts, sensor, calls = scene()
+    ehd.SolveDynamic(second, settings(STEPS // 2, STEPS), restart=tmp_path / "state.npz")
+    assert calls[-1] == pytest.approx(STEPS * STEP)
+    for one, other in zip(whole, parts, strict=True):
+        difference = np.abs(one.history.eccentricity[-1] - other.history.eccentricity[-1]).max()
+        # Newton's tolerance of 1e-9 over the steps
+        assert difference < 1e-7 * CLEARANCE
+    stored = second.GetSensorStoredData(sensor)
+    np.testing.assert_allclose(stored[-1, 1], parts[0].history.minimum_gap[-1], rtol=1e-12)
