@@ -74,10 +74,14 @@ RECORD_HEAD = [
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--states", type=int, default=SHORT, help="random states per closure; 0: none")
+    parser.add_argument(
+        "--states", type=int, default=SHORT, help="random states per closure; 0: none, a written record stays"
+    )
     parser.add_argument("--only", default="", help="cases whose name contains this text")
     parser.add_argument("--write", type=pathlib.Path, help="file with the markers <!-- hard cases --> and <!-- end -->")
     arguments = parser.parse_args()
+    if arguments.write and arguments.only:
+        parser.error("--write needs all cases; leave --only out")
     print(*CASE_HEAD, sep="\n")
     cases, passed = case_rows(arguments.only)
     records, solved = [], True
@@ -86,7 +90,8 @@ def main() -> int:
         records, solved = record_rows(arguments.states)
     if arguments.write:
         text = arguments.write.read_text(encoding="utf-8")
-        for key, lines in (("hard cases", CASE_HEAD + cases), ("film record", RECORD_HEAD + records)):
+        tables = [("hard cases", CASE_HEAD + cases)] + [("film record", RECORD_HEAD + records)] * bool(arguments.states)
+        for key, lines in tables:
             marked = re.compile(rf"(<!-- {key} -->\n).*?(<!-- end -->)", re.DOTALL)
             if not marked.search(text):
                 raise SystemExit(f"{arguments.write} has no marker <!-- {key} -->")
