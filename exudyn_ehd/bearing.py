@@ -33,6 +33,10 @@ SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
 
 
+# Far beyond what oil or steel bears, and far from overflow.
+LARGEST_PRESSURE = 1e12
+
+
 @dataclass(frozen=True, kw_only=True)
 class Periodic:
     """The film closes around the bearing."""
@@ -139,6 +143,14 @@ class JournalBearing:
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_areas(self.supply)
+        for name, pressure in [
+            ("end_pressures", ends.tolist()),
+            *(("supply", [area.pressure]) for area in self.supply),
+        ]:
+            if max(map(abs, pressure)) > LARGEST_PRESSURE:
+                raise InputError(
+                    f"JournalBearing.{name}: pressures must be within +-{LARGEST_PRESSURE:g} Pa (gauge), got {pressure}; give them in Pa."
+                )
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
         open_ring = isinstance(self.inlet, MaximumGap)

@@ -173,3 +173,11 @@ def test_groove_up_to_the_ends_feeds_what_leaks_without_mass_conservation():
     film = ehd.steady(bearing, speed=100.0, eccentricity_ratio=0.5, direction=1.0)
     # the end's half control volumes next to the groove are full, too
     assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    "options", [{"end_pressures": (0.0, 1e300)}, {"supply": (ehd.Hole(angle=0.0, diameter=2e-3, pressure=1e300),)}]
+)
+def test_pressures_beyond_any_bearing_are_refused_by_name(options, make_bearing):
+    with pytest.raises(ehd.InputError, match=f"JournalBearing.{next(iter(options))}: pressures must be within"):
+        make_bearing(**options)
