@@ -253,7 +253,9 @@ class _Entry:
         row = _evaluated(lambda: self.function(own))
         if self.show_progress:
             given = ", ".join(f"{name} = {value:.5g}" for name, value in own.items())
-            print(f"[{index + 1}/{self.count}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)", flush=True)
+            line = f"[{index + 1}/{self.count}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)\n"
+            # one piece: an unbuffered print writes the line's end apart, and lines of two processes could then mix
+            print(line, end="", flush=True)
         return row
 
 
