@@ -46,7 +46,7 @@ def test_warm_transient_step_with_tangent(benchmark, grid):
 
 
 def test_steady_cold(benchmark):
-    """Limit 4 ms at 100 x 26, where 3.2 were measured; the target is 10."""
+    """Limit 3.6 ms at 100 x 26, where 3.2 were measured; the target is 10."""
     model = _model(100, 26)
     motion = _motion(0)
     motion[4:8] = 0.0
@@ -61,7 +61,7 @@ def test_steady_cold(benchmark):
         start = time.process_time()
         cold()
         times.append(time.process_time() - start)
-    assert min(times) < 4e-3
+    assert min(times) < 3.6e-3
 
 
 @pytest.mark.parametrize("supplied", [False, True], ids=["plain", "two grooves"])

@@ -17,19 +17,20 @@ from exudyn_ehd.film.transport import (
 
 N, M, PC = 14, 6, -0.3
 CASES = {
-    "one film": dict(columns=(3, 9)),
-    "against": dict(columns=(3, 9), vx=-1.0),
-    "over the end of the ring": dict(columns=(11, 17), vz=0.4),
-    "two films": dict(columns=(2, 5), more=(8, 11), vz=-0.7, vx=-1.0),
-    "strips along the ends": dict(columns=(4, 9), strips=True),
-    "strips, axial flow": dict(columns=(4, 9), strips=True, vz=0.5),
-    "full": dict(columns=(0, N)),
-    "instationary": dict(columns=(5, 9), inverse_step=3.0),
-    "missing links": dict(columns=(0, N), gap=6, strips=True),
-    "pocket": dict(columns=(2, 9), pocket=True, vz=0.2),
-    "ragged": dict(columns=(3, 9), ragged=True, vz=0.3),
-    "at rest": dict(columns=(0, N), vx=0.0),
-    "squeezed": dict(columns=(3, 9), vx=0.0, inverse_step=2.0),
+    "one film": {"columns": (3, 9)},
+    "against": {"columns": (3, 9), "vx": -1.0},
+    "over the end of the ring": {"columns": (11, 17), "vz": 0.4},
+    "two films": {"columns": (2, 5), "more": (8, 11), "vz": -0.7, "vx": -1.0},
+    "strips along the ends": {"columns": (4, 9), "strips": True},
+    "strips, axial flow": {"columns": (4, 9), "strips": True, "vz": 0.5},
+    "full": {"columns": (0, N)},
+    "instationary": {"columns": (5, 9), "inverse_step": 3.0},
+    "missing links": {"columns": (0, N), "gap": 6, "strips": True},
+    "missing links, against": {"columns": (0, N), "gap": 6, "vx": -1.0},
+    "pocket": {"columns": (2, 9), "pocket": True, "vz": 0.2},
+    "ragged": {"columns": (3, 9), "ragged": True, "vz": 0.3},
+    "at rest": {"columns": (0, N), "vx": 0.0},
+    "squeezed": {"columns": (3, 9), "vx": 0.0, "inverse_step": 2.0},
 }
 
 
