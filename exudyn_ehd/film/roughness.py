@@ -8,7 +8,9 @@ correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, 
     phi_s = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_s,
     Phi_s = A1 H^a1 exp(-a2 H + a3 H^2) for H <= 5,    A2 exp(-H / 4) for H > 5.
 
-Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the friction factors).
+Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the friction factors). All
+constants agree with those that foam-extend 4.0 uses in its lubricated contact, those of Phi_fs for gamma = 1 also with R. Boman's EHD program
+(University of Liege); the smallest H is 1 there for all gamma < 1.
 
 Friction. The second paper gives the mean shear stress of the two surfaces in pure sliding as ``mu U / h (phi_f +- phi_fs)`` with
 ``phi_f = h E[1 / local gap]`` (here for Gaussian heights, with their cut-off at sigma / 100) and
