@@ -16,7 +16,7 @@ from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
-from exudyn_ehd.joint.drag import drag_by_gap, drag_weights
+from exudyn_ehd.joint.drag import add_drag_rows, drag_by_gap
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import LinerFilmSolver
@@ -71,9 +71,9 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
     if has_extra_rows(model):
         extra = gradient[at : at + 2]
     if model.effects.uneven_drag:
-        cell, face = drag_by_gap(model)
-        contract_pose(cell, model.cos_x, model.sin_x, model.grid.z, extra[:, :4])
-        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:, :4])
+        face, cell = drag_by_gap(model)
+        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:1, :4])
+        contract_pose(cell, model.cos_x, model.sin_x, model.grid.z, extra[1:, :4])
     return gradient[:4], dc, extra
 
 
@@ -155,17 +155,16 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
     if shear:
         _shear_row(model, rows[4])
     if has_extra_rows(model):
-        at = w.order[: w.count]
         rows[-2:] = 0.0
         if model.extra_slope_x is not None and model.extra_slope_z is not None:
-            weight = g.weight.ravel()[at]
-            rows[-2] = weight * model.extra_slope_x.ravel()[at]
-            rows[-1] = weight * model.extra_slope_z.ravel()[at]
+            at = w.order[: w.count]
+            weight = np.where(w.active, g.weight, 0.0).ravel()[at]
+            for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
+                row[:] = weight * slope.ravel()[at]
         if model.effects.uneven_drag:
-            rows[-2:] += drag_weights(model).reshape(2, -1)[:, at]
-        rows[-2:, ~w.active.ravel()[at]] = 0.0
+            add_drag_rows(model, rows[-2:])
         if P_q is not None:
-            rows[-2:] *= P_q.ravel()[at]
+            weigh_rows(w.order, w.count, P_q, rows[-2:])
     return rows
 
 

@@ -156,10 +156,10 @@ def test_equal_shares_call_nothing(monkeypatch):
     def forbidden(*_):
         raise AssertionError("called for equally rough surfaces")
 
-    for name in ("drag_integrals", "drag_weights", "drag_by_gap"):
+    for name in ("drag_integrals", "add_drag_rows", "drag_by_gap"):
         monkeypatch.setattr(f"exudyn_ehd.joint.drag.{name}", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.model.drag_integrals", forbidden)
-    monkeypatch.setattr("exudyn_ehd.joint.gradients.drag_weights", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.gradients.add_drag_rows", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.gradients.drag_by_gap", forbidden)
     model_of(0.5).evaluate(at(0.5)).tangent()
     with pytest.raises(AssertionError):
