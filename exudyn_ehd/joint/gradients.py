@@ -131,9 +131,7 @@ def field_gradient(
 
 def shear_needs_adjoint(model: BearingModel) -> bool:
     """Whether fill or pressure enter the Couette shear."""
-    return (
-        model.solver.closure.conserves_mass or model.effects.pressure_law is not None or model.liner_solver is not None
-    )
+    return model.solver.closure.conserves_mass or model.ratio_q is not None or model.liner_solver is not None
 
 
 def has_extra_rows(model: BearingModel) -> bool:

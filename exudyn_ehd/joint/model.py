@@ -405,6 +405,14 @@ class BearingModel:
                 self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
             self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
             return Status.CONVERGED
+        if (
+            self.compressible is not None
+            and self.compressible.law.viscosity is None
+            and self.effects.shear_factor is None
+        ):
+            self.P, self.P_q = np.empty(shape), np.empty(shape)
+            found = self.compressible.pressure_of_solution(self.P, self.P_q)
+            return Status.CONVERGED if found else Status.NO_PRESSURE
         ratio, ratio_q = np.empty(shape), np.empty(shape)
         ratio_h = ratio_v = s.nothing
         self.P_q = None
