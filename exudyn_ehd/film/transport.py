@@ -504,3 +504,55 @@ def solve_transport_transposed(t, unknowns, x):
         for q in range(sides):
             target[q] += k * known[q]
     solve_columns(t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)
+
+
+@njit(cache=True, fastmath=_FAST)
+def _carry_back_one(t, placed, mu):
+    """mu = T^T mu in place, for one film."""
+    for c in range(placed - 1, -1, -1):
+        m = mu[c] * t.inverse[c]
+        mu[c] = m
+        if t.along[c] >= 0:
+            mu[t.along[c]] += t.by_along[c] * m
+        if t.across[c] >= 0:
+            mu[t.across[c]] += t.by_across[c] * m
+
+
+@njit(cache=True, fastmath=_FAST)
+def reduce_transposed(t, unknowns, x):
+    """As `solve_transport_transposed` for every row of x (k, unknowns), but for the last step: its full vertices are left to A."""
+    count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
+    placed = unknowns - count
+    V = t.spread[: count * stride].reshape(count, stride)
+    trial = np.empty(count)
+    z = np.empty(stride)
+    for k in range(x.shape[0]):
+        g, mu = x[k, :count], x[k, count:unknowns]
+        if fronts > 0:
+            trial[:] = g
+            if np.any(mu != 0.0):
+                back = mu.copy()
+                _carry_back_one(t, placed, back)
+                for e in range(t.shape[DRIVEN]):
+                    trial[t.driven_from[e]] += t.driven_by[e] * back[t.driven_to[e]]
+            z[:] = 0.0
+            for r in range(count):
+                a = trial[r]
+                row = V[r]
+                for b in range(stride):
+                    z[b] += a * row[b]
+            for a in range(fronts):
+                s = z[a]
+                for b in range(a):
+                    s -= t.loop[b, a] * z[b]
+                z[a] = s / t.loop[a, a]
+            for a in range(fronts - 1, -1, -1):
+                s = z[a]
+                for b in range(a + 1, fronts):
+                    s -= t.loop[b, a] * z[b]
+                z[a] = s
+            for e in range(t.shape[TAKEN]):
+                mu[t.taken_from[e]] += t.taken_by[e] * z[t.taken_to[e]]
+        _carry_back_one(t, placed, mu)
+        for e in range(t.shape[DRIVEN]):
+            g[t.driven_from[e]] += t.driven_by[e] * mu[t.driven_to[e]]
