@@ -105,14 +105,9 @@ class ModalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
-        stiffness, damping, by_place, by_rate = rigid
         whole = np.empty((n + k, n + k))
-        whole[:n, :n] = f_q * stiffness + f_qt * damping
-        whole[:n, n:] = self._wrench_map() @ T[:6, SIZE:]
-        whole[n:, :n] = T[6:, :SIZE] @ (f_q * by_place + f_qt * by_rate)
-        whole[n:, n:] = T[6:, SIZE:]
-        whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
-        return np.negative(whole, out=whole)
+        kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
+        return whole
 
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
         """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""

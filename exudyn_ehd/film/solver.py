@@ -277,7 +277,7 @@ class FilmSolver:
         self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as of `columns.make_tiles`, in place."""
         solve_columns(*self.adjoint_factor(), self.work.count, self.work.width, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:

@@ -9,6 +9,7 @@ An adjoint functional's gradient is ``-lam . dr``.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -87,25 +88,19 @@ def sparse_product(indptr, indices, data, x, out):
 
 @njit(cache=True, fastmath=_FAST)
 def weighted_rows(shapes, place, weight, first, out):
-    """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of out (count, >= first + k)."""
-    k = shapes.shape[1]
-    for r in range(place.size):
-        own, target, w = shapes[place[r]], out[r, first : first + k], weight[r]
-        for q in range(k):
-            target[q] = w * own[q]
-
-
-@njit(cache=True, fastmath=_FAST)
-def combine_rows(weight, place, shapes, out):
-    """Stencil (count, 5) times fields: out (count, k) for shapes (n m, k)."""
-    count = len(weight)
-    for r in range(count):
-        a, b, c, d, e = weight[r, 0], weight[r, 1], weight[r, 2], weight[r, 3], weight[r, 4]
-        own, nxt, prv = shapes[place[r, 0]], shapes[place[r, 1]], shapes[place[r, 2]]
-        up, down = shapes[place[r, 3]], shapes[place[r, 4]]
-        target = out[r]
-        for q in range(target.size):
-            target[q] = a * own[q] + b * nxt[q] + c * prv[q] + d * up[q] + e * down[q]
+    """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of tiles out (tiles, rows, width)."""
+    k, wide = shapes.shape[1], out.shape[2]
+    for tile in range(out.shape[0]):
+        # columns of this tile and what they hold
+        low = max(first - tile * wide, 0)
+        start = low + tile * wide - first
+        size = min(wide - low, k - start)
+        if low >= wide or size <= 0:
+            continue
+        for r in range(place.size):
+            own, target, w = shapes[place[r], start : start + size], out[tile, r, low : low + size], weight[r]
+            for q in range(size):
+                target[q] = w * own[q]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -224,3 +219,76 @@ def transposed_slopes(field, width, z, along_x_out, along_z_out):
             along_z_out[i, j + 1] += low * low * share
             along_z_out[i, j - 1] -= high * high * share
             along_z_out[i, j] += (high * high - low * low) * share
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_gap(field, rate, width, z, H, HF, H_t, slope_x_out, slope_z_out):
+    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as of `gap_slopes`. Returns the smallest gap."""
+    n, m = field.shape
+    link = np.empty((n, m))
+    gap_slopes(field, width, z, link, slope_x_out, slope_z_out)
+    smallest = np.inf
+    for i in range(n):
+        for j in range(m):
+            H[i, j] += field[i, j]
+            HF[i, j] += link[i, j]
+            H_t[i, j] += rate[i, j]
+            smallest = min(smallest, H[i, j], HF[i, j])
+    return smallest
+
+
+@njit(cache=True, fastmath=_FAST)
+def shear_fields(P, weight, width, z, couette, ends, factors, out):
+    """Combinations (2, n, m) of the fields that shear owes to an elastic gap.
+
+    Parameters
+    ----------
+    P, weight : (n, m) arrays
+        Pressure and integration weights: slopes of the gap act on their product.
+    couette, ends : (n, m) arrays
+        Gradients of the Couette shear and of the ends' pressure force to the gap.
+    factors : (2, 4) array
+        Of couette, slopes in theta, slopes in z, ends.
+    """
+    n, m = P.shape
+    along_x, along_z = np.empty((n, m)), np.empty((n, m))
+    transposed_slopes(P * weight, width, z, along_x, along_z)
+    for r in range(2):
+        a, b, c, d = factors[r, 0], factors[r, 1], factors[r, 2], factors[r, 3]
+        for i in range(n):
+            for j in range(m):
+                out[r, i, j] = a * couette[i, j] + b * along_x[i, j] + c * along_z[i, j] + d * ends[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
+    """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
+
+    Parameters
+    ----------
+    tiles : (tiles, 10, width) array
+        Minus gradients of integrals and loads to the motion; only those of the loads are wanted.
+    by_bore : (r + k, k) array
+        Gradients of integrals and loads to the bore.
+    weights, direct : (6, r), (6, k) arrays
+        Integrals in the wrench; gradient of the wrench to the gap at fixed pressure, which counts ``by_gap`` times.
+    scale, motion_scale : float, (10,) array
+        Units of the loads and of the motion.
+    motion_out, bore_out : (k, 10), (6 + k, k) arrays
+        Gradients of the loads to the motion; of wrench and loads to the bore.
+    """
+    r, k, width = weights.shape[1], direct.shape[1], tiles.shape[2]
+    for a in range(k):
+        tile, q = (r + a) // width, (r + a) % width
+        for c in range(10):
+            motion_out[a, c] = -scale * motion_scale[c] * tiles[tile, c, q]
+        for b in range(k):
+            bore_out[6 + a, b] = scale * by_bore[r + a, b]
+    for i in range(6):
+        for b in range(k):
+            bore_out[i, b] = by_gap * direct[i, b]
+        for c in range(r):
+            w = weights[i, c]
+            if w != 0.0:
+                for b in range(k):
+                    bore_out[i, b] += w * by_bore[c, b]

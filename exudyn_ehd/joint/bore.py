@@ -11,11 +11,15 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from exudyn_ehd.film.folding import GapStencil, fold_adjoints, folded_displacements, folded_loads, place_columns
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_modes, add_transposed, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.film.stencil import add_transposed, sparse_product, weighted_rows
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
+
+# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue problems.
+ASYMMETRY = 1e-9
 
 
 class Bore(Protocol):
@@ -38,10 +42,10 @@ class Bore(Protocol):
         """S q and S q_t (n, m)."""
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into out (count, >= first + k) from column ``first`` on."""
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `columns.make_tiles` from column ``first`` on."""
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """``X^T B S`` (r, k) for X = ``fields`` (count, r) and B with five weights at five flat vertices per row, both (count, 5)."""
+    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
+        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and B the stencil's rows."""
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -49,6 +53,9 @@ class Bore(Protocol):
 
 class ModalBore:
     """Bore that moves in modes.
+
+    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows (see
+    `film.folding`).
 
     Parameters
     ----------
@@ -62,14 +69,25 @@ class ModalBore:
     stiffness : (k,) array
         Modal stiffness, N/m.
     modes : BoreModes or ReducedBore
+    mirrored : int
+        Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
     """
 
     def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
         self.modes = modes
         self.grid_shape = grid.shape
-        self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
-        self.transposed = np.ascontiguousarray(self.shapes.T)
         self.stiffness = modes.stiffness
+        whole = modes.radial(grid.x, grid.z * grid.reference_length)
+        is_even = _snap_parity(whole)
+        n, m = grid.shape
+        self.mirrored = 0 if is_even is None else m // 2
+        is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
+        self._order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
+        even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
+        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), -1)
+        self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
+        self._even_rows, self._odd_rows = np.ascontiguousarray(self._even.T), np.ascontiguousarray(self._odd.T)
+        self.shapes = np.ascontiguousarray(whole.reshape(-1, modes.count))
 
     @property
     def size(self) -> int:
@@ -78,35 +96,61 @@ class ModalBore:
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m)."""
-        return (self.shapes @ q).reshape(self.grid_shape)
+        return self.displacements(q, q)[0]
 
     def load(self, field: np.ndarray) -> np.ndarray:
         """S^T f (k,)."""
-        return self.transposed @ field.ravel()
+        return self.contract(field[None])[0]
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
-        return fields.reshape(len(fields), -1) @ self.shapes
+        out = np.empty((len(fields), self.size))
+        folded_loads(fields, self._even, self._odd, self._order, out)
+        return out
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
-        place, rate = np.zeros(len(self.shapes)), np.zeros(len(self.shapes))
-        add_modes(self.transposed, q, q_t, place, rate)
-        return place.reshape(self.grid_shape), rate.reshape(self.grid_shape)
+        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
+        folded_displacements(self._even_rows, self._odd_rows, self._order, q, q_t, place, rate)
+        return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
         weighted_rows(self.shapes, places, weight, first, out)
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """X^T B S (r, k)."""
-        rows = np.empty((len(weight), self.size))
-        combine_rows(weight, places, self.shapes, rows)
-        return fields.T @ rows
+    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        m, mirrored = self.grid_shape[1], self.mirrored
+        first, _, even, odd = fold_adjoints(stencil.weight, stencil.numbers, mirrored, fields)
+        out = np.empty((size, self.size))
+        place_columns(
+            self._product(even[:, :size], self._even, first, m - mirrored),
+            self._product(odd[:, :size], self._odd, first, mirrored), self._order, out,
+        )  # fmt: skip
+        return out
+
+    def _product(self, fields: np.ndarray, shapes: np.ndarray, first: int, rows: int) -> np.ndarray:
+        """Folded fields (columns rows, r), from column ``first`` in theta on, transposed times folded shapes (n rows, k): (r, k)."""
+        start, seam = first * rows, len(shapes) - first * rows
+        if len(fields) <= seam:
+            return fields.T @ shapes[start : start + len(fields)]
+        return fields[:seam].T @ shapes[start:] + fields[seam:].T @ shapes[: len(fields) - seam]
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
-        return (self.transposed * field.ravel()) @ self.shapes
+        return (self.shapes * field.reshape(-1, 1)).T @ self.shapes
+
+
+def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
+    """Which of the shapes (n, m, k) are even in z, the others being odd; rounding is taken off them. None if any is neither."""
+    mirror = shapes[:, ::-1]
+    even, odd = 0.5 * (shapes + mirror), 0.5 * (shapes - mirror)
+    sizes = np.abs(even).max(axis=(0, 1)), np.abs(odd).max(axis=(0, 1))
+    if np.any(np.minimum(*sizes) > ASYMMETRY * np.maximum(*sizes)):
+        return None
+    is_even = sizes[0] >= sizes[1]
+    shapes[:] = np.where(is_even, even, odd)
+    return is_even
 
 
 class NodalBore:
@@ -164,12 +208,15 @@ class NodalBore:
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        out[:, first : first + self.size] = diags(weight).dot(self.shapes[places]).toarray()
+        rows = diags(weight).dot(self.shapes[places]).toarray()
+        weighted_rows(rows, np.arange(len(places)), np.ones(len(places)), first, out)
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """X^T B S (r, k)."""
-        at_vertices = np.zeros((self.shapes.shape[0], fields.shape[1]))
-        add_transposed(weight, places, fields, at_vertices)
+    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], -1)
+        known = np.ascontiguousarray(known[: len(stencil.weight), :size])
+        at_vertices = np.zeros((self.shapes.shape[0], size))
+        add_transposed(stencil.weight, stencil.vertices, known, at_vertices)
         return (self.transposed @ at_vertices).T
 
     def product(self, field: np.ndarray) -> np.ndarray:

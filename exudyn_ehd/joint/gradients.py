@@ -14,7 +14,7 @@ import numpy as np
 from exudyn_ehd.film.contact_loads import chain_limiter, chain_links, contact_tangent, couette_gradient_ratio
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 
 if TYPE_CHECKING:
@@ -137,20 +137,13 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
     shear = shear_needs_adjoint(model)
     rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
-    P_q = None
+    if model.extra_slope_x is not None and model.extra_slope_z is not None:
+        slope_adjoint_rhs(w.order, w.count, g.weight, w.active, model.extra_slope_x, model.extra_slope_z, rows[-2:])
     if model.effects.pressure_law is not None:
         assert model.P_q is not None
-        P_q = model.P_q
-        weigh_rows(w.order, w.count, P_q, rows[:4])
+        weigh_rows(w.order, w.count, model.P_q, rows)
     if shear:
         _shear_row(model, rows[4])
-    if model.extra_slope_x is not None and model.extra_slope_z is not None:
-        at = w.order[: w.count]
-        weight = np.where(w.active, g.weight, 0.0).ravel()[at]
-        for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
-            row[:] = weight * slope.ravel()[at]
-            if P_q is not None:
-                row *= P_q.ravel()[at]
     return rows
 
 

@@ -32,6 +32,7 @@ from exudyn_ehd.film.loads import (
     end_flows,
     pressure_integrals,
     refined_peak,
+    slope_integrals,
 )
 from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
@@ -329,8 +330,7 @@ class BearingModel:
             rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
         smallest = 1.0 - float(largest_eccentricity(self.pose, self.half_length))
         if self.effects.gap_terms:
-            self._add_gap_terms(history)
-            smallest = min(float(s.H.min()), float(s.HF.min()))
+            smallest = self._add_gap_terms(history)
         if self.contact_fields is not None:
             for k, contact in enumerate(self.effects.contacts):
                 contact.pressure(s.H, self.contact_fields.P[k], self.contact_fields.slope[k])
@@ -338,8 +338,8 @@ class BearingModel:
             self._limit_gap(self.effects.limiter)
         return smallest
 
-    def _add_gap_terms(self, history: History | None) -> None:
-        """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
+    def _add_gap_terms(self, history: History | None) -> float:
+        """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
         if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
@@ -349,6 +349,7 @@ class BearingModel:
             gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
+        return min(float(s.H.min()), float(s.HF.min()))
 
     def _limit_gap(self, limiter: GapLimiter) -> None:
         """The gap that the film sees, and its rate."""
@@ -449,8 +450,7 @@ class BearingModel:
         pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
         self.extra_theta = self.extra_z = 0.0
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
-            self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
-            self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+            self.extra_theta, self.extra_z = slope_integrals(self.P, g.weight, self.extra_slope_x, self.extra_slope_z)
         if self.liner_solver is not None:
             # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
             self.extra_z += (

@@ -1,0 +1,217 @@
+"""Fields of a bore that is symmetric about its mid-plane, folded into even and odd halves.
+
+With z -> -z the rows of a grid with m vertices along z mirror each other: row j and row m - 1 - j for j < mirrored = m // 2; a middle row
+(m odd) is its own mirror. Shapes that are even or odd in z are known by their rows j < m - mirrored (even) and j < mirrored (odd), and
+
+    S^T f = S_even^T (f_j + f_mirror) + S_odd^T (f_j - f_mirror),
+
+half the work and half the memory of the whole. ``mirrored = 0`` folds nothing: every shape counts as even and has all m rows.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.columns import TILE
+from exudyn_ehd.film.stencil import add_modes
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+class GapStencil(NamedTuple):
+    """Derivatives of the balances at the unknowns with respect to an elastic gap; see `stencil.gap_stencil`.
+
+    Attributes
+    ----------
+    weight, vertices : (count, 5) float and int arrays
+        Weights of the unknowns' rows and the flat vertices they belong to.
+    numbers : (n, m) int array
+        Unknown of every vertex, -1 where there is none.
+    """
+
+    weight: np.ndarray
+    vertices: np.ndarray
+    numbers: np.ndarray
+
+
+@njit(cache=True)
+def number_vertices(places, numbers_out):
+    """Unknown of every vertex, -1 where there is none: numbers_out (n, m) for flat vertices ``places`` (count,)."""
+    flat = numbers_out.reshape(-1)
+    flat[:] = -1
+    for r in range(places.size):
+        flat[places[r]] = r
+
+
+@njit(cache=True)
+def touched_columns(numbers):
+    """First column and number of consecutive columns (cyclic) that hold all unknowns and their neighbours in theta."""
+    n, m = numbers.shape
+    longest, behind, run = 0, 0, 0
+    # twice around: the longest run of columns without unknowns may cross the seam
+    for s in range(2 * n):
+        i = s % n
+        empty = True
+        for j in range(m):
+            if numbers[i, j] >= 0:
+                empty = False
+                break
+        run = run + 1 if empty else 0
+        if longest < run <= n:
+            longest, behind = run, (i + 1) % n
+    if longest < 3:
+        return 0, n
+    return (behind + n - 1) % n, n - longest + 2
+
+
+@njit(cache=True, fastmath=_FAST)
+def unfold(even, odd, out):
+    """Field (n, m) of an even half (n, m - mirrored) and an odd half (n, mirrored)."""
+    n, m = out.shape
+    mirrored = odd.shape[1]
+    for i in range(n):
+        for j in range(mirrored):
+            a, b = even[i, j], odd[i, j]
+            out[i, j] = a + b
+            out[i, m - 1 - j] = a - b
+        for j in range(mirrored, m - mirrored):
+            out[i, j] = even[i, j]
+
+
+@njit(cache=True)
+def place_columns(even, odd, order, out):
+    """Columns of two matrices (r, a) and (r, b) to the places ``order`` (a + b,) in out (r, a + b)."""
+    a = even.shape[1]
+    for r in range(out.shape[0]):
+        target = out[r]
+        for q in range(a):
+            target[order[q]] = even[r, q]
+        for q in range(odd.shape[1]):
+            target[order[a + q]] = odd[r, q]
+
+
+@njit(cache=True, fastmath=_FAST)
+def folded_loads(fields, even, odd, order, out):
+    """Every field's S^T f, out (r, k) for fields (r, n, m); vertices without a field cost nothing.
+
+    Parameters
+    ----------
+    even, odd : (n (m - mirrored), a) and (n mirrored, b) arrays
+        Shapes.
+    order : (a + b,) int array
+        Places of even and odd shapes in the columns of ``out``.
+    """
+    count, n, m = fields.shape
+    a, b = even.shape[1], odd.shape[1]
+    mirrored = odd.shape[0] // n
+    upper = m - mirrored
+    first, second = np.zeros((count, a)), np.zeros((count, b))
+    for i in range(n):
+        for j in range(upper):
+            for k in range(count):
+                f = fields[k, i, j]
+                g = fields[k, i, m - 1 - j] if j < mirrored else 0.0
+                if f == 0.0 and g == 0.0:
+                    continue
+                row, target, w = even[i * upper + j], first[k], f + g
+                for q in range(a):
+                    target[q] += w * row[q]
+                if j < mirrored:
+                    row, target, w = odd[i * mirrored + j], second[k], f - g
+                    for q in range(b):
+                        target[q] += w * row[q]
+    place_columns(first, second, order, out)
+
+
+@njit(cache=True)
+def transpose_stencil(weight, numbers, first, columns, weight_out, row_out):
+    """Columns of a stencil, by vertices.
+
+    Parameters
+    ----------
+    weight, numbers
+        As in `GapStencil`.
+    first, columns : int
+        Columns in theta (cyclic) that are wanted.
+    weight_out, row_out : (columns m, 5) float and int arrays
+        Weights and the unknowns they belong to; 0 and any unknown where there is none.
+    """
+    n, m = numbers.shape
+    for c in range(columns):
+        i = (first + c) % n
+        prv, nxt = (i + n - 1) % n, (i + 1) % n
+        for j in range(m):
+            v = c * m + j
+            row_out[v, 0], row_out[v, 1], row_out[v, 2] = numbers[i, j], numbers[nxt, j], numbers[prv, j]
+            row_out[v, 3] = numbers[i, j + 1] if j + 1 < m else -1
+            row_out[v, 4] = numbers[i, j - 1] if j > 0 else -1
+            for s in range(5):
+                # this vertex is the neighbour behind of the one after it, and so on
+                twin = s if s == 0 else (s - 1 ^ 1) + 1
+                r = row_out[v, s]
+                weight_out[v, s] = weight[r, twin] if r >= 0 else 0.0
+                row_out[v, s] = max(r, 0)
+
+
+@njit(cache=True, fastmath=_FAST)
+def fold_transposed(weight, row, columns, fields, even_out, odd_out):
+    """Transposed stencil times fields, folded.
+
+    Parameters
+    ----------
+    weight, row : (columns m, 5) arrays
+        From `transpose_stencil`.
+    columns : int
+    fields : (tiles, rows, TILE) array
+        At the unknowns, see `columns.make_tiles`.
+    even_out, odd_out : (columns (m - mirrored), tiles TILE) and (columns mirrored, tiles TILE) arrays
+    """
+    m, mirrored = weight.shape[0] // columns, odd_out.shape[0] // columns
+    upper = m - mirrored
+    for tile in range(fields.shape[0]):
+        X, at = fields[tile], tile * TILE
+        for c in range(columns):
+            for j in range(upper):
+                v, e = c * m + j, c * upper + j
+                a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+                i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+                if j < mirrored:
+                    v, o = c * m + m - 1 - j, c * mirrored + j
+                    b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+                    k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+                    for q in range(TILE):
+                        a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                        b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
+                        even_out[e, at + q] = a + b
+                        odd_out[o, at + q] = a - b
+                else:
+                    for q in range(TILE):
+                        a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                        even_out[e, at + q] = a
+
+
+@njit(cache=True)
+def fold_adjoints(weight, numbers, mirrored, fields):
+    """`fold_transposed` where it is not zero: first column and number of columns in theta, even and odd half."""
+    m, width = numbers.shape[1], fields.shape[0] * TILE
+    first, columns = touched_columns(numbers)
+    by_vertex, row = np.empty((columns * m, 5)), np.empty((columns * m, 5), dtype=np.int64)
+    transpose_stencil(weight, numbers, first, columns, by_vertex, row)
+    even, odd = np.empty((columns * (m - mirrored), width)), np.empty((columns * mirrored, width))
+    fold_transposed(by_vertex, row, columns, fields, even, odd)
+    return first, columns, even, odd
+
+
+@njit(cache=True)
+def folded_displacements(even_rows, odd_rows, order, q, q_t, place_out, rate_out):
+    """S q and S q_t (n, m) from shapes in rows, even_rows (a, n (m - mirrored)) and odd_rows (b, n mirrored), at places ``order`` (a + b,) in q."""
+    n, a = place_out.shape[0], even_rows.shape[0]
+    turned, turned_t = q[order], q_t[order]
+    even, odd = np.zeros((2, even_rows.shape[1])), np.zeros((2, odd_rows.shape[1]))
+    add_modes(even_rows, turned[:a], turned_t[:a], even[0], even[1])
+    add_modes(odd_rows, turned[a:], turned_t[a:], odd[0], odd[1])
+    unfold(even[0].reshape(n, -1), odd[0].reshape(n, odd_rows.shape[1] // n), place_out)
+    unfold(even[1].reshape(n, -1), odd[1].reshape(n, odd_rows.shape[1] // n), rate_out)
