@@ -16,7 +16,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.columns import TILE
-from exudyn_ehd.film.stencil import add_modes
+from exudyn_ehd.film.stencil import put_row
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -65,20 +65,6 @@ def touched_columns(numbers):
     if longest < 3:
         return 0, n
     return (behind + n - 1) % n, n - longest + 2
-
-
-@njit(cache=True, fastmath=_FAST)
-def unfold(even, odd, out):
-    """Field (n, m) of an even half (n, m - mirrored) and an odd half (n, mirrored)."""
-    n, m = out.shape
-    mirrored = odd.shape[1]
-    for i in range(n):
-        for j in range(mirrored):
-            a, b = even[i, j], odd[i, j]
-            out[i, j] = a + b
-            out[i, m - 1 - j] = a - b
-        for j in range(mirrored, m - mirrored):
-            out[i, j] = even[i, j]
 
 
 @njit(cache=True)
@@ -205,13 +191,48 @@ def fold_adjoints(weight, numbers, mirrored, fields):
     return first, columns, even, odd
 
 
-@njit(cache=True)
-def folded_displacements(even_rows, odd_rows, order, q, q_t, place_out, rate_out):
-    """S q and S q_t (n, m) from shapes in rows, even_rows (a, n (m - mirrored)) and odd_rows (b, n mirrored), at places ``order`` (a + b,) in q."""
-    n, a = place_out.shape[0], even_rows.shape[0]
+@njit(cache=True, fastmath=_FAST)
+def folded_displacements(even, odd, order, q, q_t, place_out, rate_out):
+    """S q and S q_t (n, m); shapes as in `folded_loads`, whose places in q and q_t (a + b,) are ``order``."""
+    n, m = place_out.shape
+    a, mirrored = even.shape[1], odd.shape[0] // n
+    upper = m - mirrored
     turned, turned_t = q[order], q_t[order]
-    even, odd = np.zeros((2, even_rows.shape[1])), np.zeros((2, odd_rows.shape[1]))
-    add_modes(even_rows, turned[:a], turned_t[:a], even[0], even[1])
-    add_modes(odd_rows, turned[a:], turned_t[a:], odd[0], odd[1])
-    unfold(even[0].reshape(n, -1), odd[0].reshape(n, odd_rows.shape[1] // n), place_out)
-    unfold(even[1].reshape(n, -1), odd[1].reshape(n, odd_rows.shape[1] // n), rate_out)
+    q0, r0, q1, r1 = turned[:a], turned_t[:a], turned[a:], turned_t[a:]
+    for i in range(n):
+        for j in range(upper):
+            row, place, rate = even[i * upper + j], 0.0, 0.0
+            for c in range(row.size):
+                place += row[c] * q0[c]
+                rate += row[c] * r0[c]
+            if j < mirrored:
+                row, place_odd, rate_odd = odd[i * mirrored + j], 0.0, 0.0
+                for c in range(row.size):
+                    place_odd += row[c] * q1[c]
+                    rate_odd += row[c] * r1[c]
+                place_out[i, m - 1 - j], rate_out[i, m - 1 - j] = place - place_odd, rate - rate_odd
+                place += place_odd
+                rate += rate_odd
+            place_out[i, j], rate_out[i, j] = place, rate
+
+
+@njit(cache=True, fastmath=_FAST)
+def folded_rows(even, odd, n, m, places, weight, first, out):
+    """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), even shapes first, into tiles ``out`` from column ``first`` on.
+
+    Shapes as in `folded_loads` on an (n, m) grid.
+    """
+    a, mirrored = even.shape[1], odd.shape[0] // n
+    upper = m - mirrored
+    nothing = np.zeros(odd.shape[1])
+    for r in range(places.size):
+        i = places[r] // m
+        j = places[r] - i * m
+        twin, w = min(j, m - 1 - j), weight[r]
+        put_row(even[i * upper + (j if j < upper else twin)], w, first, r, out)
+        if j < mirrored:
+            put_row(odd[i * mirrored + j], w, first + a, r, out)
+        elif j < upper:
+            put_row(nothing, w, first + a, r, out)
+        else:
+            put_row(odd[i * mirrored + twin], -w, first + a, r, out)

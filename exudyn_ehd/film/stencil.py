@@ -57,26 +57,6 @@ def gap_stencil(order, count, DX, DZ, slope, AR, AC, by_gap, by_rate, weight_out
 
 
 @njit(cache=True, fastmath=_FAST)
-def add_modes(transposed, q, q_t, place_out, rate_out):
-    """Add sums of the rows of ``transposed`` (k, n m) with the weights q and with q_t (k,) to two fields (n m,), in one pass, by fours."""
-    k, size = transposed.shape
-    whole = k - k % 4
-    for a in range(0, whole, 4):
-        s0, s1, s2, s3 = transposed[a], transposed[a + 1], transposed[a + 2], transposed[a + 3]
-        p0, p1, p2, p3 = q[a], q[a + 1], q[a + 2], q[a + 3]
-        r0, r1, r2, r3 = q_t[a], q_t[a + 1], q_t[a + 2], q_t[a + 3]
-        for v in range(size):
-            b0, b1, b2, b3 = s0[v], s1[v], s2[v], s3[v]
-            place_out[v] += p0 * b0 + p1 * b1 + p2 * b2 + p3 * b3
-            rate_out[v] += r0 * b0 + r1 * b1 + r2 * b2 + r3 * b3
-    for a in range(whole, k):
-        row = transposed[a]
-        for v in range(size):
-            place_out[v] += q[a] * row[v]
-            rate_out[v] += q_t[a] * row[v]
-
-
-@njit(cache=True, fastmath=_FAST)
 def sparse_product(indptr, indices, data, x, out):
     """CSR matrix times vector, without the checks that would take longer than a small product."""
     for r in range(out.size):
@@ -87,20 +67,24 @@ def sparse_product(indptr, indices, data, x, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def weighted_rows(shapes, place, weight, first, out):
-    """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of tiles out (tiles, rows, width)."""
-    k, wide = shapes.shape[1], out.shape[2]
-    for tile in range(out.shape[0]):
-        # columns of this tile and what they hold
-        low = max(first - tile * wide, 0)
-        start = low + tile * wide - first
-        size = min(wide - low, k - start)
-        if low >= wide or size <= 0:
-            continue
-        for r in range(place.size):
-            own, target, w = shapes[place[r], start : start + size], out[tile, r, low : low + size], weight[r]
-            for q in range(size):
-                target[q] = w * own[q]
+def put_row(row, weight, first, at, out):
+    """``weight`` times a row (k,) into the columns from ``first`` on of row ``at`` of tiles out (tiles, rows, width)."""
+    wide, done = out.shape[2], 0
+    while done < row.size:
+        tile = (first + done) // wide
+        low = first + done - tile * wide
+        size = min(wide - low, row.size - done)
+        own, target = row[done : done + size], out[tile, at, low : low + size]
+        for q in range(size):
+            target[q] = weight * own[q]
+        done += size
+
+
+@njit(cache=True)
+def put_rows(rows, first, out):
+    """Rows (count, k) into the columns from ``first`` on of tiles out (tiles, >= count, width)."""
+    for r in range(rows.shape[0]):
+        put_row(rows[r], 1.0, first, r, out)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -261,7 +245,7 @@ def shear_fields(P, weight, width, z, couette, ends, factors, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
+def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
     """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
 
     Parameters
@@ -270,6 +254,8 @@ def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale
         Minus gradients of integrals and loads to the motion; only those of the loads are wanted.
     by_bore : (r + k, k) array
         Gradients of integrals and loads to the bore.
+    order : (k,) int array
+        Coordinates to which the loads belong.
     weights, direct : (6, r), (6, k) arrays
         Integrals in the wrench; gradient of the wrench to the gap at fixed pressure, which counts ``by_gap`` times.
     scale, motion_scale : float, (10,) array
@@ -280,10 +266,11 @@ def spread_gradient(tiles, by_bore, weights, direct, by_gap, scale, motion_scale
     r, k, width = weights.shape[1], direct.shape[1], tiles.shape[2]
     for a in range(k):
         tile, q = (r + a) // width, (r + a) % width
+        own, target = by_bore[r + a], bore_out[6 + order[a]]
         for c in range(10):
-            motion_out[a, c] = -scale * motion_scale[c] * tiles[tile, c, q]
+            motion_out[order[a], c] = -scale * motion_scale[c] * tiles[tile, c, q]
         for b in range(k):
-            bore_out[6 + a, b] = scale * by_bore[r + a, b]
+            target[b] = scale * own[b]
     for i in range(6):
         for b in range(k):
             bore_out[i, b] = by_gap * direct[i, b]

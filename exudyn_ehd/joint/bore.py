@@ -11,9 +11,16 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from exudyn_ehd.film.folding import GapStencil, fold_adjoints, folded_displacements, folded_loads, place_columns
+from exudyn_ehd.film.folding import (
+    GapStencil,
+    fold_adjoints,
+    folded_displacements,
+    folded_loads,
+    folded_rows,
+    place_columns,
+)
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_transposed, sparse_product, weighted_rows
+from exudyn_ehd.film.stencil import add_transposed, put_rows, sparse_product
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
@@ -29,6 +36,10 @@ class Bore(Protocol):
     def size(self) -> int:
         """k, the number of coordinates."""
 
+    @property
+    def order(self) -> np.ndarray:
+        """Coordinates (k,) in the sequence of `fill_rows`."""
+
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
 
@@ -42,7 +53,10 @@ class Bore(Protocol):
         """S q and S q_t (n, m)."""
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `columns.make_tiles` from column ``first`` on."""
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `columns.make_tiles` from column ``first`` on.
+
+        The coordinates come in the sequence ``order``.
+        """
 
     def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
         """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and B the stencil's rows."""
@@ -64,11 +78,11 @@ class ModalBore:
 
     Attributes
     ----------
-    shapes : (n m, k) array
-        S.
     stiffness : (k,) array
         Modal stiffness, N/m.
     modes : BoreModes or ReducedBore
+    order : (k,) int array
+        Modes in the sequence of `fill_rows`: the even ones first.
     mirrored : int
         Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
     """
@@ -82,12 +96,10 @@ class ModalBore:
         n, m = grid.shape
         self.mirrored = 0 if is_even is None else m // 2
         is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
-        self._order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
+        self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
         even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
         self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), -1)
         self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
-        self._even_rows, self._odd_rows = np.ascontiguousarray(self._even.T), np.ascontiguousarray(self._odd.T)
-        self.shapes = np.ascontiguousarray(whole.reshape(-1, modes.count))
 
     @property
     def size(self) -> int:
@@ -105,18 +117,18 @@ class ModalBore:
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
         out = np.empty((len(fields), self.size))
-        folded_loads(fields, self._even, self._odd, self._order, out)
+        folded_loads(fields, self._even, self._odd, self.order, out)
         return out
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
         place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
-        folded_displacements(self._even_rows, self._odd_rows, self._order, q, q_t, place, rate)
+        folded_displacements(self._even, self._odd, self.order, q, q_t, place, rate)
         return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        weighted_rows(self.shapes, places, weight, first, out)
+        folded_rows(self._even, self._odd, *self.grid_shape, places, weight, first, out)
 
     def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
@@ -125,7 +137,7 @@ class ModalBore:
         out = np.empty((size, self.size))
         place_columns(
             self._product(even[:, :size], self._even, first, m - mirrored),
-            self._product(odd[:, :size], self._odd, first, mirrored), self._order, out,
+            self._product(odd[:, :size], self._odd, first, mirrored), self.order, out,
         )  # fmt: skip
         return out
 
@@ -138,7 +150,20 @@ class ModalBore:
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
-        return (self.shapes * field.reshape(-1, 1)).T @ self.shapes
+        n, m = self.grid_shape
+        upper, mirrored, split = m - self.mirrored, self.mirrored, self._even.shape[1]
+        even = field[:, :upper].copy()
+        even[:, :mirrored] += field[:, ::-1][:, :mirrored]
+        odd = (field - field[:, ::-1])[:, :mirrored]
+        # the even part of the field keeps the symmetry of a shape, the odd part turns it
+        halves = self._even.reshape(n, upper, -1)[:, :mirrored].reshape(n * mirrored, split)
+        out = np.empty((self.size, self.size))
+        out[:split, :split] = (self._even * even.reshape(-1, 1)).T @ self._even
+        out[split:, split:] = (self._odd * even[:, :mirrored].reshape(-1, 1)).T @ self._odd
+        out[:split, split:] = (halves * odd.reshape(-1, 1)).T @ self._odd
+        out[split:, :split] = out[:split, split:].T
+        back = np.argsort(self.order)
+        return out[np.ix_(back, back)]
 
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
@@ -168,6 +193,8 @@ class NodalBore:
         S, k twice the number of nodes.
     values : csr matrix (n m, nodes)
         Shape functions at the film's vertices.
+    order : (k,) int array
+        0 to k - 1.
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
@@ -178,6 +205,7 @@ class NodalBore:
         self.values: csr_matrix = surface.interpolation(T.ravel(), Z.ravel())
         self.shapes: csr_matrix = full[:, columns].tocsr()
         self.transposed: csr_matrix = self.shapes.T.tocsr()
+        self.order = np.arange(len(columns))
 
     @property
     def size(self) -> int:
@@ -208,8 +236,7 @@ class NodalBore:
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        rows = diags(weight).dot(self.shapes[places]).toarray()
-        weighted_rows(rows, np.arange(len(places)), np.ones(len(places)), first, out)
+        put_rows(diags(weight).dot(self.shapes[places]).toarray(), first, out)
 
     def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""

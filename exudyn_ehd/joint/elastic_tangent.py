@@ -54,7 +54,7 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
         block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
         by_bore = model.bore.project(balances.stencil(-by_gap, -by_rate), lam, count + k)
         spread_gradient(
-            gradient, by_bore, weights, direct, by_gap, model.force_scale, scale, out[6:, :SIZE], block,
+            gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, scale, out[6:, :SIZE], block,
         )  # fmt: skip
         if model.contact_fields is not None:
             _add_contact_loads(model, block[6:], by_gap)

@@ -3,12 +3,11 @@
 import numpy as np
 
 from exudyn_ehd.film.stencil import (
-    add_modes,
     add_transposed,
     gap_slopes,
     gap_stencil,
+    put_rows,
     transposed_slopes,
-    weighted_rows,
 )
 
 
@@ -49,7 +48,7 @@ def test_stencil_is_the_derivative_of_the_balances():
     np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
 
 
-def test_rows_and_sums_of_modes():
+def test_transposed_stencil_and_rows_in_tiles():
     rng = np.random.default_rng(2)
     shapes, weight, place = rng.normal(size=(30, 6)), rng.normal(size=(8, 5)), rng.integers(0, 30, (8, 5))
     out = np.einsum("rc,rck->rk", weight, shapes[place])
@@ -58,11 +57,7 @@ def test_rows_and_sums_of_modes():
     np.testing.assert_allclose(np.sum(back * shapes[:, :3]), np.sum(fields * out[:, :3]), rtol=1e-12)
     for first, width in ((2, 9), (1, 3), (5, 4)):
         tiles = np.zeros((3, 8, width))
-        weighted_rows(shapes, place[:, 0], weight[:, 0], first, tiles)
+        put_rows(out, first, tiles)
         wide = tiles.transpose(1, 0, 2).reshape(8, -1)
-        np.testing.assert_allclose(wide[:, first : first + 6], shapes[place[:, 0]] * weight[:, :1])
+        np.testing.assert_array_equal(wide[:, first : first + 6], out)
         assert not wide[:, :first].any() and not wide[:, first + 6 :].any()
-    q, q_t = rng.normal(size=(2, 6))
-    sums = np.zeros((2, 30))
-    add_modes(np.ascontiguousarray(shapes.T), q, q_t, sums[0], sums[1])
-    np.testing.assert_allclose(sums, [shapes @ q, shapes @ q_t], rtol=1e-12, atol=1e-14)
