@@ -94,11 +94,11 @@ class ModalFilmElement(BoreFilmElement):
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
-        n = self.rigid_size
+        n, k = self.rigid_size, self.stiffness.size
         kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
         kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
-        force[n:] = evaluation.bore_load - self.stiffness * np.array(trial.q[n:])
+        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
         return force
 
     def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:

@@ -10,8 +10,6 @@ half the work and half the memory of the whole. ``mirrored = 0`` folds nothing: 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
@@ -19,22 +17,6 @@ from exudyn_ehd.film.columns import TILE
 from exudyn_ehd.film.stencil import put_row
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
-class GapStencil(NamedTuple):
-    """Derivatives of the balances at the unknowns with respect to an elastic gap; see `stencil.gap_stencil`.
-
-    Attributes
-    ----------
-    weight, vertices : (count, 5) float and int arrays
-        Weights of the unknowns' rows and the flat vertices they belong to.
-    numbers : (n, m) int array
-        Unknown of every vertex, -1 where there is none.
-    """
-
-    weight: np.ndarray
-    vertices: np.ndarray
-    numbers: np.ndarray
 
 
 @njit(cache=True)
@@ -118,8 +100,10 @@ def transpose_stencil(weight, numbers, first, columns, weight_out, row_out):
 
     Parameters
     ----------
-    weight, numbers
-        As in `GapStencil`.
+    weight : (count, 5) array
+        Of the unknowns' rows, see `stencil.gap_stencil`.
+    numbers : (n, m) int array
+        Unknown of every vertex, -1 where there is none.
     first, columns : int
         Columns in theta (cyclic) that are wanted.
     weight_out, row_out : (columns m, 5) float and int arrays
@@ -143,19 +127,20 @@ def transpose_stencil(weight, numbers, first, columns, weight_out, row_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def fold_transposed(weight, row, columns, fields, even_out, odd_out):
+def fold_transposed(weight, row, columns, mirrored, fields, even_out, odd_out):
     """Transposed stencil times fields, folded.
 
     Parameters
     ----------
     weight, row : (columns m, 5) arrays
         From `transpose_stencil`.
-    columns : int
+    columns, mirrored : int
     fields : (tiles, rows, TILE) array
         At the unknowns, see `columns.make_tiles`.
     even_out, odd_out : (columns (m - mirrored), tiles TILE) and (columns mirrored, tiles TILE) arrays
+        ``odd_out`` without rows if the odd half is not wanted.
     """
-    m, mirrored = weight.shape[0] // columns, odd_out.shape[0] // columns
+    m = weight.shape[0] // columns
     upper = m - mirrored
     for tile in range(fields.shape[0]):
         X, at = fields[tile], tile * TILE
@@ -165,9 +150,16 @@ def fold_transposed(weight, row, columns, fields, even_out, odd_out):
                 a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
                 i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
                 if j < mirrored:
-                    v, o = c * m + m - 1 - j, c * mirrored + j
+                    v = c * m + m - 1 - j
                     b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
                     k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+                    if odd_out.shape[0] == 0:
+                        for q in range(TILE):
+                            a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                            b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
+                            even_out[e, at + q] = a + b
+                        continue
+                    o = c * mirrored + j
                     for q in range(TILE):
                         a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
                         b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
@@ -180,15 +172,17 @@ def fold_transposed(weight, row, columns, fields, even_out, odd_out):
 
 
 @njit(cache=True)
-def fold_adjoints(weight, numbers, mirrored, fields):
-    """`fold_transposed` where it is not zero: first column and number of columns in theta, even and odd half."""
-    m, width = numbers.shape[1], fields.shape[0] * TILE
+def fold_adjoints(weight, places, shape, mirrored, odd_too, fields):
+    """`fold_transposed` where it is not zero, on a grid of this shape: first column in theta, even and odd half (empty unless ``odd_too``)."""
+    m, width = shape[1], fields.shape[0] * TILE
+    numbers = np.empty(shape, dtype=np.int64)
+    number_vertices(places, numbers)
     first, columns = touched_columns(numbers)
     by_vertex, row = np.empty((columns * m, 5)), np.empty((columns * m, 5), dtype=np.int64)
     transpose_stencil(weight, numbers, first, columns, by_vertex, row)
-    even, odd = np.empty((columns * (m - mirrored), width)), np.empty((columns * mirrored, width))
-    fold_transposed(by_vertex, row, columns, fields, even, odd)
-    return first, columns, even, odd
+    even, odd = np.empty((columns * (m - mirrored), width)), np.empty((columns * mirrored if odd_too else 0, width))
+    fold_transposed(by_vertex, row, columns, mirrored, fields, even, odd)
+    return first, even, odd
 
 
 @njit(cache=True, fastmath=_FAST)

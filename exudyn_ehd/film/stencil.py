@@ -279,3 +279,16 @@ def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motio
             if w != 0.0:
                 for b in range(k):
                     bore_out[i, b] += w * by_bore[c, b]
+
+
+@njit(cache=True)
+def integral_weights(pose, R, force, shear, omega, w, out):
+    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench; symbols as in `sweep.wrench_gradient`."""
+    x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
+    out[:] = 0.0
+    out[0, 0] = out[1, 1] = -force
+    out[3, 3], out[4, 2] = force * R, -force * R
+    axial, turning = -6.0 * shear * R, -6.0 * shear * R * R
+    out[2, 0], out[2, 1], out[2, 4], out[2, 6], out[2, 7] = -axial * bx, -axial * by, -shear * w, -axial, -axial
+    out[5, 0], out[5, 1], out[5, 2], out[5, 3] = -turning * y, turning * x, -turning * by, turning * bx
+    out[5, 4], out[5, 5] = -shear * R * R * omega, -turning

@@ -12,7 +12,6 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.film.folding import (
-    GapStencil,
     fold_adjoints,
     folded_displacements,
     folded_loads,
@@ -58,8 +57,11 @@ class Bore(Protocol):
         The coordinates come in the sequence ``order``.
         """
 
-    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
-        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and B the stencil's rows."""
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B of `stencil.gap_stencil`.
+
+        B has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
+        """
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -130,15 +132,14 @@ class ModalBore:
         """Rows of S at vertices, weighted, into columns of out."""
         folded_rows(self._even, self._odd, *self.grid_shape, places, weight, first, out)
 
-    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
-        m, mirrored = self.grid_shape[1], self.mirrored
-        first, _, even, odd = fold_adjoints(stencil.weight, stencil.numbers, mirrored, fields)
+        mirrored, any_odd = self.mirrored, self._odd.shape[1] > 0
+        first, even, odd = fold_adjoints(weight, places[:, 0], self.grid_shape, mirrored, any_odd, fields)
+        by_even = self._product(even[:, :size], self._even, first, self.grid_shape[1] - mirrored)
+        by_odd = self._product(odd[:, :size], self._odd, first, mirrored) if any_odd else np.empty((size, 0))
         out = np.empty((size, self.size))
-        place_columns(
-            self._product(even[:, :size], self._even, first, m - mirrored),
-            self._product(odd[:, :size], self._odd, first, mirrored), self.order, out,
-        )  # fmt: skip
+        place_columns(by_even, by_odd, self.order, out)
         return out
 
     def _product(self, fields: np.ndarray, shapes: np.ndarray, first: int, rows: int) -> np.ndarray:
@@ -238,12 +239,12 @@ class NodalBore:
         """Rows of S at vertices, weighted, into columns of out."""
         put_rows(diags(weight).dot(self.shapes[places]).toarray(), first, out)
 
-    def project(self, stencil: GapStencil, fields: np.ndarray, size: int) -> np.ndarray:
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
         known = fields.transpose(1, 0, 2).reshape(fields.shape[1], -1)
-        known = np.ascontiguousarray(known[: len(stencil.weight), :size])
+        known = np.ascontiguousarray(known[: len(weight), :size])
         at_vertices = np.zeros((self.shapes.shape[0], size))
-        add_transposed(stencil.weight, stencil.vertices, known, at_vertices)
+        add_transposed(weight, places, known, at_vertices)
         return (self.transposed @ at_vertices).T
 
     def product(self, field: np.ndarray) -> np.ndarray:

@@ -138,7 +138,10 @@ class ElasticBearingModel(BearingModel):
         self.bore_load = np.zeros(self.bore.size)
         self.end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
         self.settling_steps = 0
-        self.area = self.grid.weight * self.grid.reference_length**2
+        R = self.grid.reference_length
+        self.area = self.grid.weight * R**2
+        # SI units of the scaled motion
+        self.motion_scale = np.concatenate((self.pose_scale, self.pose_scale, (0.5, 0.5 / R)))
 
     def _set_motion(self, motion: np.ndarray) -> None:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.film.stencil import balance_change
-from exudyn_ehd.joint.elastic_tangent import Balances, contact_slope, load_weights, motion_scale, wrench_rows
+from exudyn_ehd.joint.elastic_tangent import Balances, contact_slope, load_weights, wrench_rows
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.elastic import ElasticBearingModel
@@ -36,8 +36,8 @@ class TangentProduct:
         self.serial = model.serial
         balances = Balances(model)
         self.wrench, self.wrench_place, self.wrench_rate = wrench_rows(model, balances)
-        self.motion = balances.motion * motion_scale(model)
-        self.by_place, self.vertices, _ = balances.stencil(1.0, 0.0)
+        self.motion = balances.motion * model.motion_scale
+        self.by_place, self.vertices = balances.stencil(1.0, 0.0)
         # the rate acts on a vertex's own storage alone
         self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
         self.places = balances.places

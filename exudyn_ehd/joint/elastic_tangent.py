@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.film.columns import make_tiles
-from exudyn_ehd.film.folding import GapStencil, number_vertices
 from exudyn_ehd.film.loads import couette_gradient, unknown_weights
-from exudyn_ehd.film.stencil import gap_stencil, motion_columns, shear_fields, spread_gradient
+from exudyn_ehd.film.stencil import gap_stencil, integral_weights, motion_columns, shear_fields, spread_gradient
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
@@ -24,6 +23,9 @@ from exudyn_ehd.joint.gradients import (
     swept_derivatives,
     wrench_tangent,
 )
+
+# Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
+_WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.elastic import ElasticBearingModel
@@ -46,15 +48,15 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
     k = model.bore.size
     lam, count = _adjoints(model, whole=True)
     balances = Balances(model)
-    gradient, scale = balances.gradient(lam), motion_scale(model)
+    gradient = balances.gradient(lam)
     out = np.empty((6 + k, SIZE + k * len(combinations)))
     out[:6, :SIZE] = wrench_tangent(model, gradient=np.negative(gradient[0, :, :count].T, order="C"))
     weights, direct = wrench_weights(model)
     for i, (by_gap, by_rate) in enumerate(combinations):
         block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
-        by_bore = model.bore.project(balances.stencil(-by_gap, -by_rate), lam, count + k)
+        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
         spread_gradient(
-            gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, scale, out[6:, :SIZE], block,
+            gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, model.motion_scale, out[6:, :SIZE], block,
         )  # fmt: skip
         if model.contact_fields is not None:
             _add_contact_loads(model, block[6:], by_gap)
@@ -78,8 +80,6 @@ class Balances:
         work = model.solver.work
         self.clearance = model.bearing.radial_clearance
         self.places = work.order[: work.count]
-        self.numbers = np.empty(model.grid.shape, dtype=np.int64)
-        number_vertices(self.places, self.numbers)
         self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(model)
         links, self.motion = self.links, np.empty((work.count, SIZE))
         motion_columns(
@@ -91,15 +91,15 @@ class Balances:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
         return self.motion.T @ lam[:, : len(self.places)]
 
-    def stencil(self, by_place: float, by_rate: float) -> GapStencil:
-        """The stencil of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
+    def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
+        """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
         count, c = len(self.places), self.clearance
         weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
         gap_stencil(
             self.places, count, self.links.DX, self.links.DZ, self.slope, self.by_rate, self.by_gap, by_place / c,
             by_rate / c, weight, vertices,
         )  # fmt: skip
-        return GapStencil(weight, vertices, self.numbers)
+        return weight, vertices
 
 
 def wrench_rows(model: ElasticBearingModel, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -107,7 +107,7 @@ def wrench_rows(model: ElasticBearingModel, balances: Balances) -> tuple[np.ndar
     lam, count = _adjoints(model, whole=False)
     weights, direct = wrench_weights(model)
     by_place, by_rate = (
-        weights @ model.bore.project(balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0))
+        weights @ model.bore.project(*balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0))
     )
     wrench = wrench_tangent(model, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
     return wrench, by_place + direct, by_rate
@@ -132,11 +132,6 @@ def _adjoints(model: ElasticBearingModel, whole: bool) -> tuple[np.ndarray, int]
         model.bore.fill_rows(model.solver.work.order[:unknowns], load_weights(model), count, lam)
     model.solver.adjoint_columns(lam)
     return lam, count
-
-
-def motion_scale(model: ElasticBearingModel) -> np.ndarray:
-    """SI units of the scaled motion (10,)."""
-    return np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / model.grid.reference_length)))
 
 
 def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
@@ -177,21 +172,12 @@ def _end_field(model: ElasticBearingModel) -> np.ndarray:
 
 def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the integrals of `adjoint_rows` in the wrench, and what the wrench owes to q at fixed film pressure (6, k)."""
-    weights = _all_weights(model)
+    weights, shear = np.empty((6, 8)), shear_needs_adjoint(model)
+    integral_weights(
+        model.pose, model.grid.reference_length, model.force_scale, model.shear_scale, model.omega, model.axial_speed, weights
+    )  # fmt: skip
     direct = _direct(model, weights)
-    return (weights[:, :7] if shear_needs_adjoint(model) else weights[:, [0, 1, 2, 3, 5, 6]]), direct
-
-
-def _all_weights(model: ElasticBearingModel) -> np.ndarray:
-    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench."""
-    x, y, bx, by = model.pose.tolist()
-    R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
-    out = np.zeros((6, 8))
-    out[0, 0] = out[1, 1] = -fs
-    out[3, 3], out[4, 2] = fs * R, -fs * R
-    out[2] = -6.0 * c0 * R * np.array([-bx, -by, 0.0, 0.0, model.axial_speed / (6.0 * R), 0.0, -1.0, -1.0])
-    out[5] = -6.0 * c0 * R**2 * np.array([-y, x, -by, bx, model.omega / 6.0, -1.0, 0.0, 0.0])
-    return out
+    return weights[:, :7] if shear else weights[:, _WITHOUT_SHEAR], direct
 
 
 def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:

@@ -623,7 +623,7 @@ class BearingModel:
         """
         R, half = self.grid.reference_length, self.half_length
         if self.effects.gap_terms or self.liner_solver is not None:
-            i, j = np.unravel_index(int(np.argmin(self.solver.H)), self.grid.shape)
+            i, j = divmod(int(np.argmin(self.solver.H)), self.grid.z.size)
             return float(self.grid.x[i] % (2.0 * math.pi)), float(self.grid.z[j] * R)
         x, y, bx, by = self.pose.tolist()
         # |e|^2 at either end differs by 4 half (x bx + y by)
