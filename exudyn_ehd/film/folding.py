@@ -135,52 +135,51 @@ def fold_transposed(weight, row, columns, mirrored, fields, even_out, odd_out):
     weight, row : (columns m, 5) arrays
         From `transpose_stencil`.
     columns, mirrored : int
-    fields : (tiles, rows, TILE) array
-        At the unknowns, see `columns.make_tiles`.
-    even_out, odd_out : (columns (m - mirrored), tiles TILE) and (columns mirrored, tiles TILE) arrays
+    fields : (rows, TILE) array
+        At the unknowns: one tile, see `columns.make_tiles`.
+    even_out, odd_out : (columns (m - mirrored), TILE) and (columns mirrored, TILE) arrays
         ``odd_out`` without rows if the odd half is not wanted.
     """
     m = weight.shape[0] // columns
     upper = m - mirrored
-    for tile in range(fields.shape[0]):
-        X, at = fields[tile], tile * TILE
-        for c in range(columns):
-            for j in range(upper):
-                v, e = c * m + j, c * upper + j
-                a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
-                i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
-                if j < mirrored:
-                    v = c * m + m - 1 - j
-                    b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
-                    k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
-                    if odd_out.shape[0] == 0:
-                        for q in range(TILE):
-                            a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
-                            b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
-                            even_out[e, at + q] = a + b
-                        continue
-                    o = c * mirrored + j
+    X = fields
+    for c in range(columns):
+        for j in range(upper):
+            v, e = c * m + j, c * upper + j
+            a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+            i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+            if j < mirrored:
+                v = c * m + m - 1 - j
+                b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+                k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+                if odd_out.shape[0] == 0:
                     for q in range(TILE):
                         a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
                         b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
-                        even_out[e, at + q] = a + b
-                        odd_out[o, at + q] = a - b
-                else:
-                    for q in range(TILE):
-                        a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
-                        even_out[e, at + q] = a
+                        even_out[e, q] = a + b
+                    continue
+                o = c * mirrored + j
+                for q in range(TILE):
+                    a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                    b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
+                    even_out[e, q] = a + b
+                    odd_out[o, q] = a - b
+            else:
+                for q in range(TILE):
+                    a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                    even_out[e, q] = a
 
 
 @njit(cache=True)
 def fold_adjoints(weight, places, shape, mirrored, odd_too, fields):
     """`fold_transposed` where it is not zero, on a grid of this shape: first column in theta, even and odd half (empty unless ``odd_too``)."""
-    m, width = shape[1], fields.shape[0] * TILE
+    m = shape[1]
     numbers = np.empty(shape, dtype=np.int64)
     number_vertices(places, numbers)
     first, columns = touched_columns(numbers)
     by_vertex, row = np.empty((columns * m, 5)), np.empty((columns * m, 5), dtype=np.int64)
     transpose_stencil(weight, numbers, first, columns, by_vertex, row)
-    even, odd = np.empty((columns * (m - mirrored), width)), np.empty((columns * mirrored if odd_too else 0, width))
+    even, odd = np.empty((columns * (m - mirrored), TILE)), np.empty((columns * mirrored if odd_too else 0, TILE))
     fold_transposed(by_vertex, row, columns, mirrored, fields, even, odd)
     return first, even, odd
 

@@ -11,6 +11,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from exudyn_ehd.film.columns import TILE
 from exudyn_ehd.film.folding import (
     fold_adjoints,
     folded_displacements,
@@ -134,12 +135,16 @@ class ModalBore:
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
-        mirrored, any_odd = self.mirrored, self._odd.shape[1] > 0
-        first, even, odd = fold_adjoints(weight, places[:, 0], self.grid_shape, mirrored, any_odd, fields)
-        by_even = self._product(even[:, :size], self._even, first, self.grid_shape[1] - mirrored)
-        by_odd = self._product(odd[:, :size], self._odd, first, mirrored) if any_odd else np.empty((size, 0))
-        out = np.empty((size, self.size))
-        place_columns(by_even, by_odd, self.order, out)
+        upper, out = self.grid_shape[1] - self.mirrored, np.empty((size, self.size))
+        # one tile after the other: a tile's fields stay in the cache until they are multiplied
+        for start in range(0, size, TILE):
+            tile, rows = start // TILE, min(TILE, size - start)
+            first, even, odd = fold_adjoints(
+                weight, places[:, 0], self.grid_shape, self.mirrored, self._odd.shape[1] > 0, fields[tile]
+            )
+            by_even = self._product(even[:, :rows], self._even, first, upper)
+            by_odd = self._product(odd[:, :rows], self._odd, first, self.mirrored) if len(odd) else np.empty((rows, 0))
+            place_columns(by_even, by_odd, self.order, out[start : start + rows])
         return out
 
     def _product(self, fields: np.ndarray, shapes: np.ndarray, first: int, rows: int) -> np.ndarray:
