@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.columns import TILE
-from exudyn_ehd.film.stencil import put_row
+from exudyn_ehd.film.stencil import put_rows
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -215,17 +215,17 @@ def folded_rows(even, odd, n, m, places, weight, first, out):
 
     Shapes as in `folded_loads` on an (n, m) grid.
     """
-    a, mirrored = even.shape[1], odd.shape[0] // n
+    mirrored = odd.shape[0] // n
     upper = m - mirrored
-    nothing = np.zeros(odd.shape[1])
+    rows, factors = np.empty((2, places.size), dtype=np.int64), np.empty((2, places.size))
     for r in range(places.size):
         i = places[r] // m
         j = places[r] - i * m
-        twin, w = min(j, m - 1 - j), weight[r]
-        put_row(even[i * upper + (j if j < upper else twin)], w, first, r, out)
-        if j < mirrored:
-            put_row(odd[i * mirrored + j], w, first + a, r, out)
-        elif j < upper:
-            put_row(nothing, w, first + a, r, out)
-        else:
-            put_row(odd[i * mirrored + twin], -w, first + a, r, out)
+        own = j if j < upper else m - 1 - j
+        rows[0, r], factors[0, r] = i * upper + own, weight[r]
+        # the middle of an odd shape is zero
+        known = own < mirrored
+        rows[1, r] = i * mirrored + own if known else 0
+        factors[1, r] = (weight[r] if j < upper else -weight[r]) if known else 0.0
+    put_rows(even, rows[0], factors[0], first, out)
+    put_rows(odd, rows[1], factors[1], first + even.shape[1], out)

@@ -67,24 +67,18 @@ def sparse_product(indptr, indices, data, x, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def put_row(row, weight, first, at, out):
-    """``weight`` times a row (k,) into the columns from ``first`` on of row ``at`` of tiles out (tiles, rows, width)."""
-    wide, done = out.shape[2], 0
-    while done < row.size:
+def put_rows(shapes, place, weight, first, out):
+    """Rows ``place`` (count,) of shapes (., k) times ``weight`` (count,) into the columns from ``first`` on of tiles out (tiles, >= count, width)."""
+    k, wide, done = shapes.shape[1], out.shape[2], 0
+    while done < k:
         tile = (first + done) // wide
         low = first + done - tile * wide
-        size = min(wide - low, row.size - done)
-        own, target = row[done : done + size], out[tile, at, low : low + size]
-        for q in range(size):
-            target[q] = weight * own[q]
+        size = min(wide - low, k - done)
+        for r in range(place.size):
+            own, target, w = shapes[place[r], done : done + size], out[tile, r, low : low + size], weight[r]
+            for q in range(size):
+                target[q] = w * own[q]
         done += size
-
-
-@njit(cache=True)
-def put_rows(rows, first, out):
-    """Rows (count, k) into the columns from ``first`` on of tiles out (tiles, >= count, width)."""
-    for r in range(rows.shape[0]):
-        put_row(rows[r], 1.0, first, r, out)
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.columns import TILE
 from exudyn_ehd.film.folding import (
@@ -242,7 +242,8 @@ class NodalBore:
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        put_rows(diags(weight).dot(self.shapes[places]).toarray(), first, out)
+        rows = self.shapes[places].toarray()
+        put_rows(rows, np.arange(len(places)), weight, first, out)
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
