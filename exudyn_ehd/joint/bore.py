@@ -101,7 +101,7 @@ class ModalBore:
         is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
         self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
         even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
-        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), -1)
+        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
         self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
 
     @property

@@ -24,11 +24,11 @@ from exudyn_ehd.joint.gradients import (
     wrench_tangent,
 )
 
-# Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
-_WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
-
 if TYPE_CHECKING:
     from exudyn_ehd.joint.elastic import ElasticBearingModel
+
+# Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
+_WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
 
 
 def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, float]) -> np.ndarray:
