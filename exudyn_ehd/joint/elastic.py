@@ -221,11 +221,12 @@ class ElasticBearingModel(BearingModel):
         """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
         return condensed_tangent(self)
 
+    def power_loss(self) -> float:
+        """Of film and contacts as in `BearingModel`, W; what the film does to the bore leaves the film."""
+        return super().power_loss() - float(self.bore_load @ self.rates)
+
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
         out = super().quantities()
-        if self.status is Status.CONVERGED:
-            # what the film does to the bore leaves the film
-            out["power_loss"] -= float(self.bore_load @ self.rates)
         out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
         return out

@@ -560,21 +560,15 @@ class BearingModel:
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
         poiseuille = 6.0 * self.s_theta
-        friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
-        v, f = self.motion, self.wrench
-        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
-        if self.liner_solver is not None:
-            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
         load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
         peak, peak_angle, _ = self.refined_peak()
         out |= {
             "peak_pressure": peak,
             "peak_angle": peak_angle % (2.0 * math.pi),
-            "friction_torque": friction,
+            "friction_torque": self._friction_torque(),
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
-            "power_loss": -power,
+            "power_loss": self.power_loss(),
             "leakage": self.flow_scale * (lower + upper),
             "leakage_lower": self.flow_scale * lower,
             "leakage_upper": self.flow_scale * upper,
@@ -593,6 +587,24 @@ class BearingModel:
             out |= self.effects.thermal.quantities()
         return out
 
+    def power_loss(self) -> float:
+        """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
+        x_t, y_t, bx_t, by_t = self.motion[4:8].tolist()
+        bx, by = self.motion[2:4].tolist()
+        fx, fy, fz, mx, my, _ = self.wrench.tolist()
+        along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
+        power = fx * x_t + fy * y_t - mx * by_t + my * bx_t
+        power += self._friction_torque() * self.omega
+        power += along * self.axial_speed
+        if self.liner_solver is not None:
+            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
+        return -power
+
+    def _friction_torque(self) -> float:
+        """Friction of film and contacts on the journal about its own axis, Nm."""
+        torque_scale = self.shear_scale * self.grid.reference_length**2
+        return -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta) + self._contact_torque()
+
     def supply_flows(self) -> np.ndarray:
         """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
         if self.supply is None:
@@ -601,8 +613,11 @@ class BearingModel:
 
     def _contact_torque(self) -> float:
         """Contact friction on the journal about its own axis."""
-        f, (x, y, bx, by) = self.contact_wrench, self.motion[:4]
-        return float(f[5] - (x * f[1] - y * f[0] - bx * f[3] - by * f[4]))
+        if self.contact_fields is None:
+            return 0.0
+        x, y, bx, by = self.motion[:4].tolist()
+        fx, fy, _, mx, my, mz = self.contact_wrench.tolist()
+        return mz - (x * fy - y * fx - bx * mx - by * my)
 
     def _end_flows(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
