@@ -172,8 +172,8 @@ class ElasticBearingModel(BearingModel):
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
         area = self.grid.weight * self.grid.reference_length**2
         field = self.P * (area * self.pressure_scale)
-        if self.contact_fields is not None:
-            for P in self.contact_fields.P:
+        if self.pressing is not None:
+            for P in self.pressing.P:
                 field = field + P * area
         return field
 

@@ -34,15 +34,15 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     """
     ds, dc, extra = _integral_gradients(model, film_gradient(model, slow_motion) if gradient is None else gradient)
     ends = np.zeros(4)
-    if model.limiter_fields is not None and model.end_pressures.any():
+    if model.limited is not None and any(model.bearing.end_pressures):
         ends = _end_gradient(model)
     out = np.empty((6, SIZE))
     wrench_gradient(
         ds, dc, extra, ends, model.pose, model.integrals, model.pose_scale, model.grid.reference_length, model.force_scale,
         model.shear_scale, model.omega, model.axial_speed, model.couette, out,
     )  # fmt: skip
-    if model.contact_fields is not None:
-        _add_contacts(model, model.contact_fields, out)
+    if model.pressing is not None:
+        _add_contacts(model, model.pressing, out)
     return out
 
 
@@ -97,10 +97,10 @@ def swept_derivatives(model: BearingModel) -> tuple[LinkDerivatives, np.ndarray,
     s = model.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
-    slope, f = s.ones, model.limiter_fields
+    slope, f = s.ones, model.limited
     if f is not None:
         slope = f.slope
-        chain_links(slope, f.curvature, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
+        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
         by_rate, by_gap = f.by_rate, f.by_gap
     return d, slope, by_rate, by_gap
 
@@ -111,7 +111,7 @@ def field_gradient(
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
-    if model.limiter_fields is not None:
+    if model.limited is not None:
         _chain_limiter(model, sens)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
@@ -191,8 +191,8 @@ def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
 
 def _contract_couette(model: BearingModel, gradient: np.ndarray, dc: np.ndarray) -> None:
     """Add dC/dH (1, n, m) to the gradient of C to the scaled pose."""
-    if model.limiter_fields is not None:
-        gradient[0] *= model.limiter_fields.slope
+    if model.limited is not None:
+        gradient[0] *= model.limited.slope
     out = np.zeros((1, 4))
     contract_pose(gradient, model.cos_x, model.sin_x, model.grid.z, out)
     dc[:4] += out[0]
@@ -200,10 +200,10 @@ def _contract_couette(model: BearingModel, gradient: np.ndarray, dc: np.ndarray)
 
 def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
-    f = model.limiter_fields
+    f = model.limited
     assert f is not None
     rate = sens.cell if sens.rate is None else sens.rate
-    chain_limiter(f.slope, f.curvature, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
+    chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
 
 
 def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
@@ -219,7 +219,7 @@ def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> Non
 
 def _end_gradient(model: BearingModel) -> np.ndarray:
     """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter acts on the gap."""
-    f = model.limiter_fields
+    f = model.limited
     assert f is not None
     field = np.zeros((1, *model.grid.shape))
     step = model.grid.width_x[0]

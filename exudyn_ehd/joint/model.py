@@ -140,14 +140,20 @@ class ContactFields:
         self.integrals = np.zeros((len(contacts), 5))
         self.gradients = np.zeros((5, 4))
         self.friction = [(float(c.friction_coefficient), float(c.transition_speed)) for c in contacts]
+        self.presses_below = max(c.presses_below for c in contacts)
+
+    def clear(self) -> None:
+        """No pressures."""
+        for known in (*self.P, *self.slope, self.integrals):
+            known[:] = 0.0
 
 
 class LimiterFields:
-    """Derivatives of the film's gap with respect to the true gap, at vertices and links."""
+    """Derivatives of the film's gap with respect to the true gap, at vertices and links, as `GapLimiter.limit` gives them."""
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.slope, self.curvature = np.zeros(shape), np.zeros(shape)
-        self.face_slope, self.face_curvature = np.zeros(shape), np.zeros(shape)
+        self.slope, self.bend = np.zeros(shape), np.zeros(shape)
+        self.face_slope = np.zeros(shape)
         self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 
@@ -186,6 +192,9 @@ class BearingModel:
         shape = self.grid.shape
         self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
         self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
+        # The same, if the surfaces were close enough for them to act in the last evaluation.
+        self.pressing: ContactFields | None = None
+        self.limited: LimiterFields | None = None
         self.extra: np.ndarray | None = None
         self.extra_link: np.ndarray | None = None
         self.extra_slope_x: np.ndarray | None = None
@@ -332,11 +341,23 @@ class BearingModel:
             self._add_gap_terms(history)
             smallest = min(float(s.H.min()), float(s.HF.min()))
         if self.contact_fields is not None:
-            for k, contact in enumerate(self.effects.contacts):
-                contact.pressure(s.H, self.contact_fields.P[k], self.contact_fields.slope[k])
-        if self.effects.limiter is not None:
-            self._limit_gap(self.effects.limiter)
+            self._set_contacts(self.contact_fields, smallest)
+        self.limited = None
+        if self.effects.limiter is not None and smallest < self.effects.limiter.limits_below:
+            self.limited = f = self.limiter_fields
+            assert f is not None
+            self.effects.limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
         return smallest
+
+    def _set_contacts(self, f: ContactFields, smallest: float) -> None:
+        """Pressures of the contacts at the true gap."""
+        if smallest < f.presses_below:
+            self.pressing = f
+            for k, contact in enumerate(self.effects.contacts):
+                contact.pressure(self.solver.H, f.P[k], f.slope[k])
+        elif self.pressing is not None:
+            self.pressing = None
+            f.clear()
 
     def _add_gap_terms(self, history: History | None) -> None:
         """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
@@ -349,16 +370,6 @@ class BearingModel:
             gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
-
-    def _limit_gap(self, limiter: GapLimiter) -> None:
-        """The gap that the film sees, and its rate."""
-        s, f = self.solver, self.limiter_fields
-        assert f is not None
-        limiter.limit(s.H, f.slope, f.curvature)
-        limiter.limit(s.HF, f.face_slope, f.face_curvature)
-        if s.squeeze:
-            f.curvature *= s.H_t
-            s.H_t *= f.slope
 
     def _solve(self, history: History | None, step: float) -> Status:
         if not np.all(np.isfinite(self.motion)):
@@ -476,8 +487,8 @@ class BearingModel:
             ]
         )
         self.contact_wrench = np.zeros(6)
-        if self.contact_fields is not None:
-            self._add_contacts(self.contact_fields, wrench)
+        if self.pressing is not None:
+            self._add_contacts(self.pressing, wrench)
         return wrench
 
     def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
@@ -560,7 +571,7 @@ class BearingModel:
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
         poiseuille = 6.0 * self.s_theta
-        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
+        load = self.pressing.integrals.sum(axis=0) * R**2 if self.pressing is not None else np.zeros(5)
         peak, peak_angle, _ = self.refined_peak()
         out |= {
             "peak_pressure": peak,
@@ -577,9 +588,7 @@ class BearingModel:
             "contact_power_loss": 0.0
             - self._contact_torque() * self.omega
             - float(self.contact_wrench[2]) * self.axial_speed,
-            "peak_contact_pressure": 0.0
-            if self.contact_fields is None
-            else max(float(p.max()) for p in self.contact_fields.P),
+            "peak_contact_pressure": 0.0 if self.pressing is None else max(float(p.max()) for p in self.pressing.P),
         }
         if self.supply is not None:
             out["supply_flow"] = float(self.supply_flows().sum())
@@ -613,7 +622,7 @@ class BearingModel:
 
     def _contact_torque(self) -> float:
         """Contact friction on the journal about its own axis."""
-        if self.contact_fields is None:
+        if self.pressing is None:
             return 0.0
         x, y, bx, by = self.motion[:4].tolist()
         fx, fy, _, mx, my, mz = self.contact_wrench.tolist()

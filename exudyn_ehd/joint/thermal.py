@@ -19,7 +19,7 @@ from exudyn_ehd.film.energy import (
     film_heat,
     outside_flows,
 )
-from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.joint.effects import History
@@ -181,8 +181,11 @@ class LumpedTemperature:
         return {"film_temperature": self.temperature, "peak_temperature": self.temperature}
 
 
-class ViscosityField:
+class ViscosityField(FluxEffect):
     """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
+
+    changes_carriers = False
+    depends_on_speed = False
 
     def __init__(self) -> None:
         self.ratio = np.ones((1, 1))
@@ -197,9 +200,9 @@ class ViscosityField:
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the conductances by the ratio on the link."""
-        for conductance in (flux.gx, flux.gx_h, flux.gx_v):
+        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_x
-        for conductance in (flux.gz, flux.gz_h, flux.gz_v):
+        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_z
 
     def factor(
@@ -292,7 +295,7 @@ class FilmTemperature:
             * ratio
             / s.H
         )
-        contact = model.contact_fields
+        contact = model.pressing
         if contact is not None:
             for k, effect in enumerate(model.effects.contacts):
                 g_theta, g_z, _ = model.slip(effect)
