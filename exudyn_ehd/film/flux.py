@@ -34,11 +34,14 @@ class LinkFlux:
     def __init__(self, gap_x: np.ndarray, *, carriers: bool = True, speeds: bool = True) -> None:
         shape = gap_x.shape
         self.carriers, self.speeds = carriers, speeds
-        self.gap_x, self.gap_z = gap_x, np.zeros(shape)
+        self.gap_x = gap_x
+        self.gap_z: np.ndarray = np.zeros(shape)
         self.gx, self.gx_h, self.gx_v = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         self.gz, self.gz_h, self.gz_v = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        self.cx, self.cx_h = np.zeros(shape) if carriers else gap_x, np.ones(shape)
-        self.cz, self.cz_h = np.zeros(shape) if carriers else self.gap_z, np.ones(shape)
+        self.cx: np.ndarray = np.zeros(shape) if carriers else gap_x
+        self.cx_h: np.ndarray = np.ones(shape)
+        self.cz: np.ndarray = np.zeros(shape) if carriers else self.gap_z
+        self.cz_h: np.ndarray = np.ones(shape)
 
     def reset(self) -> None:
         """Plain carriers, and no dependence on the speed, where effects have left others."""
