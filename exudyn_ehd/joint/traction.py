@@ -66,7 +66,7 @@ def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
     nxt, prv = np.roll(at, -1, axis=0).ravel(), np.roll(at, 1, axis=0).ravel()
     rows = np.tile(at.ravel(), 2)
     along = csr_matrix((np.concatenate((half, -half)), (rows, np.concatenate((nxt, prv)))), shape=(n * m, n * m))
-    line = np.gradient(np.eye(m), grid.z, axis=0)
+    line = np.asarray(np.gradient(np.eye(m), grid.z, axis=0))
     j, k = np.nonzero(line)
     across = csr_matrix((np.tile(line[j, k], n), (at[:, j].ravel(), at[:, k].ravel())), shape=(n * m, n * m))
     return along, across
