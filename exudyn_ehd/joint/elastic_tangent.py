@@ -145,7 +145,7 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     """What the wrench owes to q at fixed film pressure (6, k): gap, slopes and contacts."""
     g = model.grid
     fields = np.empty((4, *g.shape))
-    fields[0], fields[3] = _couette_field(model), _end_field(model)
+    fields[0], fields[3] = couette_field(model), _end_field(model)
     transposed_slopes(model.P * g.weight, g.width_x[0], g.z, fields[1], fields[2])
     if model.effects.uneven_drag:
         face, cell = drag_by_gap(model)
@@ -156,7 +156,7 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     return out if model.pressing is None else out + _contact_wrench(model)
 
 
-def _couette_field(model: ElasticBearingModel) -> np.ndarray:
+def couette_field(model: ElasticBearingModel) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
     share = model.share()
