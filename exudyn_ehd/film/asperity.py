@@ -132,6 +132,7 @@ class AsperityContact(AverageGap):
 
     def __init__(self, asperity: GreenwoodTripp, clearance: float) -> None:
         super().__init__(asperity.composite_roughness / clearance, asperity.residual_film)
+        self.presses_below = REACH * self.sigma
         self.level = asperity.pressure_scale
         self.friction_coefficient = asperity.friction_coefficient
         self.transition_speed = asperity.transition_speed

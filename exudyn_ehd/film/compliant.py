@@ -31,13 +31,14 @@ from exudyn_ehd.film.band_lu import solve_lu_transposed
 from exudyn_ehd.film.compliant_newton import (
     Columns,
     Storage,
+    answer_columns,
     compliant_coefficients,
     compliant_residual,
     compliant_sensitivities,
     longest_step,
+    move_columns,
     newton_step,
     press_columns,
-    set_columns,
     set_storage,
     step_size,
     take_step,
@@ -72,9 +73,18 @@ class ColumnContact(Protocol):
 
     def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None: ...
 
+    @property
+    def presses_below(self) -> float: ...
+
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None: ...
 
-    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None: ...
+    @property
+    def limits_below(self) -> float: ...
+
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None: ...  # fmt: skip
 
 
 class CompliantFilmSolver(FilmSolver):
@@ -116,9 +126,10 @@ class CompliantFilmSolver(FilmSolver):
         self.rigid_film, self.rigid_slope = np.ones(shape), np.ones(shape)
         self.true_gap, self.true_link = np.ones(shape), np.ones(shape)
         self.contact_pressure, self.contact_slope = np.zeros(shape), np.zeros(shape)
-        self.contact_G, self.curvature = np.zeros(shape), np.zeros(shape)
-        self.slope = np.ones(shape)
-        self.scratch = np.zeros(shape)
+        self.contact_G, self.bend = np.zeros(shape), np.zeros(shape)
+        self.scratch = [np.zeros(shape) for _ in range(4)]
+        # whether contact_pressure, contact_G, bend and the slopes in columns are those of surfaces apart
+        self.apart = True
         self.columns = Columns(*(np.ones(shape) for _ in Columns._fields))
         self.storage = Storage(*(np.zeros(shape) for _ in Storage._fields))
         self.residual = np.zeros(shape)
@@ -203,7 +214,9 @@ class CompliantFilmSolver(FilmSolver):
         self.rigid[2] = self.H_t if self.squeeze else 0.0
         self.rigid_film[:] = self.H
         if self.contact is not None:
-            self.contact.limit(self.rigid_film, self.rigid_slope, self.scratch)
+            face, rate, bend, face_slope = self.scratch
+            face[:] = self.HF
+            self.contact.limit(self.rigid_film, face, rate, self.rigid_slope, bend, face_slope)
 
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
         """Which rates take part, and over which time."""
@@ -267,23 +280,44 @@ class CompliantFilmSolver(FilmSolver):
         """Every column under the pressure P."""
         g, c, clips = self.grid, self.columns, self.kind == CLIPPED
         pc, contact = self.system.cavity_pressure, self.contact
-        if contact is None:
-            press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, self.true_gap)
-            c.H[:] = self.true_gap
-        else:
-            press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, self.scratch)
-            contact.settle(self.scratch, self.beta / self.pressure_scale, self.true_gap)
-            contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
-            self.contact_G /= self.pressure_scale
-            c.H[:] = self.true_gap
-            contact.limit(c.H, self.slope, self.curvature)
-        set_columns(
-            self.rigid, self.rigid_film, self.rigid_slope, P, self.true_gap, self.contact_G, self.slope, self.curvature, g.fixed,
-            pc, clips, self.beta, self.deflection_old, self.inverse, c,
-        )  # fmt: skip
+        x = self.true_gap if contact is None else self.scratch[0]
+        press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, x)
         if contact is not None:
-            self.true_link[:] = c.HF
-            contact.limit(c.HF, c.link, self.scratch)
+            near = max(contact.presses_below, contact.limits_below)
+            if x.min() < near:
+                contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
+                contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
+                self.contact_G /= self.pressure_scale
+                self.apart = False
+            else:
+                self.true_gap[:] = x
+                self._part()
+        move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, c)
+        self.true_link[:] = c.HF
+        if contact is not None and (not self.apart or c.HF.min() < near):
+            contact.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
+            self.apart = False
+        answer_columns(
+            self.rigid_film,
+            self.rigid_slope,
+            P,
+            self.contact_G,
+            self.bend,
+            g.fixed,
+            pc,
+            clips,
+            self.beta,
+            self.inverse,
+            c,
+        )
+
+    def _part(self) -> None:
+        """Surfaces out of each other's reach: no contact, and the film sees the gap itself."""
+        if not self.apart:
+            for field in (self.contact_pressure, self.contact_G, self.bend):
+                field[:] = 0.0
+            self.columns.rate_t[:] = self.columns.link[:] = 1.0
+            self.apart = True
 
     def _balance(
         self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
@@ -432,8 +466,6 @@ class CompliantFilmSolver(FilmSolver):
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
         np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
-        if self.contact is None:
-            self.true_link[:] = c.HF
         compliant_coefficients(
             c, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
         )

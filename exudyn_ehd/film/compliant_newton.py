@@ -70,36 +70,41 @@ def press_columns(rigid, P, fixed, pc, clips, beta, G_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def set_columns(
-    rigid, rigid_film, rigid_slope, P, G, contact_G, slope, curvature, fixed, pc, clips, beta, delta_old, inverse, c
-):
-    """Everything of ``c`` (Columns) at the vertices, and the true gap on the links in ``c.HF``; ``c.H`` holds the film gap.
+def move_columns(rigid, G, delta_old, inverse, c):
+    """Deflections, and gaps and rate of the deformed surfaces, into ``c`` (Columns), where a limiter may change them."""
+    n, m = G.shape
+    for i in range(n):
+        for j in range(m):
+            d = G[i, j] - rigid[0, i, j]
+            c.D[i, j] = d
+            c.H[i, j] = G[i, j]
+            c.rate[i, j] = rigid[2, i, j] + (d - delta_old[i, j]) * inverse
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            c.HF[i, j] = rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j])
 
-    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``slope`` and ``curvature`` belong to the film gap.
+
+@njit(cache=True, fastmath=_FAST)
+def answer_columns(rigid_film, rigid_slope, P, contact_G, bend, fixed, pc, clips, beta, inverse, c):
+    """What the columns answer to pressure and undeformed gap, for film gaps, rate and their slope (``c.rate_t``) in ``c`` (Columns).
+
+    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the film gap's second derivative times the gap's rate.
     """
     n, m = P.shape
     for i in range(n):
         for j in range(m):
             follow = 1.0 / (1.0 - beta * contact_G[i, j])
             free = not clips or fixed[i, j] or P[i, j] >= pc
-            d = G[i, j] - rigid[0, i, j]
-            velocity = rigid[2, i, j] + (d - delta_old[i, j]) * inverse
-            s = slope[i, j]
-            c.D[i, j] = d
+            s = c.rate_t[i, j]
             c.E[i, j] = c.H[i, j] - rigid_film[i, j]
             c.D_P[i, j] = beta * follow if free else 0.0
             c.H_P[i, j] = s * c.D_P[i, j]
             c.D_r[i, j] = follow - 1.0
             c.H_r[i, j] = s * follow
             c.E_r[i, j] = c.H_r[i, j] - rigid_slope[i, j]
-            c.rate[i, j] = s * velocity
-            c.rate_P[i, j] = (curvature[i, j] * velocity + s * inverse) * c.D_P[i, j]
-            c.rate_r[i, j] = curvature[i, j] * follow * velocity + s * inverse * c.D_r[i, j]
-            c.rate_t[i, j] = s
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            c.HF[i, j] = rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j])
+            c.rate_P[i, j] = (bend[i, j] + s * inverse) * c.D_P[i, j]
+            c.rate_r[i, j] = bend[i, j] * follow + s * inverse * c.D_r[i, j]
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -59,7 +59,7 @@ class WallContact:
     transition_speed = 1.0
 
     def __init__(self, wall: RegularisedWall, clearance: float) -> None:
-        self.onset = wall.onset / clearance
+        self.onset = self.limits_below = self.presses_below = wall.onset / clearance
         self.residual = wall.residual
         self.level = wall.pressure
 
@@ -71,9 +71,12 @@ class WallContact:
         """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
         settle_wall(X, compliance, self.onset, self.level, G)
 
-    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
-        """Replace the scaled gap H (n, m) by the one that the film sees; its first two derivatives come back."""
-        limit_gap(H, self.onset, self.residual, slope_out, curvature_out)
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.effects.GapLimiter`."""
+        limit_gap(H, HF, H_t, self.onset, self.residual, slope_out, bend_out, face_slope_out)
 
 
 @njit(cache=True)
@@ -108,16 +111,25 @@ def settle_wall(X, compliance, onset, pressure, G_out):
 
 
 @njit(cache=True)
-def limit_gap(H, onset, residual, slope_out, curvature_out):
-    """Replace H by the gap that the film sees, in place; first and second derivative (n, m) come back."""
+def limit_gap(H, HF, H_t, onset, residual, slope_out, bend_out, face_slope_out):
+    """Replace gaps at vertices and links, and the rate H_t, by those that the film sees, in place.
+
+    First derivatives at both and the second one times the gap's rate come back, all (n, m).
+    """
     n, m = H.shape
     a = 1.0 - residual
     for i in range(n):
         for j in range(m):
             slope_out[i, j] = 1.0
-            curvature_out[i, j] = 0.0
+            bend_out[i, j] = 0.0
             if H[i, j] < onset:
                 t = np.tanh((1.0 - H[i, j] / onset) / a)
                 H[i, j] = onset * (1.0 - a * t)
                 slope_out[i, j] = 1.0 - t * t
-                curvature_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset)
+                bend_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset) * H_t[i, j]
+                H_t[i, j] *= slope_out[i, j]
+            face_slope_out[i, j] = 1.0
+            if HF[i, j] < onset:
+                t = np.tanh((1.0 - HF[i, j] / onset) / a)
+                HF[i, j] = onset * (1.0 - a * t)
+                face_slope_out[i, j] = 1.0 - t * t

@@ -184,29 +184,35 @@ def contact_chain(gradient, motion, pose_scale, friction, transition, R, tangent
 
 
 @njit(cache=True, fastmath=_FAST)
-def chain_links(slope, curvature, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
-    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place, ``curvature`` as in `chain_limiter`."""
-    n, m = slope.shape
-    for i in range(n):
-        for j in range(m):
-            DX[i, j] *= face_slope[i, j]
-            gap_out[i, j] = by_gap[i, j] * slope[i, j] + by_rate[i, j] * curvature[i, j]
-            rate_out[i, j] = by_rate[i, j] * slope[i, j]
+def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
+    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.
+
+    ``slope``, ``bend`` and ``face_slope`` are what a gap limiter returns (`joint.effects`).
+    """
+    dx, faces = DX.reshape(-1), face_slope.reshape(-1)
+    for k in range(dx.size):
+        dx[k] *= faces[k]
+    a, b, rate, gap = slope.reshape(-1), bend.reshape(-1), by_rate.reshape(-1), by_gap.reshape(-1)
+    by_gap_out, by_rate_out = gap_out.reshape(-1), rate_out.reshape(-1)
+    for k in range(a.size):
+        by_gap_out[k] = gap[k] * a[k] + rate[k] * b[k]
+    for k in range(a.size):
+        by_rate_out[k] = rate[k] * a[k]
 
 
 @njit(cache=True)
-def chain_limiter(slope, curvature, face_slope, has_rate, cell, face, rate):
-    """Sensitivities (k, n, m) to the film's gap -> to the true gap, in place; ``curvature`` holds curvature times rigid rate."""
+def chain_limiter(slope, bend, face_slope, has_rate, cell, face, rate):
+    """Sensitivities (k, n, m) to the film's gap -> to the true gap, in place; the rest as in `chain_links`."""
     count, n, m = cell.shape
     for i in range(n):
         for j in range(m):
-            if slope[i, j] == 1.0 and face_slope[i, j] == 1.0 and curvature[i, j] == 0.0:
+            if slope[i, j] == 1.0 and face_slope[i, j] == 1.0 and bend[i, j] == 0.0:
                 continue
             for k in range(count):
                 face[k, i, j] *= face_slope[i, j]
                 cell[k, i, j] *= slope[i, j]
                 if has_rate:
-                    cell[k, i, j] += rate[k, i, j] * curvature[i, j]
+                    cell[k, i, j] += rate[k, i, j] * bend[i, j]
                     rate[k, i, j] *= slope[i, j]
 
 

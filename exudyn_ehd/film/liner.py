@@ -117,7 +117,7 @@ class LinerFilmSolver(FilmSolver):
         self.coarse = None
         coarse = grid.coarser()
         self.coarse_liner = None if coarse is None else LinerFilmSolver(coarse, closure, squeeze=squeeze)
-        self.flux = LinkFlux(grid.shape)
+        self.flux = LinkFlux(self.HF, carriers=False, speeds=False)
         self.beta = 0.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -324,6 +324,6 @@ class LinerFilmSolver(FilmSolver):
         """Gradients of the adjoint functionals lam (k, n, m)."""
         f = self.flux
         assert f is not None
-        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
+        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
         add_bending(self.system.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
         return super().sensitivities(lam)

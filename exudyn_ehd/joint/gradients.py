@@ -44,17 +44,17 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     gradient = film_gradient(model, slow_motion) if gradient is None else gradient
     ds, dc, extra = _integral_gradients(model, gradient)
     ends = np.zeros(4)
-    if _film_gap_slope(model) is not None and model.end_pressures.any():
+    if _film_gap_slope(model) is not None and any(model.bearing.end_pressures):
         ends = _end_gradient(model)
     out = np.empty((6, SIZE))
     wrench_gradient(
         ds, dc, extra, ends, model.pose, model.integrals, model.pose_scale, model.grid.reference_length, model.force_scale,
         model.shear_scale, model.omega, model.axial_speed, model.couette, out,
     )  # fmt: skip
-    if model.contact_fields is not None:
-        _add_contacts(model, model.contact_fields, out)
-        if model.compliant is not None and gradient.shape[0] > shape_rows(model):
-            _add_pressed_contact(model, model.contact_fields, gradient[shape_rows(model) :], out)
+    if model.pressing is not None:
+        _add_contacts(model, model.pressing, out)
+        if gradient.shape[0] > shape_rows(model):
+            _add_pressed_contact(model, model.pressing, gradient[shape_rows(model) :], out)
     return out
 
 
@@ -117,10 +117,10 @@ def swept_derivatives(model: BearingModel) -> tuple[LinkDerivatives, np.ndarray,
     s = model.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
-    slope, f = s.ones, model.limiter_fields
+    slope, f = s.ones, model.limited
     if f is not None:
         slope = f.slope
-        chain_links(slope, f.curvature, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
+        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
         by_rate, by_gap = f.by_rate, f.by_gap
     return d, slope, by_rate, by_gap
 
@@ -131,7 +131,7 @@ def field_gradient(
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
-    if model.limiter_fields is not None:
+    if model.limited is not None:
         _chain_limiter(model, sens)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
@@ -163,8 +163,7 @@ def shape_rows(model: BearingModel) -> int:
 
 def _pressed_contact(model: BearingModel) -> bool:
     """Whether a contact acts on a liner, and so answers to the film's pressure."""
-    f = model.contact_fields
-    return model.compliant is not None and f is not None and bool(f.integrals[0, 4] != 0.0)
+    return model.compliant is not None and model.pressing is not None
 
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
@@ -255,15 +254,15 @@ def _film_gap_slope(model: BearingModel) -> np.ndarray | None:
     """d(film gap)/d(gap of the undeformed surfaces) (n, m) at fixed pressure; None where it is one."""
     if model.compliant is not None:
         return model.compliant.columns.H_r
-    return None if model.limiter_fields is None else model.limiter_fields.slope
+    return None if model.limited is None else model.limited.slope
 
 
 def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
-    f = model.limiter_fields
+    f = model.limited
     assert f is not None
     rate = sens.cell if sens.rate is None else sens.rate
-    chain_limiter(f.slope, f.curvature, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
+    chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
 
 
 def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:

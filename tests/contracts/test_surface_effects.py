@@ -129,7 +129,7 @@ def test_absent_effects_change_no_bit_and_call_nothing(closure, monkeypatch):
         (asperity, ["asperity_pressure", "contact_table"]), (average_gap, ["average_gap"]),
         (contact_loads, ["contact_wrench", "contact_tangent", "chain_limiter", "chain_links", "couette_integral_law"]),
         (liner, ["solve_liner", "deformed_film", "factor_liner"]), (profile, ["ProfileTerm"]),
-        (roughness, ["multiply_by_table", "flow_tables"]), (wear, ["WearDepth"]),
+        (roughness, ["multiply_by_table", "rough_flux", "rough_friction", "flow_tables"]), (wear, ["WearDepth"]),
     ):  # fmt: skip
         for name in names:
             monkeypatch.setattr(module, name, forbidden)

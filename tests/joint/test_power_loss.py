@@ -9,7 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.thermal import Exchange
+from exudyn_ehd.joint.thermal import Exchange, heat_and_leakage
 
 R, C, SPEED, MU = 0.03, 30e-6, 314.0, 9e-3
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
@@ -48,7 +48,8 @@ def heat_and_work(model):
     return float(shear + flow), float(work)
 
 
-def balance(bore, closure, ends, n_theta, n_z):
+def moving(bore, closure, ends, n_theta, n_z):
+    """Model after an evaluation in which bore and journal move, and its power loss, W."""
     bearing = ehd.JournalBearing(
         journal_radius=R, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), bush=BORES[bore],
         film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure, end_pressures=ends,
@@ -65,7 +66,11 @@ def balance(bore, closure, ends, n_theta, n_z):
             # every gap full of oil before the step, in which the surfaces' approach and the liner's rate are those of the film
             s = model.solver
             history = dataclasses.replace(history, mass=s.H - step * s.H_t - 0.01 * s.deflection)
-    loss = model.evaluate(motion, history, step).quantities()["power_loss"]
+    return model, model.evaluate(motion, history, step).quantities()["power_loss"]
+
+
+def balance(bore, closure, ends, n_theta, n_z):
+    model, loss = moving(bore, closure, ends, n_theta, n_z)
     heat, work = heat_and_work(model)
     return abs(loss - heat - work) / heat
 
@@ -125,14 +130,10 @@ def test_power_into_a_liner_by_contact(contact):
     assert left[1] < 0.6 * left[0]
 
 
-def test_heat_of_a_film_leaves_out_the_work_on_oil_ends_and_vapour():
-    """`heat_power` by the same balance, where every term of it takes part; 1e-9: rounding of cancelling sums."""
-    from exudyn_ehd.joint.thermal import heat_power
-
-    bearing = ehd.JournalBearing(
-        journal_radius=R, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), end_pressures=(1e6, 5e5),
-        cavitation=ehd.SwiftStieber(cavity_pressure=-3e5),
-    )  # fmt: skip
-    model = build_model(bearing)
-    loss = model.evaluate(MOTION).quantities()["power_loss"]
-    assert heat_power(model, Exchange(model)) == pytest.approx(loss - heat_and_work(model)[1], rel=1e-9)
+@pytest.mark.parametrize(("bore", "closure"), PAIRS)
+def test_heat_of_a_film_leaves_out_the_work_on_oil_ends_and_vapour(closure, bore):
+    """The thermal effects' heat and leakage in one pass, against fields; 1e-9: rounding of cancelling sums."""
+    model, loss = moving(bore, CLOSURES[closure][0], (1e6, 5e5), 48, 8)
+    heat, leaving = heat_and_leakage(model)
+    assert leaving == pytest.approx(Exchange(model).leaving, rel=1e-12)
+    assert heat == pytest.approx(loss - heat_and_work(model)[1], rel=1e-9)

@@ -149,6 +149,25 @@ def test_parts_of_contact_and_film_add_up():
     assert q["contact_power_loss"] == pytest.approx(-q["contact_torque"] * SPEED, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "options", [{"asperity": ASPERITY}, {"contact": ehd.RegularisedWall(onset=1e-6)}], ids=["asperity", "wall"]
+)
+def test_surfaces_that_part_and_meet_again(options):
+    """Nothing of an earlier contact stays behind: every state has the bits of a fresh model, far films those of smooth surfaces."""
+    touching, apart = at(0.99, tilt=(1e-5, 0.0)), at(0.5, 2.0)
+    model = build_model(bearing(**options))
+    for motion in (touching, apart, touching, apart):
+        fresh = build_model(bearing(**options)).evaluate(motion)
+        evaluation = model.evaluate(motion)
+        assert np.array_equal(evaluation.wrench, fresh.wrench)
+        assert np.array_equal(evaluation.tangent(), fresh.tangent())
+        assert evaluation.quantities() == fresh.quantities()
+        assert (evaluation.quantities()["contact_load"] > 0.0) == (motion is touching)
+    assert not model.contact_fields.P[0].any()
+    smooth = build_model(bearing()).evaluate(apart)
+    assert np.array_equal(evaluation.wrench, smooth.wrench) and np.array_equal(evaluation.tangent(), smooth.tangent())
+
+
 def test_coulomb_friction_above_the_transition_speed():
     """Torque mu_b R sum(p dA) in the limit of fast sliding; (v0/v)^2 / 2 = 3e-6 below it, e/R = 1e-3 from the lever arm."""
     motion = at(0.98)
