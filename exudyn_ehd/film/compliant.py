@@ -69,14 +69,18 @@ STEP_TOLERANCE = 1e-8
 
 
 class ColumnContact(Protocol):
-    """Contact and gap limiter of one pair of surfaces; see `exudyn_ehd.joint.effects`."""
-
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None: ...
+    """What presses on a column beside the film; as `exudyn_ehd.joint.effects.Contact`."""
 
     @property
     def presses_below(self) -> float: ...
 
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None: ...
+
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None: ...
+
+
+class ColumnLimiter(Protocol):
+    """The gap that the film sees between touching surfaces; as `exudyn_ehd.joint.effects.GapLimiter`."""
 
     @property
     def limits_below(self) -> float: ...
@@ -97,7 +101,9 @@ class CompliantFilmSolver(FilmSolver):
     grid, closure, squeeze
         As for `FilmSolver`.
     contact : ColumnContact, optional
-        What presses on the liner beside the film, and limits the gap that the film sees.
+        What presses on the liner beside the film.
+    limiter : ColumnLimiter, optional
+        Of the gap that the film sees; goes with the contact.
 
     Attributes
     ----------
@@ -114,11 +120,12 @@ class CompliantFilmSolver(FilmSolver):
     plain_links = False
 
     def __init__(
-        self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True, contact: ColumnContact | None = None
-    ) -> None:
+        self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True,
+        contact: ColumnContact | None = None, limiter: ColumnLimiter | None = None,
+    ) -> None:  # fmt: skip
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None
-        self.contact = contact
+        self.contact, self.limiter = contact, limiter
         self.beta, self.pressure_scale = 0.0, 1.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -213,10 +220,10 @@ class CompliantFilmSolver(FilmSolver):
         self.rigid[0], self.rigid[1] = self.H, self.HF
         self.rigid[2] = self.H_t if self.squeeze else 0.0
         self.rigid_film[:] = self.H
-        if self.contact is not None:
+        if self.limiter is not None:
             face, rate, bend, face_slope = self.scratch
             face[:] = self.HF
-            self.contact.limit(self.rigid_film, face, rate, self.rigid_slope, bend, face_slope)
+            self.limiter.limit(self.rigid_film, face, rate, self.rigid_slope, bend, face_slope)
 
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
         """Which rates take part, and over which time."""
@@ -279,12 +286,11 @@ class CompliantFilmSolver(FilmSolver):
     def _settle(self, P: np.ndarray) -> None:
         """Every column under the pressure P."""
         g, c, clips = self.grid, self.columns, self.kind == CLIPPED
-        pc, contact = self.system.cavity_pressure, self.contact
+        pc, contact, limiter = self.system.cavity_pressure, self.contact, self.limiter
         x = self.true_gap if contact is None else self.scratch[0]
         press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, x)
         if contact is not None:
-            near = max(contact.presses_below, contact.limits_below)
-            if x.min() < near:
+            if x.min() < contact.presses_below:
                 contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
                 contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
                 self.contact_G /= self.pressure_scale
@@ -294,8 +300,8 @@ class CompliantFilmSolver(FilmSolver):
                 self._part()
         move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, c)
         self.true_link[:] = c.HF
-        if contact is not None and (not self.apart or c.HF.min() < near):
-            contact.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
+        if limiter is not None and (not self.apart or min(x.min(), c.HF.min()) < limiter.limits_below):
+            limiter.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
             self.apart = False
         answer_columns(
             self.rigid_film,

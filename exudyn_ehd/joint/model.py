@@ -185,7 +185,11 @@ class BearingModel:
         self.liner_solver: LinerFilmSolver | CompliantFilmSolver | None = None
         if self.effects.liner is not None:
             self.liner_solver = liner_film_solver(
-                self.grid, bearing.cavitation, squeeze=bearing.squeeze, contact=next(iter(self.effects.contacts), None)
+                self.grid,
+                bearing.cavitation,
+                squeeze=bearing.squeeze,
+                contact=next(iter(self.effects.contacts), None),
+                limiter=self.effects.limiter,
             )
         self.solver = self.liner_solver or film_solver(
             bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,

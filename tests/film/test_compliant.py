@@ -42,7 +42,8 @@ def gaps(grid, eps, angle=0.3, rate=0.0):
 
 
 def solver_of(closure, contact, grid=GRID):
-    made = CompliantFilmSolver(grid, closure, contact=CONTACTS[contact]())
+    surfaces = CONTACTS[contact]()
+    made = CompliantFilmSolver(grid, closure, contact=surfaces, limiter=surfaces)
     made.pressure_scale = SCALE
     return made
 
