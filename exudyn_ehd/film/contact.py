@@ -67,6 +67,10 @@ class WallContact:
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         wall_pressure(H, self.onset, self.level, P_out, slope_out)
 
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
+        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
+        settle_wall(X, compliance, self.onset, self.level, G)
+
     def limit(
         self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
         slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
@@ -88,6 +92,22 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
             else:
                 P_out[i, j] = 0.0
                 slope_out[i, j] = 0.0
+
+
+@njit(cache=True)
+def settle_wall(X, compliance, onset, pressure, G_out):
+    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``, q = compliance times pressure, by its larger root."""
+    n, m = X.shape
+    q = compliance * pressure
+    for i in range(n):
+        for j in range(m):
+            room = onset - X[i, j]
+            if room <= 0.0:
+                G_out[i, j] = X[i, j]
+            else:
+                # s = 1 - G / onset is the positive root of q s^2 + onset s - room = 0, in the form without cancellation
+                s = 2.0 * room / (onset + np.sqrt(onset * onset + 4.0 * q * room))
+                G_out[i, j] = onset * (1.0 - s)
 
 
 @njit(cache=True)

@@ -140,9 +140,13 @@ class LinerFilmSolver(FilmSolver):
         return self.beta * self.system.pressure
 
     @property
-    def gap_by_pressure(self) -> np.ndarray:
-        """dH/dP at the vertices (n, m) of the last solution."""
+    def deflection_by_pressure(self) -> np.ndarray:
+        """dD/dP, for these columns also d(gap)/dP, at the vertices (n, m) of the last solution."""
         return np.where(self.grid.fixed | ~self.work.active, 0.0, self.beta)
+
+    def smallest_gap(self) -> float:
+        """Smallest scaled gap of the deformed surfaces, at vertices and links."""
+        return min(float(self.H.min()), float(self.HF.min()))
 
     def stored_power(self) -> float:
         """Scaled power ``sum p d(beta p)/dt`` that goes into the liner, not the film; 0 for a steady deflection."""

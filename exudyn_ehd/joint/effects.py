@@ -86,6 +86,9 @@ class Contact(Protocol):
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
         """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
 
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
+        """Solve ``G = X + compliance pressure(G)`` for G (n, m), in place; compliance in clearances per Pa."""
+
     @property
     def friction_coefficient(self) -> float:
         """Boundary friction coefficient; 0 for a frictionless contact."""

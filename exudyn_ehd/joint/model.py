@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.choice import film_grid, film_solver
+from exudyn_ehd.film.choice import film_grid, film_solver, liner_film_solver
+from exudyn_ehd.film.compliant import CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.contact_loads import contact_wrench, couette_integral_law
 from exudyn_ehd.film.density import CompressibleLaw
@@ -181,9 +182,15 @@ class BearingModel:
         )
         self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
         self.needs_spin = self.supply is not None and self.supply.rotating
-        self.liner_solver: LinerFilmSolver | None = None
+        self.liner_solver: LinerFilmSolver | CompliantFilmSolver | None = None
         if self.effects.liner is not None:
-            self.liner_solver = LinerFilmSolver(self.grid, bearing.cavitation, squeeze=bearing.squeeze)
+            self.liner_solver = liner_film_solver(
+                self.grid,
+                bearing.cavitation,
+                squeeze=bearing.squeeze,
+                contact=next(iter(self.effects.contacts), None),
+                limiter=self.effects.limiter,
+            )
         self.solver = self.liner_solver or film_solver(
             bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
             density=self.effects.density,
@@ -195,7 +202,16 @@ class BearingModel:
         self.pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
         shape = self.grid.shape
         self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
-        self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
+        self.limiter_fields: LimiterFields | None = None
+        # a liner's contact and film gap come out of its film solve
+        self.compliant = self.liner_solver if isinstance(self.liner_solver, CompliantFilmSolver) else None
+        if self.effects.limiter is not None and self.compliant is None:
+            self.limiter_fields = LimiterFields(shape)
+        if self.compliant is not None and self.contact_fields is not None:
+            self.contact_fields.P, self.contact_fields.slope = (
+                [self.compliant.contact_pressure],
+                [self.compliant.contact_slope],
+            )
         # The same, if the surfaces were close enough for them to act in the last evaluation.
         self.pressing: ContactFields | None = None
         self.limited: LimiterFields | None = None
@@ -235,6 +251,8 @@ class BearingModel:
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
         if self.liner_solver is not None and self.effects.liner is not None:
             self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
+        if self.compliant is not None:
+            self.compliant.pressure_scale = self.pressure_scale
         if self.compressible is not None:
             self.compressible.pressure_scale = self.pressure_scale
 
@@ -250,9 +268,9 @@ class BearingModel:
         temperature = None if thermal is None else thermal.initial_temperature(self)
         self._set_motion(motion)
         self._set_gap(None)
-        mass = self.solver.H.copy() if self.remembers_mass else None
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
+        mass = self.solver.H.copy() if self.remembers_mass else None
         return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
@@ -342,6 +360,8 @@ class BearingModel:
         if self.effects.gap_terms:
             self._add_gap_terms(history)
             smallest = min(float(s.H.min()), float(s.HF.min()))
+        if self.compliant is not None:
+            return smallest
         if self.contact_fields is not None:
             self._set_contacts(self.contact_fields, smallest)
         self.limited = None
@@ -400,9 +420,10 @@ class BearingModel:
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
         if status is Status.CONVERGED and self.liner_solver is not None:
-            self.minimum_gap = self.bearing.radial_clearance * min(
-                float(self.solver.H.min()), float(self.solver.HF.min())
-            )
+            smallest = self.liner_solver.smallest_gap()
+            self.minimum_gap = self.bearing.radial_clearance * smallest
+            if self.compliant is not None and self.contact_fields is not None:
+                self.pressing = self.contact_fields if smallest < self.contact_fields.presses_below else None
         return status
 
     def _apply_rheology(self) -> Status:
