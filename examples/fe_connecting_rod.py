@@ -183,7 +183,7 @@ def simulate(
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     start = time.process_time()
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     spent = time.process_time() - start
     h = joint.history
     # without the start from the middle of the bore
