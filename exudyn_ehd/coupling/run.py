@@ -163,7 +163,10 @@ def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
     before = mbs.GetPreNewtonResidualUserFunction()
     before = before["function"] if isinstance(before, dict) else before
     own = before if callable(before) else None
-    mbs.SetPreNewtonResidualUserFunction(StartGuess(mbs, own))
+    elements = [joint.element for joint in joints_of(mbs)]
+    bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
+    bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
+    mbs.SetPreNewtonResidualUserFunction(StartGuess(mbs, own, bushes))
     try:
         yield
     finally:

@@ -12,13 +12,14 @@ Accelerations that last are known from the steps before. With a guess g of them,
 
 which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line through the last two
 accelerations if the last three lie in a line but for a tenth of their change, over steps of one size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where they agree
-in sign. If these differ by more than half of the last one (norm of all), as in an impact or a vibration of a few steps per period, there is no guess: what one
-coordinate would gain is lost where it meets another.
+in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per period, there is no guess. Norms are those of all
+coordinates together, since what one would gain is lost where it meets another; but deformations of bodies, which ring while the body moves smoothly, are judged by
+themselves.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 import exudyn as exu
@@ -41,12 +42,17 @@ class StartGuess:
         Assembled.
     before : callable or None
         The user's own function, called after it.
+    bushes : collection of int
+        Numbers of the nodes that hold the deformation of bushes: without inertia they follow the film at once.
     """
 
-    def __init__(self, mbs: Any, before: Callable[[Any, float, int, int], Any] | None) -> None:
+    def __init__(
+        self, mbs: Any, before: Callable[[Any, float, int, int], Any] | None, bushes: Collection[int] = ()
+    ) -> None:
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
         self.additive = additive_coordinates(mbs)
+        self.groups = coordinate_groups(mbs, bushes)
         self.start = np.nan
         self.attempts = 0
         self.past: list[tuple[float, np.ndarray]] = []
@@ -67,7 +73,7 @@ class StartGuess:
         if start != self.start:
             now = np.array(data.GetODE2Coordinates_tt(_START_OF_STEP), dtype=float)
             self.past = [*self.past[-2:], (start, now)]
-            expected = lasting(self.past)
+            expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
             self.start, self.attempts = start, 0
         self.attempts += 1
@@ -82,20 +88,38 @@ class StartGuess:
         data.SetODE2Coordinates_tt(np.array(q_tt) + self.guess, _CURRENT)
 
 
-def lasting(past: Sequence[tuple[float, np.ndarray]]) -> np.ndarray | None:
-    """What accelerations (n,) to expect after those of the last steps, (time, values) each, oldest first; None if nothing lasts."""
+def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
+    """What to expect after the accelerations of the last steps.
+
+    Parameters
+    ----------
+    past : sequence of (float, (n,) array)
+        Times and accelerations, oldest first.
+    groups : (n,) array of int
+        Number of the group that a coordinate belongs to; each is judged by itself.
+
+    Returns
+    -------
+    (n,) array or None
+        Zero in groups in which nothing lasts; None where there is but one step.
+    """
     if len(past) < 2:
         return None
+
+    def sizes(values: np.ndarray) -> np.ndarray:
+        return np.sqrt(np.bincount(groups, values * values))
+
     (t_1, before), (t_0, now) = past[-2:]
-    change = np.linalg.norm(now - before)
-    if change > LARGEST_CHANGE * np.linalg.norm(now):
-        return None
+    change = sizes(now - before)
+    lasts = (change <= LARGEST_CHANGE * sizes(now))[groups]
+    expected = np.where(before * now > 0.0, np.sign(now) * np.minimum(np.abs(before), np.abs(now)), 0.0)
     if len(past) > 2:
         t_2, earlier = past[-3]
         even = abs((t_0 - t_1) - (t_1 - t_2)) < 1e-6 * (t_0 - t_1)
-        if even and np.linalg.norm(now - 2.0 * before + earlier) < LARGEST_BEND * change:
-            return 2.0 * now - before
-    return np.where(before * now > 0.0, np.sign(now) * np.minimum(np.abs(before), np.abs(now)), 0.0)
+        if even:
+            straight = (sizes(now - 2.0 * before + earlier) < LARGEST_BEND * change)[groups]
+            expected = np.where(straight, 2.0 * now - before, expected)
+    return np.where(lasts, expected, 0.0)
 
 
 def additive_coordinates(mbs: Any) -> np.ndarray:
@@ -108,3 +132,15 @@ def additive_coordinates(mbs: Any) -> np.ndarray:
             first = mbs.GetNodeODE2Index(node)
             mask[first + 3 : first + 6] = 0.0
     return mask
+
+
+def coordinate_groups(mbs: Any, bushes: Collection[int]) -> np.ndarray:
+    """Group (n,) of every second-order coordinate: deformations of a body one each, everything else together."""
+    groups = np.zeros(len(mbs.systemData.GetODE2Coordinates()), dtype=np.intp)
+    for number in range(mbs.systemData.NumberOfNodes()):
+        node = exu.NodeIndex(number)
+        values = mbs.GetNode(node)
+        if values["nodeType"] == "GenericODE2" and number not in bushes:
+            first = mbs.GetNodeODE2Index(node)
+            groups[first : first + values["numberOfODE2Coordinates"]] = 1 + groups.max()
+    return groups
