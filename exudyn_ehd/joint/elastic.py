@@ -195,8 +195,8 @@ class ElasticBearingModel(BearingModel):
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
         area = self.grid.weight * self.grid.reference_length**2
         field = self.P * (area * self.pressure_scale)
-        if self.contact_fields is not None:
-            for P in self.contact_fields.P:
+        if self.pressing is not None:
+            for P in self.pressing.P:
                 field = field + P * area
         return field
 
@@ -244,11 +244,12 @@ class ElasticBearingModel(BearingModel):
         """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
         return condensed_tangent(self)
 
+    def power_loss(self) -> float:
+        """Of film and contacts as in `BearingModel`, W; what the film does to the bore leaves the film."""
+        return super().power_loss() - float(self.bore_load @ self.rates)
+
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
         out = super().quantities()
-        if self.status is Status.CONVERGED:
-            # what the film does to the bore leaves the film
-            out["power_loss"] -= float(self.bore_load @ self.rates)
         out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
         return out

@@ -45,7 +45,7 @@ class TangentProduct:
         self.places = balances.places
         self.weight = -model.force_scale * load_weights(model)
         self.contact: np.ndarray | None = None
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             self.contact = contact_slope(model)
             z = model.grid.z
             cos, sin = self.contact * model.cos_x[:, None], self.contact * model.sin_x[:, None]
