@@ -157,7 +157,7 @@ def _story(mbs: Any) -> str:
 def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
     # without a stored solver its step size and parameters are not known
-    if not mbs.systemIsConsistent or not options.get("storeSolver", True):
+    if not options.get("storeSolver", True):
         yield
         return
     before = mbs.GetPreNewtonResidualUserFunction()

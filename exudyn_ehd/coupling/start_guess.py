@@ -22,9 +22,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
-import exudyn as exu
+import exudyn
 import numpy as np
 
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
@@ -39,7 +41,6 @@ class StartGuess:
     Parameters
     ----------
     mbs : exudyn.MainSystem
-        Assembled.
     before : callable or None
         The user's own function, called after it.
     bushes : collection of int
@@ -51,8 +52,8 @@ class StartGuess:
     ) -> None:
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
-        self.additive = additive_coordinates(mbs)
-        self.groups = coordinate_groups(mbs, bushes)
+        self.bushes = bushes
+        self.additive = self.groups = np.empty(0)
         self.start = np.nan
         self.attempts = 0
         self.past: list[tuple[float, np.ndarray]] = []
@@ -70,6 +71,9 @@ class StartGuess:
     def _set_start(self, mbs: Any, solver: Any) -> None:
         data = mbs.systemData
         start = data.GetTime(_START_OF_STEP)
+        if not self.past:
+            # not before the run: Exudyn's solver assembles a system that is not
+            self.additive, self.groups = additive_coordinates(mbs), coordinate_groups(mbs, self.bushes)
         if start != self.start:
             now = np.array(data.GetODE2Coordinates_tt(_START_OF_STEP), dtype=float)
             self.past = [*self.past[-2:], (start, now)]
