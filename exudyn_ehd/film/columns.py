@@ -1,157 +1,73 @@
-"""Many right-hand sides at once with a stored band factor, as columns of tiles.
+"""Many right-hand sides at once with a stored band factor: one column of a matrix each, so that every inner loop is long and contiguous.
 
-A tile holds TILE right-hand sides; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor times
-four known rows from four others, 16 products for 8 rows read and 4 written, in loops of constant length. Coefficients are packed by such
-blocks first. Five times faster than side by side (`direct.solve_many`) with full tiles; the loads of an elastic bore need dozens.
+Four times faster than side by side (`direct.solve_many`) from some ten columns on. `tiles` is faster still with dozens of them.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
-import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-TILE = 48
 
 
-class ColumnFactor(NamedTuple):
-    """Factor ``A = F^T G`` of a film's (transposed) matrix as bands, see `direct` and `band_lu`.
+@njit(cache=True)
+def solve_columns(forward, backward, inverse, symmetric, count, width, x):
+    """Solve ``A x = b`` with ``A = F^T G`` for every column of x (count, k), C-contiguous, in place.
 
-    Attributes
+    Parameters
     ----------
     forward, backward : (size, >= width + 4) arrays
-        Bands of F and G; zeros behind the bandwidth.
+        Bands of F and G, see `direct` and `band_lu`; zeros behind the bandwidth.
     inverse : (size,) array
         1 / diagonal of F.
     symmetric : bool
         G is F with every row times its ``inverse`` (``A = U^T D^-1 U``, F = U); else G has a unit diagonal.
     """
-
-    forward: np.ndarray
-    backward: np.ndarray
-    inverse: np.ndarray
-    symmetric: bool
-
-
-@njit(cache=True)
-def make_tiles(rows, sides):
-    """Tiles (tiles, >= count, TILE) for ``sides`` right-hand sides (count,), the s-th in column s % TILE of tile s // TILE.
-
-    The first ones are the given rows (r, count); those behind them are undefined, and zero where there is none.
-    """
-    given, count = rows.shape
-    tiles = (sides + TILE - 1) // TILE
-    out = np.empty((tiles, (count + 3) // 4 * 4, TILE))
-    out[:, count:] = 0.0
-    last = sides - TILE * (tiles - 1)
-    for r in range(count):
-        for q in range(last, TILE):
-            out[-1, r, q] = 0.0
-    for s in range(given):
-        tile, q = s // TILE, s % TILE
-        for r in range(count):
-            out[tile, r, q] = rows[s, r]
-    return out
-
-
-@njit(cache=True)
-def pack_blocks(band, scale, scaled, count, width):
-    """Off-diagonal entries of a band, row r times ``scale[r]`` if ``scaled``, by 4 x 4 blocks.
-
-    Returns
-    -------
-    (blocks, reach + 1, 16) array
-        At [K, b, 4 s + t]: entry in row s of block K and column t of block K + b.
-    """
-    out = np.zeros(((count + 3) // 4, (width + 3) // 4 + 1, 16))
-    for r in range(count):
-        s, own = r & 3, out[r >> 2]
-        factor = scale[r] if scaled else 1.0
-        for d in range(1, min(width, count - 1 - r) + 1):
-            own[(s + d) >> 2, 4 * s + ((s + d) & 3)] = factor * band[r, d]
-    return out
+    solve_columns_from(0, forward, backward, inverse, symmetric, count, width, x)
 
 
 @njit(cache=True, fastmath=_FAST)
-def _subtract(c, known, x):
-    """Subtract the transpose of a block c (16,) times four rows ``known`` from four rows x, both (4 TILE,)."""
-    c00, c01, c02, c03 = c[0], c[1], c[2], c[3]
-    c10, c11, c12, c13 = c[4], c[5], c[6], c[7]
-    c20, c21, c22, c23 = c[8], c[9], c[10], c[11]
-    c30, c31, c32, c33 = c[12], c[13], c[14], c[15]
-    for q in range(TILE):
-        y0, y1, y2, y3 = known[q], known[TILE + q], known[2 * TILE + q], known[3 * TILE + q]
-        x[q] -= c00 * y0 + c10 * y1 + c20 * y2 + c30 * y3
-        x[TILE + q] -= c01 * y0 + c11 * y1 + c21 * y2 + c31 * y3
-        x[2 * TILE + q] -= c02 * y0 + c12 * y1 + c22 * y2 + c32 * y3
-        x[3 * TILE + q] -= c03 * y0 + c13 * y1 + c23 * y2 + c33 * y3
-
-
-@njit(cache=True, fastmath=_FAST)
-def _subtract_plain(c, known, x):
-    """Subtract a block c (16,) times four rows ``known`` from four rows x, both (4 TILE,)."""
-    c00, c01, c02, c03 = c[0], c[1], c[2], c[3]
-    c10, c11, c12, c13 = c[4], c[5], c[6], c[7]
-    c20, c21, c22, c23 = c[8], c[9], c[10], c[11]
-    c30, c31, c32, c33 = c[12], c[13], c[14], c[15]
-    for q in range(TILE):
-        y0, y1, y2, y3 = known[q], known[TILE + q], known[2 * TILE + q], known[3 * TILE + q]
-        x[q] -= c00 * y0 + c01 * y1 + c02 * y2 + c03 * y3
-        x[TILE + q] -= c10 * y0 + c11 * y1 + c12 * y2 + c13 * y3
-        x[2 * TILE + q] -= c20 * y0 + c21 * y1 + c22 * y2 + c23 * y3
-        x[3 * TILE + q] -= c30 * y0 + c31 * y1 + c32 * y2 + c33 * y3
-
-
-@njit(cache=True, fastmath=_FAST)
-def solve_tiles(forward, backward, diagonal, x):
-    """Solve ``forward^T diagonal backward`` times unknowns = x for all tiles x (tiles, blocks, 4 TILE) in place.
-
-    ``diagonal`` (4 blocks,) is inverted already; the factors of unit diagonal are packed by `pack_blocks`.
-    """
-    tiles, blocks, _ = x.shape
-    reach = forward.shape[1] - 1
-    for tile in range(tiles):
-        rows = x[tile]
-        for k in range(blocks):
-            own, c = rows[k], forward[k, 0]
-            for b in range(min(k, reach), 0, -1):
-                _subtract(forward[k - b, b], rows[k - b], own)
-            c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
-            for q in range(TILE):
-                y0 = own[q]
-                y1 = own[TILE + q] - c01 * y0
-                y2 = own[2 * TILE + q] - c02 * y0 - c12 * y1
-                own[3 * TILE + q] -= c03 * y0 + c13 * y1 + c23 * y2
-                own[TILE + q] = y1
-                own[2 * TILE + q] = y2
-        for k in range(blocks - 1, -1, -1):
-            own, c, r = rows[k], backward[k, 0], 4 * k
-            i0, i1, i2, i3 = diagonal[r], diagonal[r + 1], diagonal[r + 2], diagonal[r + 3]
-            for q in range(TILE):
-                own[q] *= i0
-                own[TILE + q] *= i1
-                own[2 * TILE + q] *= i2
-                own[3 * TILE + q] *= i3
-            for b in range(min(blocks - 1 - k, reach), 0, -1):
-                _subtract_plain(backward[k, b], rows[k + b], own)
-            c01, c02, c03, c12, c13, c23 = c[1], c[2], c[3], c[6], c[7], c[11]
-            for q in range(TILE):
-                y3 = own[3 * TILE + q]
-                y2 = own[2 * TILE + q] - c23 * y3
-                y1 = own[TILE + q] - c12 * y2 - c13 * y3
-                own[q] -= c01 * y1 + c02 * y2 + c03 * y3
-                own[TILE + q] = y1
-                own[2 * TILE + q] = y2
-
-
-@njit(cache=True)
-def solve_columns(forward, backward, inverse, symmetric, count, width, x):
-    """Solve for every column of tiles x, as of `make_tiles`, in place; the other parameters as in `ColumnFactor`."""
-    tiles, rows, _ = x.shape
-    ahead = pack_blocks(forward, inverse, True, count, width)
-    back = ahead if symmetric else pack_blocks(backward, inverse, False, count, width)
-    diagonal = np.zeros(rows)
-    diagonal[:count] = inverse[:count]
-    solve_tiles(ahead, back, diagonal, x.reshape(tiles, rows // 4, 4 * TILE))
+def solve_columns_from(first, forward, backward, inverse, symmetric, count, width, x):
+    """As `solve_columns` where all rows of x before ``first`` are zero."""
+    sides = x.shape[1]
+    whole = count - count % 4
+    for k in range(min(first - first % 4, whole), whole, 4):
+        u0, u1, u2, u3 = forward[k], forward[k + 1], forward[k + 2], forward[k + 3]
+        x0, x1, x2, x3 = x[k], x[k + 1], x[k + 2], x[k + 3]
+        for q in range(sides):
+            y0 = x0[q] * inverse[k]
+            y1 = (x1[q] - y0 * u0[1]) * inverse[k + 1]
+            y2 = (x2[q] - y0 * u0[2] - y1 * u1[1]) * inverse[k + 2]
+            x3[q] = (x3[q] - y0 * u0[3] - y1 * u1[2] - y2 * u2[1]) * inverse[k + 3]
+            x0[q] = y0
+            x1[q] = y1
+            x2[q] = y2
+        for t in range(min(width, count - 4 - k)):
+            a, b, c, d = u0[4 + t], u1[3 + t], u2[2 + t], u3[1 + t]
+            target = x[k + 4 + t]
+            for q in range(sides):
+                target[q] -= a * x0[q] + b * x1[q] + c * x2[q] + d * x3[q]
+    for k in range(whole, count):
+        known = x[k]
+        for q in range(sides):
+            known[q] *= inverse[k]
+        for d in range(1, min(width, count - 1 - k) + 1):
+            u = forward[k, d]
+            target = x[k + d]
+            for q in range(sides):
+                target[q] -= u * known[q]
+    for k in range(count - 1, -1, -1):
+        scale = inverse[k] if symmetric else 1.0
+        row, target = backward[k], x[k]
+        reach = min(width, count - 1 - k)
+        four = reach - reach % 4
+        for d in range(1, four, 4):
+            a, b, c, e = scale * row[d], scale * row[d + 1], scale * row[d + 2], scale * row[d + 3]
+            x0, x1, x2, x3 = x[k + d], x[k + d + 1], x[k + d + 2], x[k + d + 3]
+            for q in range(sides):
+                target[q] -= a * x0[q] + b * x1[q] + c * x2[q] + e * x3[q]
+        for d in range(four + 1, reach + 1):
+            a = scale * row[d]
+            known = x[k + d]
+            for q in range(sides):
+                target[q] -= a * known[q]

@@ -19,8 +19,13 @@ Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances o
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numba import njit
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.transport import Transport
 
 PAD = 4
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -96,9 +101,12 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
     for r in range(first, count):
         for d in range(reach):
             band_out[r, d] = 0.0
+    i = 0
     for r in range(first, count):
-        i = order[r] // m
         j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         diagonal = kx[prv, j] + kx[i, j]
@@ -304,6 +312,10 @@ class Workspace:
     ----------
     active : (n, m) bool array
         The active set of the last solution: the warm start of the next one.
+    lower, upper, transport
+        Buffers of mass-conserving and elastic films; None: not needed yet.
+    carried : bool
+        Whether the last mass-conserving film was factored along the flow of its cavity, see `exudyn_ehd.film.transport`.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -319,5 +331,7 @@ class Workspace:
         self.warm = False
         self.lower: np.ndarray | None = None
         self.upper: np.ndarray | None = None
+        self.transport: Transport | None = None
+        self.carried = False
         self.count = 0
         self.width = 1

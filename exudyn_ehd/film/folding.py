@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.columns import TILE
 from exudyn_ehd.film.stencil import put_rows
+from exudyn_ehd.film.tiles import TILE
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -136,7 +136,7 @@ def fold_transposed(weight, row, columns, mirrored, fields, even_out, odd_out):
         From `transpose_stencil`.
     columns, mirrored : int
     fields : (rows, TILE) array
-        At the unknowns: one tile, see `columns.make_tiles`.
+        At the unknowns: one tile, see `tiles.make_tiles`.
     even_out, odd_out : (columns (m - mirrored), TILE) and (columns mirrored, TILE) arrays
         ``odd_out`` without rows if the odd half is not wanted.
     """

@@ -11,7 +11,6 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.film.columns import TILE
 from exudyn_ehd.film.folding import (
     fold_adjoints,
     folded_displacements,
@@ -21,6 +20,7 @@ from exudyn_ehd.film.folding import (
 )
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.stencil import add_transposed, put_rows, sparse_product
+from exudyn_ehd.film.tiles import TILE
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
@@ -53,7 +53,7 @@ class Bore(Protocol):
         """S q and S q_t (n, m)."""
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `columns.make_tiles` from column ``first`` on.
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `tiles.make_tiles` from column ``first`` on.
 
         The coordinates come in the sequence ``order``.
         """
@@ -204,7 +204,7 @@ class NodalBore:
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
-        self.grid_shape = grid.shape
+        self.grid_shape, self.grid = grid.shape, grid
         T, Z = np.meshgrid(grid.x, grid.z * grid.reference_length, indexing="ij")
         full = surface.radial_interpolation(T.ravel(), Z.ravel())
         columns = (3 * np.arange(len(surface.nodes))[:, None] + np.arange(2)).ravel()

@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.columns import make_tiles
 from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.stencil import gap_stencil, integral_weights, motion_columns, shear_fields, spread_gradient
+from exudyn_ehd.film.tiles import make_tiles
+from exudyn_ehd.joint.drag import drag_by_gap
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
@@ -58,9 +59,9 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
         spread_gradient(
             gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, model.motion_scale, out[6:, :SIZE], block,
         )  # fmt: skip
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             _add_contact_loads(model, block[6:], by_gap)
-    if model.contact_fields is not None:
+    if model.pressing is not None:
         _add_contact_motion(model, out[6:, :4])
     return out
 
@@ -139,14 +140,19 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     g = model.grid
     # force and moment across the axis owe nothing to the gap
     factors, rows = weights[2::3, 4:] / model.bearing.radial_clearance, np.empty((2, *g.shape))
-    couette, ends = _couette_field(model), _end_field(model)
+    couette, ends = couette_field(model), _end_field(model)
     shear_fields(model.P, g.weight, g.width_x[0], g.z, couette, ends, factors, rows)
+    if model.effects.uneven_drag:
+        face, cell = drag_by_gap(model)
+        # the gap on a link is the mean of its two columns
+        rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
+        rows += factors[:, 2, None, None] * cell[0]
     out = np.zeros((6, model.bore.size))
     out[2::3] = model.bore.contract(rows)
-    return out if model.contact_fields is None else out + _contact_wrench(model)
+    return out if model.pressing is None else out + _contact_wrench(model)
 
 
-def _couette_field(model: ElasticBearingModel) -> np.ndarray:
+def couette_field(model: ElasticBearingModel) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
     if model.ratio is not None and model.ratio_h is not None:
@@ -156,7 +162,7 @@ def _couette_field(model: ElasticBearingModel) -> np.ndarray:
     else:
         field = np.empty(g.shape)
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
-    return field if model.limiter_fields is None else field * model.limiter_fields.slope
+    return field if model.limited is None else field * model.limited.slope
 
 
 def _end_field(model: ElasticBearingModel) -> np.ndarray:
@@ -167,7 +173,7 @@ def _end_field(model: ElasticBearingModel) -> np.ndarray:
     step = model.grid.width_x[0]
     field[:, -1] = model.end_pressures[1] * step
     field[:, 0] = -model.end_pressures[0] * step
-    return field if model.limiter_fields is None else field * model.limiter_fields.slope
+    return field if model.limited is None else field * model.limited.slope
 
 
 def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
@@ -183,7 +189,7 @@ def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
 def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
     """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
     g, R = model.grid, model.grid.reference_length
-    f = model.contact_fields
+    f = model.pressing
     assert f is not None
     out = np.zeros((6, model.bore.size))
     x, y, bx, by = model.motion[:4].tolist()
@@ -203,7 +209,7 @@ def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
 
 def contact_slope(model: ElasticBearingModel) -> np.ndarray:
     """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
-    f, g = model.contact_fields, model.grid
+    f, g = model.pressing, model.grid
     assert f is not None
     return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
 

@@ -30,6 +30,7 @@ class SurfaceEffects:
     contacts: tuple[Contact, ...] = ()
     flux: tuple[FluxEffect, ...] = ()
     shear_factor: ShearFactor | None = None
+    uneven_drag: bool = False
 
 
 def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffects:
@@ -79,6 +80,7 @@ def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
         contacts=() if contact is None else (contact,),
         flux=(RoughFlow(bearing.roughness, c, residual),),
         shear_factor=RoughShear(bearing.roughness, c, residual),
+        uneven_drag=bearing.roughness.journal_share != 0.5,
     )
 
 
@@ -93,21 +95,18 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
     if not isinstance(bearing.bush, ElasticLiner):
         return None
     excluded = {
-        "cavitation=ElrodAdams()": bearing.cavitation.conserves_mass,
         f"film={type(bearing.film).__name__}()": not isinstance(bearing.film, FiniteLength),
         "lubricant.pressure_law": bearing.lubricant.pressure_law is not None,
         "lubricant.density_law": bearing.lubricant.density_law is not None,
         "lubricant.shear_law": bearing.lubricant.shear_law is not None,
         "thermal=FilmEnergy(...)": isinstance(bearing.thermal, FilmEnergy),
-        "contact=RegularisedWall(...)": bearing.contact is not None,
-        "asperity=GreenwoodTripp(...)": bearing.asperity is not None,
         "roughness=PatirCheng(...)": bearing.roughness is not None,
     }
     for option, present in excluded.items():
         if present:
             raise InputError(
-                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved for smooth surfaces in "
-                "two dimensions and constant viscosity with FullSommerfeld, Gumbel or SwiftStieber; leave one of the two out."
+                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved in two dimensions, with "
+                "constant viscosity and without flow factors; leave one of the two out."
             )
     return bearing.bush
 

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.columns import TILE, make_tiles
 from exudyn_ehd.film.folding import (
     fold_adjoints,
     folded_displacements,
@@ -12,6 +11,7 @@ from exudyn_ehd.film.folding import (
     number_vertices,
     touched_columns,
 )
+from exudyn_ehd.film.tiles import TILE, make_tiles
 
 N = 9
 

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.columns import TILE, make_tiles
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.tiles import TILE, make_tiles
 from exudyn_ehd.joint.bore import ModalBore
 
 K = 60
