@@ -280,7 +280,7 @@ class CompressibleFilmSolver(FilmSolver):
         return fields
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
         self._make_exact()
         w, b = self.work, self.buffers
         solve_in_tiles(b.upper, b.lower, b.inv_diag, False, w.count, w.width, rhs)

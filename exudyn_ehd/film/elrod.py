@@ -151,7 +151,8 @@ class ElrodAdams:
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every column of tiles rhs, in place."""
         if work.carried:
-            solve_transport_transposed(_transport(work), work.count, rhs)
+            for tile in rhs:
+                solve_transport_transposed(_transport(work), work.count, tile[: work.count])
             return
         lower, upper = _lu_buffers(work)
         solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)

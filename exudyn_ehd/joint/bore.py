@@ -135,6 +135,8 @@ class ModalBore:
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
+        if not len(places):
+            return np.zeros((size, self.size))
         upper, out = self.grid_shape[1] - self.mirrored, np.empty((size, self.size))
         # one tile after the other: a tile's fields stay in the cache until they are multiplied
         for start in range(0, size, TILE):
@@ -247,7 +249,7 @@ class NodalBore:
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
-        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], -1)
+        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], len(fields) * TILE)
         known = np.ascontiguousarray(known[: len(weight), :size])
         at_vertices = np.zeros((self.shapes.shape[0], size))
         add_transposed(weight, places, known, at_vertices)
