@@ -2,9 +2,9 @@
 
 A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of 20 mm) under a
 load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6. Runs alternate between the bores; process time, best of
-several rounds. Targets: 2 times the rigid bore with 34 modes (aligned), 3 times with 85 (tilted); 1.2 ms per film Jacobian with 34
-modes; 60 ms and 0.35 s per step with 4x1x24 and 4x2x40 elements; 3 s to build the modes. Run with one thread for the numeric libraries
-(OMP_NUM_THREADS=1).
+several rounds. Targets: 2 times the rigid bore with 31 modes (aligned), 3 times with 87 (tilted), measured 1.9 to 2.0 and 2.9 to 3.1 on
+a busy machine, for which the limits leave a tenth to spare; 1.2 ms per film Jacobian with 31 modes; 60 ms and 0.35 s per step with
+4x1x24 and 4x2x40 elements; 3 s to build the modes. Run with one thread for the numeric libraries (OMP_NUM_THREADS=1).
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def seconds(function):
     return time.process_time() - start
 
 
-@pytest.mark.parametrize("tolerance, tilted, limit", [(0.04, False, 2.4), (0.03, True, 4.0)], ids=["aligned", "tilted"])
+@pytest.mark.parametrize("tolerance, tilted, limit", [(0.04, False, 2.2), (0.03, True, 3.3)], ids=["aligned", "tilted"])
 def test_modal_step_over_the_rigid_one(tolerance, tilted, limit):
     bushes, steps = {"rigid": None, "modal": modal(tolerance, tilted)}, 60
     best, counts = dict.fromkeys(bushes, math.inf), {}
