@@ -25,7 +25,7 @@ CASES = {
     "asperity": ({"asperity": ASPERITY}, 1.2),
     "roughness and asperity": ({"roughness": ROUGHNESS, "asperity": ASPERITY}, 1.25),
     "profile": ({"profile": ehd.Crown(drop=1e-6)}, 1.5),
-    "wear": ({"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}, 1.6),
+    "wear": ({"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}, 1.65),
     "liner": ({"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)}, 2.1),
 }
 
