@@ -338,7 +338,7 @@ def attach(
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
         attach_bush = importlib.import_module("exudyn_ehd.coupling.elastic_attach").attach_bush
-        element, more = attach_bush(mbs, model, sides, (points[0], rotation), name, show)
+        element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show)
         nodes += element.bore_nodes
     number = mbs.AddObject(
         eii.ObjectGenericODE2(

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.columns import ColumnFactor
+from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.direct import (
     Workspace,
     assemble_band,
@@ -54,9 +54,9 @@ class FullSommerfeld:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
 
-    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
-        """Factor of the (symmetric) transposed system of the last solution."""
-        return ColumnFactor(work.band, work.band, work.inv_diag, True)
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
+        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -98,9 +98,9 @@ class Gumbel:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
 
-    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
-        """Factor of the (symmetric) transposed system of the last solution."""
-        return ColumnFactor(work.band, work.band, work.inv_diag, True)
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
+        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -146,9 +146,9 @@ class SwiftStieber:
         """Solve the (symmetric) transposed system for every row of rhs (k, count), in place."""
         solve_symmetric(work, rhs)
 
-    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
-        """Factor of the (symmetric) transposed system of the last solution."""
-        return ColumnFactor(work.band, work.band, work.inv_diag, True)
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
+        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""

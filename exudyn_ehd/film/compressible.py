@@ -25,7 +25,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu, solve_lu_transposed
-from exudyn_ehd.film.columns import ColumnFactor
+from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.density_newton import (
     CLIPPED,
@@ -279,11 +279,11 @@ class CompressibleFilmSolver(FilmSolver):
         scatter(rhs, w.order, w.count, fields)
         return fields
 
-    def adjoint_factor(self) -> ColumnFactor:
-        """Factor of the transposed Newton matrix at the solution."""
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``J^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
         self._make_exact()
-        b = self.buffers
-        return ColumnFactor(b.upper, b.lower, b.inv_diag, False)
+        w, b = self.work, self.buffers
+        solve_columns(b.upper, b.lower, b.inv_diag, False, w.count, w.width, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve with Newton's matrix at the solution for rhs (count,), in place."""

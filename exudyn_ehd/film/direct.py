@@ -19,8 +19,13 @@ Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances o
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numba import njit
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.transport import Transport
 
 PAD = 4
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -304,6 +309,10 @@ class Workspace:
     ----------
     active : (n, m) bool array
         The active set of the last solution: the warm start of the next one.
+    lower, upper, transport
+        Buffers of mass-conserving and elastic films; None: not needed yet.
+    carried : bool
+        Whether the last mass-conserving film was factored along the flow of its cavity, see `exudyn_ehd.film.transport`.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -319,5 +328,7 @@ class Workspace:
         self.warm = False
         self.lower: np.ndarray | None = None
         self.upper: np.ndarray | None = None
+        self.transport: Transport | None = None
+        self.carried = False
         self.count = 0
         self.width = 1

@@ -12,6 +12,10 @@ one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, 
 and is unique. Should the sets not settle, the steady film is approached through growing pseudo time steps, whose storage
 makes the matrices dominant enough.
 
+Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.transport`, which follows the oil through the cavity and is left
+with a symmetric film, and for the rest (oil that goes round in a cavity, fronts longer than a few columns) a band of the folded ring.
+The sets alone decide which.
+
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
 Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58 (2015) 18.
 """
@@ -25,8 +29,18 @@ from numba import njit
 
 from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation import FilmSystem, SwiftStieber
-from exudyn_ehd.film.columns import ColumnFactor
-from exudyn_ehd.film.direct import PAD, Workspace, number_cells
+from exudyn_ehd.film.columns import solve_columns
+from exudyn_ehd.film.direct import PAD, Workspace, number_cells, solve_many
+from exudyn_ehd.film.transport import (
+    FULL_COUNT,
+    WIDTH,
+    Transport,
+    factor_transport,
+    flow_direction,
+    solve_transport,
+    solve_transport_transposed,
+    transport_buffers,
+)
 from exudyn_ehd.status import Status, require_number
 
 MAX_NEWTON_STEPS = 60
@@ -61,21 +75,20 @@ class ElrodAdams:
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
         steps = 0
-        lu = _lu_buffers(work)
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
             steps = SwiftStieber().solve(system, work)[1]
             system.fill[:] = 1.0
         was_warm = work.warm
-        ok, count = self._newton(system, work, lu, system.inverse_step, system.mass_old)
+        ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
         steps += count
         if not ok and was_warm:
             # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
             np.logical_not(system.fixed, out=work.active)
-            ok, count = self._newton(system, work, lu, system.inverse_step, system.mass_old)
+            ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
             steps += count
         if not ok:
-            ok, count = self._pseudo_transient(system, work, lu)
+            ok, count = self._pseudo_transient(system, work)
             steps += count
         work.warm = ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
@@ -84,17 +97,18 @@ class ElrodAdams:
         self,
         s: FilmSystem,
         work: Workspace,
-        lu: tuple[np.ndarray, np.ndarray],
         inverse_step: float,
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
-        ok, steps, work.count, work.width = solve_elrod(
+        lower, upper = _lu_buffers(work)
+        ok, steps, work.count, work.width, work.carried = solve_elrod(
             s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, inverse_step, mass_old, s.fixed, s.cavity_pressure,
-            work.active, work.order, work.number, lu[0], lu[1], work.inv_diag, work.unknowns, s.pressure, s.fill,
+            work.active, work.order, work.number, lower, upper, work.inv_diag, _transport(work), work.unknowns, s.pressure,
+            s.fill,
         )  # fmt: skip
         return ok, steps
 
-    def _pseudo_transient(self, s: FilmSystem, work: Workspace, lu: tuple[np.ndarray, np.ndarray]) -> tuple[bool, int]:
+    def _pseudo_transient(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
         """Implicit steps towards the target, from short to long and from a full film; the last one is the target itself."""
         largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
@@ -108,13 +122,13 @@ class ElrodAdams:
         for _ in range(MAX_PSEUDO_STEPS):
             inverse = s.inverse_step + extra
             blend = (s.inverse_step * s.mass_old + extra * mass) / inverse
-            ok, steps = self._newton(s, work, lu, inverse, blend)
+            ok, steps = self._newton(s, work, inverse, blend)
             total += steps
             if ok:
                 mass = s.fill * s.H
                 extra *= 0.5
                 if extra < 1e-6 * rate:
-                    ok, steps = self._newton(s, work, lu, s.inverse_step, s.mass_old)
+                    ok, steps = self._newton(s, work, s.inverse_step, s.mass_old)
                     return ok, total + steps
             else:
                 extra *= 8.0
@@ -122,16 +136,31 @@ class ElrodAdams:
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
+        if work.carried:
+            t = _transport(work)
+            if t.shape[FULL_COUNT] == work.count:
+                solve_many(t.band, t.diagonal, work.count, t.shape[WIDTH], rhs)
+                return
+            columns = np.ascontiguousarray(rhs.T)
+            solve_transport_transposed(t, work.count, columns)
+            rhs[:] = columns.T
+            return
         lower, upper = _lu_buffers(work)
         solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)
 
-    def adjoint_factor(self, work: Workspace) -> ColumnFactor:
-        """Factor of the transposed system of the last solution."""
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the transposed system for every column of rhs (count, k), in place."""
+        if work.carried:
+            solve_transport_transposed(_transport(work), work.count, rhs)
+            return
         lower, upper = _lu_buffers(work)
-        return ColumnFactor(upper, lower, work.inv_diag, False)
+        solve_columns(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
+        if work.carried:
+            solve_transport(_transport(work), work.count, rhs)
+            return
         lower, upper = _lu_buffers(work)
         solve_lu(lower, upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
 
@@ -143,6 +172,13 @@ def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
         work.lower = np.zeros((n * m, 2 * m + 2 + PAD))
         work.upper = np.zeros((n * m, 2 * m + 2 + PAD))
     return work.lower, work.upper
+
+
+def _transport(work: Workspace) -> Transport:
+    """The workspace's factor along the flow, allocated when first needed; it shares the symmetric band."""
+    if work.transport is None:
+        work.transport = transport_buffers(*work.shape, work.band)
+    return work.transport
 
 
 @njit(cache=True)
@@ -236,27 +272,53 @@ def assemble_elrod(
 
 
 @njit(cache=True)
-def solve_elrod(
-    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, number, lower, upper, inv_diag, x, P, fill
+def _solve_sets(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower, upper,
+    inv_diag, t, x, P
 ):  # fmt: skip
-    """Newton on the sets; returns (ok, steps, count, width). ``full`` is the start and, on return, the result."""
+    """Unknowns x for the given sets; returns (ok, count, width, carried)."""
+    if along != 0 and across != 0:
+        ok, count = factor_transport(
+            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, P, t, x
+        )
+        if ok:
+            solve_transport(t, count, x)
+            return True, count, 1, True
+    # oil also links columns that exchange no pressure flow (short bearings)
+    count, width = number_cells(np.logical_not(fixed), np.abs(kx) + np.abs(fx), order, number)
+    assemble_elrod(
+        kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full | fixed, number, count, width, P, lower,
+        upper, x,
+    )  # fmt: skip
+    if not factor_lu(lower, upper, count, width, inv_diag):
+        return False, count, width, False
+    solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+    return True, count, width, False
+
+
+@njit(cache=True)
+def solve_elrod(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill
+):  # fmt: skip
+    """Newton on the sets; returns (ok, steps, count, width, carried). ``full`` is the start and, on return, the result.
+
+    ``t`` holds the factor if ``carried``, else ``lower``, ``upper`` and ``inv_diag`` do.
+    """
     n, m = H.shape
-    free = np.logical_not(fixed)
     for i in range(n):
         for j in range(m):
             if fixed[i, j]:
                 full[i, j] = False
                 fill[i, j] = 1.0
-    # oil also links columns that exchange no pressure flow (short bearings)
-    count, width = number_cells(free, np.abs(kx) + np.abs(fx), order, number)
+    along = flow_direction(fx)
+    across = flow_direction(fz)
     for step in range(MAX_NEWTON_STEPS):
-        assemble_elrod(
-            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full | fixed, number, count, width, P, lower,
-            upper, x,
+        ok, count, width, carried = _solve_sets(
+            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower,
+            upper, inv_diag, t, x, P,
         )  # fmt: skip
-        if not factor_lu(lower, upper, count, width, inv_diag):
-            return False, step + 1, count, width
-        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+        if not ok:
+            return False, step + 1, count, width, carried
         peak = 0.0
         for r in range(count):
             if full[order[r] // m, order[r] % m]:
@@ -286,5 +348,5 @@ def solve_elrod(
                     else:
                         sound = sound and fill[i, j] > -LARGEST_DEFICIT
                         fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
-            return sound, step + 1, count, width
-    return False, MAX_NEWTON_STEPS, count, width
+            return sound, step + 1, count, width, carried
+    return False, MAX_NEWTON_STEPS, count, width, carried

@@ -1,7 +1,8 @@
 """Named oils: ISO viscosity grades, SAE single grades and multigrades from two viscosity points.
 
 ISO VG: mid-point kinematic viscosity at 40 degrees Celsius by definition (ISO 3448); at 100 degrees Celsius, and the density at
-15, typical figures of paraffinic mineral oils with a viscosity index near 95 to 100, as hydraulic and gear oils have.
+15, typical figures of paraffinic mineral oils with a viscosity index (ASTM D2270) of 95 to 102, as hydraulic and gear oils have; VG 220 is
+Shell's Omala S2 G 220. Other makers' oils of these grades lie within 6 % at 100 degrees and 2.5 % in density.
 
 SAE: single grades after A. S. Seireg and S. Dandage, J. Lubrication Technology 104 (1982) 135, ``mu = mu_0 exp(b / (T + 95))``
 with T in degrees Fahrenheit and mu_0 in reyn, which is Vogel's law with its pole at -95 degrees Fahrenheit.
@@ -12,6 +13,8 @@ thin under shear, which these figures at low shear do not show: at 150 degrees C
 17 % less than the law; add a `CarreauShear` where it counts.
 
 Oils of one grade differ, by some 10 % in the viscosity at 40 and at 100 degrees Celsius: take the two points of the data sheet where it is known.
+Their density is taken at 15 degrees for all temperatures; it falls by about 0.65 kg/m3 per kelvin, so that the dynamic viscosity from kinematic
+points is 2 % high at 40 and 6 % at 100 degrees: there give the density of the operating temperature by `dataclasses.replace`.
 """
 
 from __future__ import annotations

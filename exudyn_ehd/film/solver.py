@@ -9,7 +9,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.cavitation import FilmSystem
-from exudyn_ehd.film.columns import ColumnFactor, solve_columns
 from exudyn_ehd.film.direct import Workspace
 from exudyn_ehd.film.flux import (
     FluxEffect,
@@ -62,7 +61,7 @@ class Closure(Protocol):
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
 
-    def adjoint_factor(self, work: Workspace) -> ColumnFactor: ...
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
@@ -268,17 +267,13 @@ class FilmSolver:
         scatter(rhs, w.order, w.count, fields)
         return fields
 
-    def adjoint_factor(self) -> ColumnFactor:
-        """Factor of the transposed system of the last solution."""
-        return self.closure.adjoint_factor(self.work)
-
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
         self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
-        solve_columns(*self.adjoint_factor(), self.work.count, self.work.width, rhs)
+        self.closure.adjoint_columns(self.work, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""

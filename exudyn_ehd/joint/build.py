@@ -30,6 +30,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         shear_factor=_one_shear_factor(rheology.shear_factor, surfaces.shear_factor),
         thermal=rheology.thermal,
         density=rheology.density,
+        uneven_drag=surfaces.uneven_drag,
     )
 
 

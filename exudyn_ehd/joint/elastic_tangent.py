@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.film.stencil import gap_stencil, motion_columns, transposed_slopes
+from exudyn_ehd.joint.drag import drag_by_gap
 from exudyn_ehd.joint.gradients import (
     SIZE,
     adjoint_rows,
@@ -146,6 +147,11 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     fields = np.empty((4, *g.shape))
     fields[0], fields[3] = _couette_field(model), _end_field(model)
     transposed_slopes(model.P * g.weight, g.width_x[0], g.z, fields[1], fields[2])
+    if model.effects.uneven_drag:
+        face, cell = drag_by_gap(model)
+        # the gap on a link is the mean of its two columns
+        fields[1] += 0.5 * (face[0] + np.roll(face[0], 1, axis=0))
+        fields[2] += cell[0]
     out = (weights[:, 4:] / model.bearing.radial_clearance) @ model.bore.contract(fields)
     return out if model.contact_fields is None else out + _contact_wrench(model)
 

@@ -2,7 +2,7 @@
 
 For an integral S = sum w p with the film's residual r(p, H, H_t, v) = 0: ``dS = -lam . dr`` at fixed p with ``A^T lam = w``, plus what depends on
 the motion directly. Four integrals carry force and moments; shear needs a fifth where fill or pressure enter it, and gap terms
-two more for their slopes.
+and uneven drag together two more.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
+from exudyn_ehd.joint.drag import add_drag_rows, drag_by_gap
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import LinerFilmSolver
@@ -67,8 +68,12 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
         dc = gradient[at]
         at += 1
     _add_couette_direct(model, dc)
-    if model.extra_slope_x is not None:
+    if has_extra_rows(model):
         extra = gradient[at : at + 2]
+    if model.effects.uneven_drag:
+        face, cell = drag_by_gap(model)
+        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:1, :4])
+        contract_pose(cell, model.cos_x, model.sin_x, model.grid.z, extra[1:, :4])
     return gradient[:4], dc, extra
 
 
@@ -131,11 +136,16 @@ def shear_needs_adjoint(model: BearingModel) -> bool:
     )
 
 
+def has_extra_rows(model: BearingModel) -> bool:
+    """Whether `adjoint_rows` ends with two rows for the slopes of gap terms and for uneven drag."""
+    return model.extra_slope_x is not None or model.effects.uneven_drag
+
+
 def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
     g, w = model.grid, model.solver.work
     shear = shear_needs_adjoint(model)
-    rows = np.empty((4 + shear + 2 * (model.extra_slope_x is not None), w.count))
+    rows = np.empty((4 + shear + 2 * has_extra_rows(model), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
     P_q = None
     if model.effects.pressure_law is not None:
@@ -144,13 +154,17 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
         weigh_rows(w.order, w.count, P_q, rows[:4])
     if shear:
         _shear_row(model, rows[4])
-    if model.extra_slope_x is not None and model.extra_slope_z is not None:
-        at = w.order[: w.count]
-        weight = np.where(w.active, g.weight, 0.0).ravel()[at]
-        for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
-            row[:] = weight * slope.ravel()[at]
-            if P_q is not None:
-                row *= P_q.ravel()[at]
+    if has_extra_rows(model):
+        rows[-2:] = 0.0
+        if model.extra_slope_x is not None and model.extra_slope_z is not None:
+            at = w.order[: w.count]
+            weight = np.where(w.active, g.weight, 0.0).ravel()[at]
+            for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
+                row[:] = weight * slope.ravel()[at]
+        if model.effects.uneven_drag:
+            add_drag_rows(model, rows[-2:])
+        if P_q is not None:
+            weigh_rows(w.order, w.count, P_q, rows[-2:])
     return rows
 
 

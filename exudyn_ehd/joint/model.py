@@ -35,6 +35,7 @@ from exudyn_ehd.film.loads import (
 )
 from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.joint.drag import drag_integrals
 from exudyn_ehd.joint.effects import (
     Contact,
     FluxEffect,
@@ -70,6 +71,8 @@ class Effects:
     wear : Wear or None
         Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
     liner : ElasticLiner or None
+    uneven_drag : bool
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.drag`.
     """
 
     gap_terms: tuple[GapTerm, ...] = ()
@@ -82,6 +85,7 @@ class Effects:
     density: CompressibleLaw | None = None
     wear: Wear | None = None
     liner: ElasticLiner | None = None
+    uneven_drag: bool = False
 
 
 @dataclass(eq=False)
@@ -456,12 +460,17 @@ class BearingModel:
             self.extra_z += (
                 math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
             )
+        if self.effects.uneven_drag:
+            drag = drag_integrals(self)
+            self.extra_theta += drag[0]
+            self.extra_z += drag[1]
         self.couette, self.couette_unbroken = self._couette()
         x, y, bx, by = self.pose
         sc, ss, szc, szs = self.integrals
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
-        # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope.
+        # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag
+        # pulls the journal by as much as it holds the bore back.
         R, fs = g.reference_length, self.force_scale
         ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
         wrench = np.array(

@@ -30,6 +30,7 @@ class SurfaceEffects:
     contacts: tuple[Contact, ...] = ()
     flux: tuple[FluxEffect, ...] = ()
     shear_factor: ShearFactor | None = None
+    uneven_drag: bool = False
 
 
 def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffects:
@@ -79,6 +80,7 @@ def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
         contacts=() if contact is None else (contact,),
         flux=(RoughFlow(bearing.roughness, c, residual),),
         shear_factor=RoughShear(bearing.roughness, c, residual),
+        uneven_drag=bearing.roughness.journal_share != 0.5,
     )
 
 

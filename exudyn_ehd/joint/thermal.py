@@ -219,8 +219,7 @@ class FilmTemperature:
         journal = supply if spec.journal_temperature is None else spec.journal_temperature
         self.flow_capacity = oil.density * oil.specific_heat
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
-        transfer = max(self.transfer, 1e-300)
-        self.wall = (spec.bush_coefficient * bush + spec.journal_coefficient * journal) / transfer
+        self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self.temperature = np.zeros((0, 0))
         self.start: np.ndarray | None = None
         self.number: np.ndarray | None = None
@@ -264,6 +263,22 @@ class FilmTemperature:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
         return self._solve(model, model.start[1], temperature)[1]
 
+    def _wall(self, model: BearingModel) -> tuple[float | np.ndarray, float | np.ndarray]:
+        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K: floats, or (n, m) with a conductivity.
+
+        A parabola across the film with mean T and the surfaces' s_1, s_2 passes ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the
+        like on the other side; both solved for the surfaces.
+        """
+        (U1, T1), (U2, T2) = self.walls
+        if self.spec.conductivity is None or self.transfer == 0.0:
+            return self.transfer, (U1 * T1 + U2 * T2) / max(self.transfer, 1e-300)
+        film = self.spec.conductivity / (model.bearing.radial_clearance * model.solver.H)
+        both = U1 * U2 + film * self.transfer
+        return (
+            12.0 * film * both / (U1 * U2 + 4.0 * film * self.transfer + 12.0 * film**2),
+            (0.5 * U1 * U2 * (T1 + T2) + film * (U1 * T1 + U2 * T2)) / both,
+        )
+
     def _heat(self, model: BearingModel) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
         s, R = model.solver, model.grid.reference_length
@@ -304,14 +319,15 @@ class FilmTemperature:
         back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
         weight = lost / total_lost if total_lost > 0.0 else lost
         store = area * flows.content / step if step > 0.0 else np.zeros(shape)
-        walls = self.transfer * area * model.grid.reference_length**2 / scale
+        transfer, wall = self._wall(model)
+        walls = transfer * area * model.grid.reference_length**2 / scale
         if known is None:
             rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
             # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
             thinning = self._thinning() * heat / scale if step == 0.0 else 0.0
             diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
             rhs = np.empty((2, *shape))
-            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (self.wall - supply)
+            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
             rhs[1] = back * found
             T0, T1 = self._solve_band(flows.x, flows.z, diagonal, rhs)
             mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
@@ -325,7 +341,7 @@ class FilmTemperature:
         return T, {
             "heat_in": float(heat.sum()),
             "carried_out": scale * carried,
-            "conducted": scale * float(np.sum(walls * (T - self.wall))),
+            "conducted": scale * float(np.sum(walls * (T - wall))),
             "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
 

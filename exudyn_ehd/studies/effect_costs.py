@@ -100,6 +100,9 @@ EFFECTS: dict[str, Case] = {
     "`Hole`": Case(options={"supply": (Hole(angle=3.4, diameter=0.012),)}),
     "`Pocket`": Case(options={"supply": (Pocket(angle=3.4, width_angle=0.5, length=0.03),)}),
     "`PatirCheng`": Case(options=_ROUGHNESS),
+    "`PatirCheng`, unequally rough": Case(
+        options={"roughness": PatirCheng(composite_roughness=ROUGH, journal_share=0.9)}
+    ),
     "`GreenwoodTripp`": Case(options=_ASPERITY),
     "`PatirCheng`, `GreenwoodTripp`": Case(options=_ROUGHNESS | _ASPERITY),
     "`GreenwoodTripp`, `ArchardWear`": Case(options=_ASPERITY | {"wear": ArchardWear(wear_rate=1e-15)}),

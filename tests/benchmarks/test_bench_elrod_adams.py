@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -44,7 +46,7 @@ def test_warm_transient_step_with_tangent(benchmark, grid):
 
 
 def test_steady_cold(benchmark):
-    """Target 10 ms at 100 x 26."""
+    """Limit 3.6 ms at 100 x 26, where 3.2 were measured; the target is 10."""
     model = _model(100, 26)
     motion = _motion(0)
     motion[4:8] = 0.0
@@ -54,6 +56,12 @@ def test_steady_cold(benchmark):
         model.evaluate(motion)
 
     benchmark.pedantic(cold, rounds=20, warmup_rounds=2)
+    times = []
+    for _ in range(40):
+        start = time.process_time()
+        cold()
+        times.append(time.process_time() - start)
+    assert min(times) < 3.6e-3
 
 
 @pytest.mark.parametrize("supplied", [False, True], ids=["plain", "two grooves"])

@@ -138,8 +138,9 @@ def test_shear_stress_factor_of_the_isotropic_pattern():
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_friction_factors_agree_with_the_flow_factors(pattern):
     """Small roughness of any pattern has Phi_fs = Phi_s / H = 1 - phi_fp to second order in 1 / H, and phi_fp H = H - Phi_s by
-    reciprocity (a surface that drags oil along is pushed by the pressure that drives it). The three fits are independent simulations:
-    a quarter for Phi_fs at H = 4, 5 % of H for the published phi_fp = 1 - D exp(-s H).
+    reciprocity (a surface that drags oil along is pushed by the pressure that drives it). The three are fits to separate
+    simulations: they differ by up to 22 % for Phi_fs at H = 4 (below H = 3 each has higher orders of its own), and by
+    2.3 % of H between Phi_s and the published phi_fp = 1 - D exp(-s H).
     """
     with open(DATA / "patir_cheng_flow_factors.csv", encoding="utf-8") as file:
         rows = {round(float(Fraction(r["gamma"])), 6): r for r in csv.DictReader(file)}
@@ -148,7 +149,7 @@ def test_friction_factors_agree_with_the_flow_factors(pattern):
     flow, stress = shear_flow_factor(H, pattern) / H, shear_stress_factor(H, pattern)
     np.testing.assert_allclose(stress, flow, rtol=0.25)
     H = np.linspace(2.0, 6.0, 9)
-    np.testing.assert_allclose(1.0 - D * np.exp(-s * H), 1.0 - shear_flow_factor(H, pattern) / H, atol=0.05)
+    np.testing.assert_allclose(1.0 - D * np.exp(-s * H), 1.0 - shear_flow_factor(H, pattern) / H, atol=0.025)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])

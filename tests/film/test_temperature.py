@@ -69,6 +69,62 @@ def test_iso_grades_lie_in_the_standard_limits():
         assert low < 1e6 * oil.viscosity / oil.density < high
 
 
+# Reference viscosities L and H of ASTM D2270 at the oil's viscosity at 100 degrees Celsius, and the index that makers print with these
+# points: Mobil Oil Australia's product pages (2012), Shell's sheet of Omala S2 G 220 (98, of a viscosity before rounding).
+D2270 = {
+    "ISO VG 22": (29.07, 22.05, None),
+    "ISO VG 32": (47.31, 32.37, None),
+    "ISO VG 46": (71.29, 45.33, None),
+    "ISO VG 68": (113.9, 66.48, None),
+    "ISO VG 100": (176.6, 96.45, None),
+    "ISO VG 150": (296.5, 149.7, None),
+    "ISO VG 220": (467.0, 219.4, 98.0),
+    "ISO VG 320": (736.5, 320.9, None),
+    "ISO VG 460": (1073.6, 438.9, None),
+    "SAE 0W-20": (113.9, 66.48, 173.0),
+    "SAE 5W-30": (163.2, 90.19, 156.0),
+    "SAE 10W-40": (276.3, 141.0, 155.0),
+    "SAE 15W-40": (279.6, 142.4, 136.0),
+    "SAE 20W-50": (416.7, 199.4, 126.0),
+}
+
+
+@pytest.mark.parametrize("name", list(D2270))
+def test_viscosity_index(name):
+    """Of both points after ASTM D2270, procedures A and B; as printed, to its rounding, or 95 to 102 for plain mineral oils."""
+    L, H, printed = D2270[name]
+    U, Y = (ISO_GRADES | MULTIGRADES)[name][:2]
+    index = 100.0 * (L - U) / (L - H)
+    if index > 100.0:
+        index = 100.0 + (10.0 ** (math.log10(H / U) / math.log10(Y)) - 1.0) / 0.00715
+    if printed is None:
+        assert 95.0 < index < 102.5
+    else:
+        assert index == pytest.approx(printed, abs=0.5 if name in MULTIGRADES else 2.0)
+
+
+# Other oils of the ISO grades: dynamic viscosities at 40 and 100 degrees Celsius over the density (mm2/s), and that (kg/m3). 32 to 68: those of
+# the rotor dynamics code ROSS (Petrobras); the others: Mobilgear 600 XP (ExxonMobil's sheet of 2020, density to two digits).
+OTHER_ISO = {
+    "ISO VG 32": (32.0, 5.34, 874.0),
+    "ISO VG 46": (46.0, 7.04, 863.0),
+    "ISO VG 68": (65.8, 8.84, 867.0),
+    "ISO VG 100": (100.0, 11.2, 880.0),
+    "ISO VG 150": (150.0, 14.7, 890.0),
+    "ISO VG 220": (220.0, 19.0, 890.0),
+    "ISO VG 320": (320.0, 24.1, 900.0),
+    "ISO VG 460": (460.0, 30.6, 900.0),
+}
+
+
+@pytest.mark.parametrize("name", list(OTHER_ISO))
+def test_iso_grades_are_near_other_oils(name):
+    nu40, nu100, density = OTHER_ISO[name]
+    assert ISO_GRADES[name][0] == pytest.approx(nu40, rel=0.04)
+    assert ISO_GRADES[name][1] == pytest.approx(nu100, rel=0.06)
+    assert ISO_GRADES[name][2] == pytest.approx(density, rel=0.025)
+
+
 # SAE J300 (2015), high-temperature grades: kinematic viscosity at 100 degrees Celsius in mm2/s.
 J300_HOT = {"20": (6.9, 9.3), "30": (9.3, 12.5), "40": (12.5, 16.3), "50": (16.3, 21.9)}
 # Another oil of the grade: nu at 40 and at 100 degrees Celsius in mm2/s. 10W-40: mean of five oils tested by the Petroleum Quality Institute

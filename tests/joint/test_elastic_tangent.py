@@ -28,6 +28,7 @@ OPTIONS = {
     },
     "compressible": {"lubricant": ehd.Lubricant(viscosity=9e-3, density_law=ehd.DowsonHigginson())},
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=1e-6)},
+    "rough journal": {"roughness": ehd.PatirCheng(composite_roughness=3e-6, pattern=1 / 3, journal_share=1.0)},
     "wall": {"contact": ehd.RegularisedWall(onset=12e-6, pressure=2e7)},
 }
 C = 30e-6
