@@ -85,18 +85,28 @@ def test_steps_of_a_scene(benchmark, scene):
     benchmark.extra_info["films_per_step"] = outcome.films
 
 
+# Largest exponents over all sizes. A banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape, which only large
+# grids approach (measured 1.6, 1.5); the mass-conserving film solves several such systems (1.3 to 2.0). Products with the k modes' shapes cost k,
+# those of the modal Jacobian k^2 (1.1 between 29 and 243 modes). A joint costs the same, whatever else is in the model (1.0): more would be
+# a search or a copy over all joints.
+GROWTH_LIMITS = {
+    "SwiftStieber, force": 2.0, "SwiftStieber, force and tangent": 2.0, "ElrodAdams, force and tangent": 2.3,
+    "modal bush, force and tangent": 1.5, "step of a model": 1.25,
+}  # fmt: skip
+# The same between the two largest sizes (measured 1.5 and 1.0).
+LAST_LIMITS = {"modal bush, force and tangent": 2.0, "step of a model": 1.25}
+
+
 def test_growth(capsys):
     """Exponents of cost over grid, modes and joints; what would be a defect is a growth far beyond the algorithm's."""
-    growths = growth.all_growths(repeats=3)
+    growths = {g.name: g for g in growth.all_growths(repeats=3)}
     with capsys.disabled():
-        print("\n" + growth.growth_text(growths))
-    by_name = {g.name: g for g in growths}
-    # a banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape; caches add at the end
-    assert by_name["SwiftStieber, force and tangent"].exponent < 2.0
-    assert by_name["ElrodAdams, force and tangent"].exponent < 2.3
-    assert by_name["modal bush, force and tangent"].exponent < 1.5
-    # every joint costs the same, whatever else is in the model
-    assert by_name["step of a model"].exponent < 1.25
+        print("\n" + growth.growth_text(list(growths.values())))
+    assert set(growths) == set(GROWTH_LIMITS)
+    for name, limit in GROWTH_LIMITS.items():
+        assert growths[name].exponent < limit, name
+    for name, limit in LAST_LIMITS.items():
+        assert growths[name].last_exponent < limit, name
 
 
 @pytest.mark.parametrize("name", order.checkable())
