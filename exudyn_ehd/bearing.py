@@ -247,8 +247,9 @@ def advice(status: Status, bearing: object) -> str:
     """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
     if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
         return (
-            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not give way; it knows "
-            "no contact: use ModalBush(...) with contact=RegularisedWall(onset=...), or reduce the load or the step size."
+            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not give way: name "
+            "contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the liner too, or reduce the load or the "
+            "step size."
         )
     return status.advice
 

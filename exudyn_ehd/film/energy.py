@@ -68,12 +68,17 @@ def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
     n, m = H.shape
     for i in range(n):
         for j in range(m):
-            if inverse_step > 0.0:
-                rate_out[i, j] = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
-            elif squeeze:
-                rate_out[i, j] = fill[i, j] * H_t[i, j]
-            else:
-                rate_out[i, j] = 0.0
+            rate_out[i, j] = _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j)
+
+
+@njit(cache=True, inline="always")
+def _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j):
+    rate = 0.0
+    if inverse_step > 0.0:
+        rate = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
+    elif squeeze:
+        rate = fill[i, j] * H_t[i, j]
+    return rate
 
 
 @njit(cache=True)
@@ -84,28 +89,77 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
     """
     n, m = q.shape
     for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
             outside_out[i, j] = 0.0
-            if not fixed[i, j]:
-                continue
-            up = 0.0
-            down = 0.0
-            if j + 1 < m:
-                f = fz[i, j]
-                up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
-            if j > 0:
-                f = fz[i, j - 1]
-                down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
-            outside_out[i, j] = up - down
-            if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
-                continue
-            f = fx[i, j]
-            out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
-            f = fx[prv, j]
-            into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
-            outside_out[i, j] += out - into + area[i, j] * rate[i, j]
+            if fixed[i, j]:
+                broken = (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2])
+                outside_out[i, j] = _vertex_inflow(q, fill, kx, kz, fx, fz, area[i, j] * rate[i, j], broken, i, j)
+
+
+@njit(cache=True, inline="always")
+def _vertex_inflow(q, fill, kx, kz, fx, fz, storage, broken, i, j):
+    """Flow that enters at one fixed vertex; ``broken``: an end next to a ruptured film."""
+    n, m = q.shape
+    up = 0.0
+    down = 0.0
+    if j + 1 < m:
+        f = fz[i, j]
+        up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
+    if j > 0:
+        f = fz[i, j - 1]
+        down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
+    inflow = up - down
+    if not broken:
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        f = fx[i, j]
+        out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
+        f = fx[prv, j]
+        into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
+        inflow += out - into + storage
+    return inflow
+
+
+@njit(cache=True)
+def exchange_sums(
+    P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, active, conserves, cavity
+):  # fmt: skip
+    """Sums over what `outside_flows` gives with the rates of `content_rate`, without fields in between.
+
+    ``active`` (n, m) is the unbroken film of cavitation models that do not conserve mass (``conserves``), ``cavity`` the scaled
+    cavity pressure.
+
+    Returns
+    -------
+    leaving, work : float
+        What leaves, and ``sum (P - cavity) inflow`` plus, with ``squeeze``, ``cavity sum area dH/dt``.
+    """
+    n, m = H.shape
+    leaving = 0.0
+    work = 0.0
+    closing = 0.0
+    for i in range(n):
+        for j in range(m):
+            if squeeze:
+                closing += area[i, j] * H_t[i, j]
+            if fixed[i, j]:
+                end = 1 if j == 0 else m - 2
+                broken = (j == 0 or j == m - 1) and not (conserves or active[i, end] or fixed[i, end])
+                storage = area[i, j] * _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j)
+                inflow = _vertex_inflow(q, fill, kx, kz, fx, fz, storage, broken, i, j)
+                leaving -= min(inflow, 0.0)
+                work += (P[i, j] - cavity) * inflow
+    return leaving, work + cavity * closing
+
+
+@njit(cache=True)
+def end_section(P, H, width_x):
+    """``sum P H ds`` along the end z > 0 less that along the other."""
+    total = 0.0
+    e = P.shape[1] - 1
+    for i in range(width_x.size):
+        total += width_x[i] * (P[i, e] * H[i, e] - P[i, 0] * H[i, 0])
+    return total
 
 
 @njit(cache=True)

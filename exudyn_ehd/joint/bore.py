@@ -127,7 +127,7 @@ class NodalBore:
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
-        self.grid_shape = grid.shape
+        self.grid_shape, self.grid = grid.shape, grid
         T, Z = np.meshgrid(grid.x, grid.z * grid.reference_length, indexing="ij")
         full = surface.radial_interpolation(T.ravel(), Z.ravel())
         columns = (3 * np.arange(len(surface.nodes))[:, None] + np.arange(2)).ravel()

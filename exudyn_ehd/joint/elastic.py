@@ -24,6 +24,8 @@ from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.elastic_product import TangentProduct
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
 from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
+from exudyn_ehd.joint.nodal_tangent import NodalProduct, nodal_tangent
+from exudyn_ehd.joint.traction import BoreForces, traction
 from exudyn_ehd.status import Status
 
 # Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the usual meshes.
@@ -53,6 +55,27 @@ class ElasticEvaluation(Evaluation):
         self._require_current()
         model: Any = self._model
         return model.tangent_product()
+
+    def nodal_forces(self, forces: BoreForces) -> np.ndarray:
+        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        shear = traction(model, forces)
+        nodal = forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
+        nodal[:, :2] += self.bore_load.reshape(-1, 2)
+        return nodal
+
+    def nodal_tangent(self, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
+        """As `exudyn_ehd.joint.nodal_tangent.nodal_tangent`; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        return nodal_tangent(model, forces)
+
+    def nodal_product(self, forces: BoreForces) -> NodalProduct:
+        """The tangent of wrench and nodal forces as an operator; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        return NodalProduct(model, forces)
 
 
 class BoreTerm:
@@ -172,8 +195,8 @@ class ElasticBearingModel(BearingModel):
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
         area = self.grid.weight * self.grid.reference_length**2
         field = self.P * (area * self.pressure_scale)
-        if self.contact_fields is not None:
-            for P in self.contact_fields.P:
+        if self.pressing is not None:
+            for P in self.pressing.P:
                 field = field + P * area
         return field
 
@@ -221,11 +244,12 @@ class ElasticBearingModel(BearingModel):
         """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
         return condensed_tangent(self)
 
+    def power_loss(self) -> float:
+        """Of film and contacts as in `BearingModel`, W; what the film does to the bore leaves the film."""
+        return super().power_loss() - float(self.bore_load @ self.rates)
+
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
         out = super().quantities()
-        if self.status is Status.CONVERGED:
-            # what the film does to the bore leaves the film
-            out["power_loss"] -= float(self.bore_load @ self.rates)
         out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
         return out

@@ -45,7 +45,7 @@ class TangentProduct:
         self.places = balances.places
         self.weight = -model.force_scale * load_weights(model)
         self.contact: np.ndarray | None = None
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             self.contact = contact_slope(model)
             z = model.grid.z
             cos, sin = self.contact * model.cos_x[:, None], self.contact * model.sin_x[:, None]
@@ -62,6 +62,16 @@ class TangentProduct:
             If the model has evaluated another state since.
         """
         model = self.model
+        moved, residual = self.residual(motion, place, rate)
+        field = np.zeros(moved.shape)
+        field.reshape(-1)[self.places] = self.weight * residual
+        if self.contact is None:
+            return model.bore.load(field)
+        return model.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
+
+    def residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
+        model = self.model
         if model.serial != self.serial:
             raise RuntimeError("TangentProduct: the model has evaluated another state since.")
         moved, speed = model.bore.displacements(place, rate)
@@ -77,8 +87,4 @@ class TangentProduct:
             residual,
         )
         model.solver.direct(residual)
-        field = np.zeros(moved.shape)
-        field.reshape(-1)[self.places] = self.weight * residual
-        if self.contact is None:
-            return model.bore.load(field)
-        return model.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
+        return moved, residual

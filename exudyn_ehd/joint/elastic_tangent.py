@@ -57,9 +57,9 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
         by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam)
         block[:6] = weights @ by_bore[:count] + by_gap * direct
         np.multiply(by_bore[count : count + k], model.force_scale, out=block[6:])
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             _add_contact_loads(model, block[6:], by_gap)
-    if model.contact_fields is not None:
+    if model.pressing is not None:
         _add_contact_motion(model, out[6:, :4])
     return out
 
@@ -145,7 +145,7 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     """What the wrench owes to q at fixed film pressure (6, k): gap, slopes and contacts."""
     g = model.grid
     fields = np.empty((4, *g.shape))
-    fields[0], fields[3] = _couette_field(model), _end_field(model)
+    fields[0], fields[3] = couette_field(model), _end_field(model)
     transposed_slopes(model.P * g.weight, g.width_x[0], g.z, fields[1], fields[2])
     if model.effects.uneven_drag:
         face, cell = drag_by_gap(model)
@@ -153,10 +153,10 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
         fields[1] += 0.5 * (face[0] + np.roll(face[0], 1, axis=0))
         fields[2] += cell[0]
     out = (weights[:, 4:] / model.bearing.radial_clearance) @ model.bore.contract(fields)
-    return out if model.contact_fields is None else out + _contact_wrench(model)
+    return out if model.pressing is None else out + _contact_wrench(model)
 
 
-def _couette_field(model: ElasticBearingModel) -> np.ndarray:
+def couette_field(model: ElasticBearingModel) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
     share = model.share()
@@ -164,7 +164,7 @@ def _couette_field(model: ElasticBearingModel) -> np.ndarray:
         field = g.weight * share / s.H * (model.ratio_h - model.ratio / s.H)
     else:
         field = -g.weight * share / s.H**2
-    return field if model.limiter_fields is None else field * model.limiter_fields.slope
+    return field if model.limited is None else field * model.limited.slope
 
 
 def _end_field(model: ElasticBearingModel) -> np.ndarray:
@@ -173,8 +173,8 @@ def _end_field(model: ElasticBearingModel) -> np.ndarray:
     step = model.grid.width_x[0]
     field[:, -1] = model.end_pressures[1] * step
     field[:, 0] = -model.end_pressures[0] * step
-    if model.limiter_fields is not None:
-        field *= model.limiter_fields.slope
+    if model.limited is not None:
+        field *= model.limited.slope
     return field
 
 
@@ -200,7 +200,7 @@ def _all_weights(model: ElasticBearingModel) -> np.ndarray:
 def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
     """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
     g, R = model.grid, model.grid.reference_length
-    f = model.contact_fields
+    f = model.pressing
     assert f is not None
     out = np.zeros((6, model.bore.size))
     x, y, bx, by = model.motion[:4].tolist()
@@ -220,7 +220,7 @@ def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
 
 def contact_slope(model: ElasticBearingModel) -> np.ndarray:
     """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
-    f, g = model.contact_fields, model.grid
+    f, g = model.pressing, model.grid
     assert f is not None
     return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
 

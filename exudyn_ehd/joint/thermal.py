@@ -10,8 +10,16 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.band_lu import PAD, factor_lu, solve_lu
 from exudyn_ehd.film.direct import number_cells
-from exudyn_ehd.film.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
-from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.energy import (
+    assemble_energy,
+    content_rate,
+    end_section,
+    exchange_sums,
+    film_flows,
+    film_heat,
+    outside_flows,
+)
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.joint.effects import History
@@ -85,18 +93,23 @@ class OilFlows(Exchange):
             self.found[:] = 0.0
 
 
-def heat_power(model: BearingModel, flows: Exchange) -> float:
-    """Power that the film and its contacts turn into heat, W: `BearingModel.quantities` power_loss less the work on the oil."""
-    s, g, b = model.solver, model.grid, model.bearing
+def heat_and_leakage(model: BearingModel) -> tuple[float, float]:
+    """Power that film and contacts of the last evaluation turn into heat, W, and the flow that leaves, in units of c R^2.
+
+    The heat is `BearingModel.power_loss` less the work on the oil; the flow is that of `Exchange`.
+    """
+    s, y, g, b = model.solver, model.solver.system, model.grid, model.bearing
+    conserves = s.closure.conserves_mass
     cavity = b.cavitation.cavity_pressure / model.pressure_scale
-    cavity = cavity if math.isfinite(cavity) else 0.0
-    work = float(np.vdot(model.P - cavity, flows.outside))
-    if cavity != 0.0 and s.squeeze:
-        work += cavity * float(np.vdot(s.area, s.H_t))
+    stepped = conserves and y.inverse_step > 0.0 and not s.instant
+    leaving, work = exchange_sums(
+        model.P, s.pressure, s.H, s.H_t, s.fill if conserves else s.ones, y.mass_old if stepped else s.H,
+        y.inverse_step if stepped else 0.0, s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, s.work.active, conserves,
+        cavity if math.isfinite(cavity) else 0.0,
+    )  # fmt: skip
     if model.axial_speed != 0.0:
-        ends = model.P[:, -1] * s.H[:, -1] - model.P[:, 0] * s.H[:, 0]
-        work += model.axial_speed / g.reference_length * float(np.sum(g.width_x * ends))
-    return model.quantities()["power_loss"] + model.pressure_scale * model.flow_scale * work
+        work += model.axial_speed / g.reference_length * end_section(model.P, s.H, g.width_x)
+    return model.power_loss() + model.pressure_scale * model.flow_scale * work, leaving
 
 
 class LumpedTemperature:
@@ -132,8 +145,8 @@ class LumpedTemperature:
 
     def _rates(self, model: BearingModel) -> tuple[float, float]:
         """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
-        flows = Exchange(model)
-        return heat_power(model, flows), self.flow_capacity * model.flow_scale * flows.leaving
+        heat, leaving = heat_and_leakage(model)
+        return heat, self.flow_capacity * model.flow_scale * leaving
 
     def advance(self, model: BearingModel) -> float:
         """Temperature at the end of the step that was evaluated last."""
@@ -168,8 +181,11 @@ class LumpedTemperature:
         return {"film_temperature": self.temperature, "peak_temperature": self.temperature}
 
 
-class ViscosityField:
+class ViscosityField(FluxEffect):
     """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
+
+    changes_carriers = False
+    depends_on_speed = False
 
     def __init__(self) -> None:
         self.ratio = np.ones((1, 1))
@@ -184,9 +200,9 @@ class ViscosityField:
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the conductances by the ratio on the link."""
-        for conductance in (flux.gx, flux.gx_h, flux.gx_v):
+        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_x
-        for conductance in (flux.gz, flux.gz_h, flux.gz_v):
+        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_z
 
     def factor(
@@ -294,7 +310,7 @@ class FilmTemperature:
             * ratio
             / s.H
         )
-        contact = model.contact_fields
+        contact = model.pressing
         if contact is not None:
             for k, effect in enumerate(model.effects.contacts):
                 g_theta, g_z, _ = model.slip(effect)

@@ -85,6 +85,7 @@ _LAWS: dict[str, dict[str, Any]] = {
     "`LumpedThermal`": {**_oil(), "thermal": LumpedThermal(supply_temperature=HOT)},
     "`FilmEnergy`": {**_oil(), "thermal": FilmEnergy(supply_temperature=HOT)},
 }
+_LINER = {"bush": ElasticLiner(thickness=0.002, youngs_modulus=1e10)}
 _CONSERVING = {"cavitation": ElrodAdams(cavity_pressure=-1e5)}
 CLOSURES: dict[str, Case] = {
     "`Gumbel`": Case(options={"cavitation": Gumbel()}),
@@ -108,10 +109,16 @@ EFFECTS: dict[str, Case] = {
     "`GreenwoodTripp`, `ArchardWear`": Case(options=_ASPERITY | {"wear": ArchardWear(wear_rate=1e-15)}),
     "`RegularisedWall`": Case(options={"contact": RegularisedWall(onset=ONSET)}),
     "`Crown`": Case(options={"profile": Crown(drop=1e-6)}),
-    "`ElasticLiner`": Case(options={"bush": ElasticLiner(thickness=0.002, youngs_modulus=1e10)}),
+    "`ElasticLiner`": Case(options=_LINER),
+    "`ElasticLiner`, `GreenwoodTripp`": Case(options=_LINER | _ASPERITY),
 }
 WITH_CONSERVING: dict[str, Case] = {
-    f"{CONSERVING}, {name}": Case(options=options | _CONSERVING, base=CONSERVING) for name, options in _LAWS.items()
+    f"{CONSERVING}, {name}": Case(options=options | _CONSERVING, base=CONSERVING)
+    for name, options in {
+        **_LAWS,
+        "`ElasticLiner`": _LINER,
+        "`ElasticLiner`, `GreenwoodTripp`": _LINER | _ASPERITY,
+    }.items()
 }
 FILMS: dict[str, Case] = {
     "`ShortBearing`": Case(options={"film": ShortBearing()}),

@@ -11,6 +11,12 @@ from exudyn_ehd.film.oils import ISO_GRADES, MULTIGRADES, SAE_GRADES
 T40, T100 = 313.15, 373.15
 
 
+def kinematic(oil):
+    """mm2/s, with the density of ASTM D1250, table 54D, at the oil's temperature."""
+    x = 0.6278 / oil.density * (oil.temperature - 288.15)
+    return 1e6 * oil.viscosity / (oil.density * math.exp(-x * (1.0 + 0.8 * x)))
+
+
 def test_reynolds_is_an_exponential():
     law = ehd.ReynoldsTemperature(point=(T40, 0.04), coefficient=0.03)
     assert law.viscosity(T40 + 10.0, 870.0) == pytest.approx(0.04 * math.exp(-0.3), rel=1e-13)
@@ -44,8 +50,19 @@ def test_walther_worked_example():
 @pytest.mark.parametrize("name", list(ISO_GRADES))
 def test_iso_grades_meet_their_mid_point(name):
     oil = ehd.oil(name)
-    assert oil.viscosity / oil.density * 1e6 == pytest.approx(float(name.split()[-1]), rel=1e-12)
-    assert oil.at(T100).viscosity / oil.density * 1e6 == pytest.approx(ISO_GRADES[name][1], rel=1e-12)
+    assert kinematic(oil) == pytest.approx(float(name.split()[-1]), rel=1e-12)
+    assert kinematic(oil.at(T100)) == pytest.approx(ISO_GRADES[name][1], rel=1e-12)
+
+
+def test_density_falls_with_temperature():
+    """875 kg/m3 at 15 degrees Celsius are 859.2 at 40 and 820.8 at 100 (ASTM D1250); none without an expansion."""
+    points = {"first": (T40, 32e-6), "second": (T100, 5.4e-6)}
+    oil, plain = (ehd.WaltherTemperature(**points, expansion=e) for e in (0.6278 / 875.0, 0.0))
+    assert oil.viscosity(T40, 875.0) == pytest.approx(32e-6 * 859.2, rel=1e-4)
+    assert oil.viscosity(T100, 875.0) == pytest.approx(5.4e-6 * 820.8, rel=1e-4)
+    assert plain.viscosity(T100, 875.0) == pytest.approx(5.4e-6 * 875.0, rel=1e-12)
+    with pytest.raises(ehd.InputError, match=r"WaltherTemperature\.expansion"):
+        ehd.WaltherTemperature(**points, expansion=0.63)
 
 
 # ISO 3448: limits at 40 degrees Celsius, 10 % around the mid-point, in mm2/s.
@@ -66,7 +83,7 @@ def test_iso_grades_lie_in_the_standard_limits():
     assert ISO_3448.keys() == ISO_GRADES.keys()
     for name, (low, high) in ISO_3448.items():
         oil = ehd.oil(name)
-        assert low < 1e6 * oil.viscosity / oil.density < high
+        assert low < kinematic(oil) < high
 
 
 # Reference viscosities L and H of ASTM D2270 at the oil's viscosity at 100 degrees Celsius, and the index that makers print with these
@@ -141,7 +158,7 @@ OTHER_OILS = {
 @pytest.mark.parametrize("name", list(MULTIGRADES))
 def test_multigrades_lie_in_their_class_and_near_other_oils_of_it(name):
     oil = ehd.oil(name)
-    nu40, nu100 = (1e6 * oil.at(T).viscosity / oil.density for T in (T40, T100))
+    nu40, nu100 = (kinematic(oil.at(T)) for T in (T40, T100))
     assert (nu40, nu100) == pytest.approx(MULTIGRADES[name][:2], rel=1e-12)
     low, high = J300_HOT[name.split("-")[-1]]
     assert low <= nu100 < high
