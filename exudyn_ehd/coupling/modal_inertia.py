@@ -50,7 +50,7 @@ class ModalInertia:
         self.side: Side = detached(side)
         self.modal_mass = modes.mass
         self.P, self.Theta, self.K = modes.participation()
-        self._both = np.concatenate((self.P, self.Theta))
+        self._both, self._flat = np.concatenate((self.P, self.Theta)), self.K.reshape(-1, 9)
         self._bound = not isinstance(side, MarkerSide)
 
     def mass(self, q: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -101,11 +101,11 @@ class ModalInertia:
     ) -> tuple[np.ndarray, np.ndarray]:
         a, alpha, omega = self._accelerations(J, q, q_t)
         p, p_t, inertia = self.P @ modes, self.P @ modes_t, self._inertia(modes)
-        force = np.cross(alpha, p) + np.cross(omega, np.cross(omega, p)) + 2.0 * np.cross(omega, p_t)
-        moment = np.cross(p, a) + inertia @ alpha + np.cross(omega, inertia @ omega)
-        moment += 2.0 * np.tensordot(modes_t, self.K @ omega, 1)
-        on_modes = self.P.T @ a + self.Theta.T @ alpha - (self.K @ omega) @ omega
-        return -(J.T @ np.concatenate((force, moment))), -on_modes
+        turn, each = _skew(omega), self.K @ omega
+        force = _skew(alpha) @ p + turn @ (turn @ p + 2.0 * p_t)
+        moment = _skew(p) @ a + inertia @ alpha + turn @ (inertia @ omega) + 2.0 * (modes_t @ each)
+        on_modes = a @ self.P + alpha @ self.Theta - each @ omega
+        return -(np.concatenate((force, moment)) @ J), -on_modes
 
     def _accelerations(self, J: np.ndarray, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, ...]:
         """Accelerations a and alpha at q_tt = 0, and Omega, in the frame's components."""
@@ -116,7 +116,7 @@ class ModalInertia:
         return (side.jac[2] @ q_t) @ A, (side.jac[3] @ q_t) @ A, J[3:] @ q_t
 
     def _inertia(self, modes: np.ndarray) -> np.ndarray:
-        first = np.tensordot(modes, self.K, 1)
+        first = (modes @ self._flat).reshape(3, 3)
         return first + first.T
 
     def _move(self, q: np.ndarray) -> np.ndarray:
