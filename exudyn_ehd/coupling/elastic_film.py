@@ -102,6 +102,8 @@ class ModalFilmElement(BoreFilmElement):
     def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""
         assert self.inertia is not None
+        if not self._bound:
+            self._bind(mbs)
         n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
         whole = np.zeros((state.size, state.size))
         whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])

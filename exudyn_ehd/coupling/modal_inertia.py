@@ -5,8 +5,8 @@ velocity omega) stands at r + A (X + u), u = Phi q. Of its kinetic energy beyond
 
     T = int rho d(A X + r)/dt . d(A u)/dt dV + q_t^T M q_t / 2,
 
-what is left out is of the order of u over the size of the bush: gyroscopic and centrifugal terms of u with itself. T is the same in every inertial frame,
-so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
+what is left out is of the second order in u: gyroscopic and centrifugal terms of u with itself. T does not change when the whole model is
+displaced or turned, so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
 accelerations in the frame's components,
 
     delta r:    a_w = alpha x p + Omega x (Omega x p) + 2 Omega x p_t + p_tt,
@@ -15,8 +15,6 @@ accelerations in the frame's components,
 
 need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see `BoreModes.moments`.
 The modes were made for pressures; to a uniform acceleration in the plane of the bearing the bore answers within some 10 % of the mesh.
-
-A. A. Shabana, Dynamics of Multibody Systems, chapter 5, has the general formulation; derived here.
 """
 
 from __future__ import annotations
@@ -50,7 +48,7 @@ class ModalInertia:
         self.side: Side = detached(side)
         self.modal_mass = modes.mass
         self.P, self.Theta, self.K = modes.participation()
-        self._both = np.concatenate((self.P, self.Theta))
+        self._both, self._flat = np.concatenate((self.P, self.Theta)), self.K.reshape(-1, 9)
         self._bound = not isinstance(side, MarkerSide)
 
     def mass(self, q: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -101,11 +99,11 @@ class ModalInertia:
     ) -> tuple[np.ndarray, np.ndarray]:
         a, alpha, omega = self._accelerations(J, q, q_t)
         p, p_t, inertia = self.P @ modes, self.P @ modes_t, self._inertia(modes)
-        force = np.cross(alpha, p) + np.cross(omega, np.cross(omega, p)) + 2.0 * np.cross(omega, p_t)
-        moment = np.cross(p, a) + inertia @ alpha + np.cross(omega, inertia @ omega)
-        moment += 2.0 * np.tensordot(modes_t, self.K @ omega, 1)
-        on_modes = self.P.T @ a + self.Theta.T @ alpha - (self.K @ omega) @ omega
-        return -(J.T @ np.concatenate((force, moment))), -on_modes
+        turn, each = _skew(omega), self.K @ omega
+        force = _skew(alpha) @ p + turn @ (turn @ p + 2.0 * p_t)
+        moment = _skew(p) @ a + inertia @ alpha + turn @ (inertia @ omega) + 2.0 * (modes_t @ each)
+        on_modes = a @ self.P + alpha @ self.Theta - each @ omega
+        return -(np.concatenate((force, moment)) @ J), -on_modes
 
     def _accelerations(self, J: np.ndarray, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, ...]:
         """Accelerations a and alpha at q_tt = 0, and Omega, in the frame's components."""
@@ -116,7 +114,7 @@ class ModalInertia:
         return (side.jac[2] @ q_t) @ A, (side.jac[3] @ q_t) @ A, J[3:] @ q_t
 
     def _inertia(self, modes: np.ndarray) -> np.ndarray:
-        first = np.tensordot(modes, self.K, 1)
+        first = (modes @ self._flat).reshape(3, 3)
         return first + first.T
 
     def _move(self, q: np.ndarray) -> np.ndarray:

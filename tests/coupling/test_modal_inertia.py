@@ -12,7 +12,7 @@ import scenes
 from elastic_scene import CLEARANCE, CYLINDER, HOUSING, SPEED, STEEL, Nodes, bearing
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 from exudyn.utilities import InertiaCylinder
-from test_carried_bodies import rod
+from test_carried_bodies import PUSH, rod, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.items import resolve
@@ -117,6 +117,20 @@ def test_a_link_of_a_tree_has_the_inertia_of_a_planar_body():
         )
     for a, b in zip(*found, strict=True):
         assert np.allclose(a, b, rtol=0, atol=1e-11 * np.abs(a).max())
+
+
+def test_momentum_of_a_tree_with_a_bush_is_the_impulse_of_its_load(measured):
+    mbs, joint = rod("tree", DYNAMIC)
+    modes = joint.element.bore_nodes
+    before, _ = total(mbs, modes)
+    steps, step = 20, 5e-6
+    # the bush starts undeformed on a marker's body, and swings
+    mbs.SolveDynamic(scenes.settings(steps * step, steps, tolerance=1e-9))
+    assert len(joint.history.time) == steps + 1
+    times = step * np.arange(steps + 1)
+    impulse = PUSH * np.array([steps * step, np.trapezoid(np.cos(2000.0 * times), times)])
+    # the share of the modes' own momentum is in the coupling of the mass matrix
+    measured("momentum", np.abs(total(mbs, modes)[0] - before - impulse).max() / np.abs(impulse).max(), 1e-4)
 
 
 def accelerated(kind, density, acceleration, spin, steps=25, end=5e-4):
