@@ -1,6 +1,6 @@
 """Equations of motion of a nodal bush in the coordinates of its Exudyn object.
 
-Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier's node with coordinates q_c.
+Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier with coordinates q_c.
 With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
 """
 
@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
+import exudyn as exu
 import numpy as np
 from scipy.sparse import bmat, csr_matrix, identity
 
@@ -45,26 +47,22 @@ class BushEquations:
     loads: tuple[Load, ...]
     mass_rate: float
 
-    def displacements(self, q: np.ndarray) -> np.ndarray:
-        """Return the displacement of all mesh nodes, shape (n, 3) [m]."""
-        u = np.zeros(self.held.shape)
+    def motion(
+        self, q: np.ndarray, q_t: np.ndarray, configuration: Any = exu.ConfigurationType.Current
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at Exudyn's state in ``configuration``."""
+        u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)
         u[self._moving] = q[: self._count].reshape(-1, 3)
-        if self.carrier is not None:
-            u[self.slaved] = self.carrier.positions(q[self._count :]) - self.solid.mesh.nodes[self.slaved]
-        return u
-
-    def velocities(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Return the velocity of all mesh nodes, shape (n, 3) [m/s]."""
-        v = np.zeros(self.held.shape)
         v[self._moving] = q_t[: self._count].reshape(-1, 3)
         if self.carrier is not None:
-            v[self.slaved] = self.carrier.velocities(q[self._count :], q_t[self._count :])
-        return v
+            self.carrier.move(q[self._count :], q_t[self._count :], configuration)
+            u[self.slaved] = self.carrier.positions() - self.solid.mesh.nodes[self.slaved]
+            v[self.slaved] = self.carrier.velocities()
+        return u, v
 
     def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
-        u = self.displacements(q)
-        v = self.velocities(q, q_t)
+        u, v = self.motion(q, q_t)
         nodal = self._nodal_forces(t, u, v)
         if self.carrier is not None:
             acceleration = np.zeros_like(u)
@@ -73,7 +71,7 @@ class BushEquations:
         result = np.empty(len(q))
         result[: self._count] = nodal[self._moving].ravel()
         if self.carrier is not None:
-            B = self.carrier.jacobian(q[self._count :])
+            B = self.carrier.jacobian()
             result[self._count :] = B.T @ nodal[self.slaved].ravel()
         result[self._held] = -self._spring * q[self._held]
         return result
@@ -88,7 +86,7 @@ class BushEquations:
         velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method then
         takes more iterations; its result is the same.
         """
-        u, v = self.displacements(q), self.velocities(q, q_t)
+        u, v = self.motion(q, q_t)
         values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
         self._add_follower_stiffness(values, t, u, position_factor)
         K = self._moving_block.matrix(values)
@@ -99,10 +97,10 @@ class BushEquations:
         if self.carrier is None:
             return K
         qc = q[self._count :]
-        B = self.carrier.jacobian(qc)
+        B = self.carrier.jacobian()
         coupling = self._coupling_block.matrix(values) @ B
         coupling[self._held] = 0.0
-        turn = self.carrier.force_derivative(qc, self._nodal_forces(t, u, v)[self.slaved])
+        turn = self.carrier.force_derivative(qc, q_t[self._count :], self._nodal_forces(t, u, v)[self.slaved])
         own = B.T @ (self._slaved_block.matrix(values) @ B) - position_factor * turn
         return bmat([[K, coupling], [self._transposed_coupling(values, B), own]], format="csr")
 
@@ -110,7 +108,9 @@ class BushEquations:
         """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
         if self.carrier is None or q is None:
             return self._moving_mass
-        B = self.carrier.jacobian(q[self._count :])
+        qc = q[self._count :]
+        self.carrier.move(qc, np.zeros_like(qc))
+        B = self.carrier.jacobian()
         M = self.solid.mass
         coupling = M[self._moving_rows][:, self._slaved_rows] @ B
         coupling[self._held] = 0.0

@@ -16,8 +16,11 @@ import exudyn
 import numpy as np
 from exudyn import itemInterface as items
 
+from exudyn_ehd.coupling import carrier as carriers
 from exudyn_ehd.coupling.bush_equations import BushEquations
 from exudyn_ehd.coupling.carrier import Carrier
+from exudyn_ehd.coupling.items import resolve
+from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Load
 from exudyn_ehd.solid.mesh import BushMesh
@@ -57,12 +60,13 @@ class FixedOuter:
 
 @dataclass(frozen=True, kw_only=True)
 class CarriedOuter:
-    """The outer surface moves with a rigid body, without constraint equations.
+    """The outer surface moves with the rigid frame of a body, without constraint equations.
 
     Parameters
     ----------
-    itemNumber : exudyn.ObjectIndex or exudyn.NodeIndex
-        The body or its node. Its own mass and inertia stay untouched: the bush adds its own. With a Lie group node
+    itemNumber : exudyn.ObjectIndex, NodeIndex or MarkerIndex
+        The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar bodies, beams and cables,
+        links of kinematic trees, finite-element bodies. Its own mass and inertia stay untouched: the bush adds its own. With a Lie group node
         (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
         when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
     """
@@ -106,11 +110,14 @@ class FlexibleBush:
 
     def displacements(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the displacement of all mesh nodes, shape (n, 3) [m], global frame."""
-        return self.equations.displacements(self.coordinates(configuration))
+        return self._motion(configuration)[0]
 
     def velocities(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the velocity of all mesh nodes, shape (n, 3) [m/s], global frame."""
-        return self.equations.velocities(self.coordinates(configuration), self.coordinates_t(configuration))
+        return self._motion(configuration)[1]
+
+    def _motion(self, configuration: Any) -> tuple[np.ndarray, np.ndarray]:
+        return self.equations.motion(self.coordinates(configuration), self.coordinates_t(configuration), configuration)
 
     @property
     def stress(self) -> StressRecovery:
@@ -178,16 +185,88 @@ def CreateFlexibleBush(
             "the bush axes in the global frame."
         )
     place = require_vector("CreateFlexibleBush.position", position, 3, "m")
+    carry = _carried(mbs, outer.itemNumber, place, rotation) if isinstance(outer, CarriedOuter) else None
+    velocity = require_vector("CreateFlexibleBush.initialVelocity", initialVelocity, 3, "m/s")
+    omega = require_vector("CreateFlexibleBush.initialAngularVelocity", initialAngularVelocity, 3, "rad/s")
+    return add_bush(
+        mbs, name, bush, carry, (place, rotation), fixed=isinstance(outer, FixedOuter), supports=supports, loads=loads,
+        start=(velocity, omega), show=show, color=color,
+    )  # fmt: skip
+
+
+def _carried(mbs: Any, number: Any, place: np.ndarray, rotation: np.ndarray) -> Mount:
+    """Side and initial frame of the bush's frame on an item."""
+    where = "CarriedOuter.itemNumber"
+    item = resolve(mbs, where, number)
+    if not item.nodes:
+        raise InputError(f"{where} must be a body that moves, got ground; use FixedOuter() for ground.")
+    if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
+        raise InputError(
+            f"CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis {rotation[:, 2]}."
+        )
+    side = item.side(item.position if item.is_marker else place, rotation)
+    return Mount(side, carriers.initial_frame(mbs, item, side), item.position if item.is_marker else place)
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """What carries a bush.
+
+    Parameters
+    ----------
+    side : Side
+        Its axes are the bush's.
+    initial : ndarray (3, 6)
+        The side's frame in the initial configuration.
+    point : ndarray (3,)
+        Global position of the side's frame in the reference configuration [m].
+    """
+
+    side: Side
+    initial: np.ndarray
+    point: np.ndarray
+
+
+def add_bush(
+    mbs: Any,
+    name: str,
+    bush: ANCFBush,
+    mount: Mount | None,
+    place: tuple[np.ndarray, np.ndarray],
+    *,
+    fixed: bool = False,
+    supports: Sequence[Support] = (),
+    loads: Sequence[Load] = (),
+    start: tuple[np.ndarray, np.ndarray] = (np.zeros(3), np.zeros(3)),
+    show: bool = True,
+    color: Sequence[float] = (0.6, 0.6, 0.7, 1.0),
+) -> FlexibleBush:
+    """Add a bush on a mount; what `CreateFlexibleBush` does after its checks of arguments.
+
+    Parameters
+    ----------
+    mount : Mount or None
+        None: the outer surface is ``fixed`` or free.
+    place : ndarray (3,), ndarray (3, 3)
+        Bush frame in the reference configuration, global [m].
+    start : two ndarrays (3,)
+        Initial velocity [m/s] and angular velocity [rad/s] without a mount.
+    mbs, name, bush, supports, loads, show, color
+        As in `CreateFlexibleBush`.
+    """
+    position, rotation = place
     mesh = bush.build_mesh()
-    solid = bush.solid(replace(mesh, nodes=place + mesh.nodes @ rotation.T))
+    solid = bush.solid(replace(mesh, nodes=position + mesh.nodes @ rotation.T))
     held = _held_directions(mesh, supports)
     carrier = None
     slaved = np.zeros(len(mesh.nodes), dtype=bool)
-    if isinstance(outer, FixedOuter):
+    local = mesh.nodes
+    if fixed:
         held[mesh.outer.nodes] = True
-    elif isinstance(outer, CarriedOuter):
+    elif mount is not None:
         slaved[mesh.outer.nodes] = True
-        carrier = Carrier.of(mbs, outer.itemNumber, solid.mesh.nodes[slaved])
+        local = mesh.nodes + rotation.T @ (position - mount.point)
+        carrier = Carrier(mbs, mount.side, mount.initial, local[slaved])
         if held[slaved].any():
             raise InputError(
                 "CreateFlexibleBush.supports must leave the outer surface to its carrier, got supported outer nodes; "
@@ -202,9 +281,11 @@ def CreateFlexibleBush(
     equations = BushEquations(
         solid=solid, held=held, slaved=slaved, carrier=carrier, loads=tuple(loads), mass_rate=mass_rate
     )
-    velocity = require_vector("CreateFlexibleBush.initialVelocity", initialVelocity, 3, "m/s")
-    omega = require_vector("CreateFlexibleBush.initialAngularVelocity", initialAngularVelocity, 3, "rad/s")
-    u, v = _initial_motion(mbs, equations, place, velocity, omega)
+    X = solid.mesh.nodes
+    if mount is None:
+        u, v = np.zeros_like(X), start[0] + np.cross(start[1], X - position)
+    else:
+        u, v = carriers.positions(mount.initial, local) - X, carriers.velocities(mount.initial, local)
     numbers = _add_nodes(mbs, equations, u, v)
     return _add_object(mbs, name, mesh, equations, numbers, show, color)
 
@@ -220,19 +301,6 @@ def _held_directions(mesh: BushMesh, supports: Sequence[Support]) -> np.ndarray:
             )
         held[np.ix_(nodes.ravel(), np.asarray(support.directions, dtype=bool).nonzero()[0])] = True
     return held
-
-
-def _initial_motion(
-    mbs: Any, equations: BushEquations, place: np.ndarray, velocity: np.ndarray, omega: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Initial displacement and velocity of all mesh nodes: rigid, the carrier's if there is one."""
-    X = equations.solid.mesh.nodes
-    if equations.carrier is None:
-        return np.zeros_like(X), velocity + np.cross(omega, X - place)
-    data = mbs.GetNode(equations.carrier.node)
-    everything = Carrier.of(mbs, equations.carrier.node, X)
-    q, q_t = np.array(data["initialCoordinates"], float), np.array(data["initialVelocities"], float)
-    return everything.positions(q) - X, everything.velocities(q, q_t)
 
 
 def _add_nodes(mbs: Any, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
@@ -279,7 +347,7 @@ def _add_object(
         container.SetWithSparseMatrix(equations.mass(None), useDenseMatrix=False)
         arguments["massMatrix"] = container
     else:
-        nodes.append(carrier.node)
+        nodes += carrier.nodes
         arguments["massMatrixUserFunction"] = mass
     picture = items.VObjectGenericODE2(
         show=show, color=list(color), triangleMesh=_triangles(mesh, numbers), showNodes=False

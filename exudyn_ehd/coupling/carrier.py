@@ -1,151 +1,149 @@
-"""A rigid body's node as carrier of slaved mesh nodes: positions, velocities and their derivatives.
+"""What carries the slaved nodes of a bush: points that move with the rigid frame of any side of a joint.
 
-Legend: r position of the node, A its rotation matrix (local to global), theta its rotation coordinates, G the matrix of
-the local angular velocity omega = G dtheta/dt, xbar local positions of the slaved points.
+With the frame's position p, rotation A, velocity v, angular velocity omega and Jacobians Jp, Jr (see `kinematics`), a point X of the
+bush's frame has the arm s = A X and
+
+    x = p + s,   dx/dt = v + omega x s,   B = dx/dq = Jp - [s]x Jr,
+    d2x/dt2 = B q_tt + Vq q_t + (Wq q_t) x s + omega x (omega x s),
+
+where Vq, Wq are the derivatives of v and omega to q. Sides that know no derivatives of their Jacobians (`MarkerSide`) count them as zero.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
-from exudyn import rigidBodyUtilities as rigid
 
-from exudyn_ehd.status import InputError
+from exudyn_ehd.coupling.beam_items import node_coordinates
+from exudyn_ehd.coupling.items import Item
+from exudyn_ehd.coupling.sides import MarkerSide, Side, detached
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
-
-_KINDS = {
-    "RigidBodyEP": (rigid.EulerParameters2RotationMatrix, rigid.EulerParameters2GLocal, 4),
-    "RigidBodyRxyz": (rigid.RotXYZ2RotationMatrix, rigid.RotXYZ2GLocal, 3),
-    "RigidBodyRotVecLG": (rigid.RotationVector2RotationMatrix, None, 3),
-}
+_CURRENT, _REFERENCE = exu.ConfigurationType.Current, exu.ConfigurationType.Reference
+# Displacement, m or rad, over which initial velocities are found as differences of positions.
+SMALL = 1e-6
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Carrier:
-    """The carrier's node and the slaved points in its frame.
+    """Points in the frame of a side.
 
     Parameters
     ----------
-    node : exudyn.NodeIndex
-    kind : str
-        Exudyn's node type: ``RigidBodyEP``, ``RigidBodyRxyz`` or ``RigidBodyRotVecLG``.
-    reference : ndarray, shape (3 + rotation coordinates,)
-        The node's reference coordinates.
-    local : ndarray, shape (s, 3)
-        xbar [m].
+    mbs : exudyn.MainSystem
+    side : Side
+        Carries the bush's frame; the carrier keeps a copy with arrays of its own.
+    initial : ndarray (3, 6)
+        Its frame (A, p, v, omega) in the initial configuration.
+    local : ndarray (s, 3)
+        X [m].
     """
 
-    node: Any
-    kind: str
-    reference: np.ndarray
-    local: np.ndarray
-
-    @classmethod
-    def of(cls, mbs: Any, item: Any, positions: np.ndarray) -> Carrier:
-        """Return the carrier for slaved points at global reference positions, shape (s, 3) [m]."""
-        node = item
-        if isinstance(item, exu.ObjectIndex):
-            data = mbs.GetObject(item)
-            if "nodeNumber" not in data:
-                raise InputError(
-                    "CarriedOuter.itemNumber must be a rigid body or its node, got an object of type "
-                    f"{data['objectType']}; "
-                    "use FixedOuter() for ground, or carry the bush by a rigid body joined to your flexible part."
-                )
-            node = exu.NodeIndex(int(data["nodeNumber"]))
-        if not isinstance(node, exu.NodeIndex):
-            raise InputError(
-                f"CarriedOuter.itemNumber must be an ObjectIndex or NodeIndex, got {item!r}; pass what "
-                "mbs.CreateRigidBody returned."
-            )
-        data = mbs.GetNode(node)
-        kind = data["nodeType"]
-        if kind not in _KINDS:
-            raise InputError(
-                f"CarriedOuter.itemNumber must have a rigid node of type {', '.join(_KINDS)}, got {kind}; create the "
-                "body with one of these nodeTypes."
-            )
-        reference = np.array(data["referenceCoordinates"], dtype=float)
-        rotation = _KINDS[kind][0](reference[3:])
-        return cls(node=node, kind=kind, reference=reference, local=(positions - reference[:3]) @ rotation)
+    def __init__(self, mbs: Any, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
+        self.mbs = mbs
+        self.side: Side = detached(side)
+        self.initial = initial
+        self.local = local
+        self._bound = not isinstance(side, MarkerSide)
 
     @property
-    def size(self) -> int:
-        """Number of coordinates of the node."""
-        return 3 + _KINDS[self.kind][2]
+    def nodes(self) -> list[Any]:
+        """Nodes of the side."""
+        return self.side.nodes
 
-    def rotation(self, q: np.ndarray) -> np.ndarray:
-        """Return A, shape (3, 3), at coordinates q (without reference values)."""
-        return np.asarray(_KINDS[self.kind][0](self.reference[3:] + q[3:]))
+    def move(self, q: np.ndarray, q_t: np.ndarray, configuration: Any = _CURRENT) -> None:
+        """Bring frame and Jacobians to coordinates ``q`` and rates ``q_t`` (n,), those of Exudyn's ``configuration``."""
+        if not self._bound:
+            self.side.bind(self.mbs)  # type: ignore[attr-defined]
+            self._bound = True
+        self.side.update(self.mbs, q, q_t, configuration)
 
-    def rotation_rate(self, q: np.ndarray) -> np.ndarray:
-        """Return G, shape (3, rotation coordinates); identity for a Lie group node, whose rates are omega itself."""
-        function = _KINDS[self.kind][1]
-        return np.eye(3) if function is None else np.asarray(function(self.reference[3:] + q[3:]))
+    def positions(self) -> np.ndarray:
+        """Return x, shape (s, 3) [m]."""
+        return positions(self.side.frame, self.local)
 
-    def positions(self, q: np.ndarray) -> np.ndarray:
-        """Return r + A xbar, shape (s, 3) [m]."""
-        return self.reference[:3] + q[:3] + self.local @ self.rotation(q).T
-
-    def velocities(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Return dr/dt + A (omega × xbar), shape (s, 3) [m/s]."""
-        omega = self.rotation_rate(q) @ q_t[3:]
-        return q_t[:3] + np.cross(omega, self.local) @ self.rotation(q).T
+    def velocities(self) -> np.ndarray:
+        """Return dx/dt, shape (s, 3) [m/s]."""
+        return velocities(self.side.frame, self.local)
 
     def velocity_accelerations(self, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
-        """Return the accelerations at zero second derivatives of the coordinates, shape (s, 3) [m/s^2].
+        """Return the accelerations at q_tt = 0, shape (s, 3) [m/s^2]; `move` must have run at the same state."""
+        self.side.vary(self.mbs, q, q_t)
+        arms, omega = self._arms(), self.side.frame[:, 5]
+        along, turning = self.side.jac[2] @ q_t, self.side.jac[3] @ q_t
+        return along + np.cross(turning, arms) + np.cross(omega, np.cross(omega, arms))
 
-        A (omega × (omega × xbar) + alpha × xbar) with alpha = dG/dt dtheta/dt; that vanishes for Euler parameters.
+    def jacobian(self) -> np.ndarray:
+        """Return B, shape (3 s, n)."""
+        B = self.side.jac[0].T + np.cross(self.side.jac[1].T, self._arms()[:, None, :])
+        return B.transpose(0, 2, 1).reshape(3 * len(self.local), -1)
+
+    def force_derivative(self, q: np.ndarray, q_t: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """Return d(B^T f)/dq (n, n) at constant global forces f, shape (s, 3) [N].
+
+        That of resultants F = sum f and M = sum s x f at the frame, and dM = sum (dphi x s) x f.
         """
-        omega = self.rotation_rate(q) @ q_t[3:]
-        local = np.cross(omega, np.cross(omega, self.local))
-        if self.kind == "RigidBodyRxyz":
-            alpha = np.asarray(rigid.RotXYZ2GLocal_t(self.reference[3:] + q[3:], q_t[3:])) @ q_t[3:]
-            local = local + np.cross(alpha, self.local)
-        return local @ self.rotation(q).T
+        arms, turn = self._arms(), self.side.jac[1]
+        self.side.vary(self.mbs, q, q_t)
+        result = np.zeros((len(q), len(q)))
+        self.side.geometric(self.mbs, q, forces.sum(axis=0), np.cross(arms, forces).sum(axis=0), result)
+        # (dphi x s) x f = s (dphi . f) - dphi (s . f)
+        both = np.einsum("si,sj->ij", arms, forces)
+        return result + turn.T @ (both - np.trace(both) * np.eye(3)) @ turn
 
-    def jacobian(self, q: np.ndarray) -> np.ndarray:
-        """Return B = d(positions)/dq = [I, -A [xbar]× G], shape (3 s, size)."""
-        A, G = self.rotation(q), self.rotation_rate(q)
-        B = np.zeros((len(self.local), 3, self.size))
-        B[:, :, :3] = np.eye(3)
-        B[:, :, 3:] = np.einsum("ij,njk,kl->nil", A, -_cross(self.local), G)
-        return B.reshape(-1, self.size)
-
-    def force_derivative(self, q: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """Return d(B^T f)/dq at constant global forces f, shape (s, 3) [N]; result (size, size).
-
-        With the local torque tau = sum xbar × A^T f this is G^T (dtau/dphi) G + d(G^T tau)/dtheta at constant tau,
-        dtau/dphi = sum [xbar]× [A^T f]×; the second part by central differences, exact for Euler parameters, where G is
-        linear.
-        """
-        A, G = self.rotation(q), self.rotation_rate(q)
-        local = forces @ A
-        result = np.zeros((self.size, self.size))
-        turn = np.einsum("nij,njk->ik", _cross(self.local), _cross(local))
-        result[3:, 3:] = G.T @ turn @ G
-        if self.kind != "RigidBodyRotVecLG":
-            torque = np.cross(self.local, local).sum(axis=0)
-            step = 1e-6
-            for k in range(3, self.size):
-                change = np.zeros(self.size)
-                change[k] = step
-                result[3:, k] += (
-                    (self.rotation_rate(q + change) - self.rotation_rate(q - change)).T @ torque / (2 * step)
-                )
-        return result
+    def _arms(self) -> np.ndarray:
+        return self.local @ self.side.frame[:, :3].T
 
 
-def _cross(vectors: np.ndarray) -> np.ndarray:
-    """Cross product matrices [v]×, shape (n, 3, 3)."""
-    matrices = np.zeros((len(vectors), 3, 3))
-    x, y, z = vectors.T
-    matrices[:, 0, 1], matrices[:, 0, 2] = -z, y
-    matrices[:, 1, 0], matrices[:, 1, 2] = z, -x
-    matrices[:, 2, 0], matrices[:, 2, 1] = -y, x
-    return matrices
+def positions(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Positions (s, 3) of points ``local`` (s, 3) of a frame (3, 6) [m]."""
+    return frame[:, 3] + local @ frame[:, :3].T
+
+
+def velocities(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
+    """Velocities (s, 3) of points ``local`` (s, 3) of a frame (3, 6) [m/s]."""
+    return frame[:, 4] + np.cross(frame[:, 5], local @ frame[:, :3].T)
+
+
+def initial_frame(mbs: Any, item: Item, side: Side) -> np.ndarray:
+    """Frame (3, 6) of a side in the initial configuration, before Assemble."""
+    if not isinstance(side, MarkerSide):
+        own: Side = detached(side)
+        own.update(mbs, item.initial_coordinates, item.initial_velocities, None)
+        return own.frame
+    reference, initial, rates = node_coordinates(mbs, tuple(side.nodes))
+    place, matrix = _marker_frame(mbs, side, reference + initial, reference)
+    frame = np.zeros((3, 6))
+    frame[:, :3], frame[:, 3] = matrix @ side.rotation, place
+    fastest = np.abs(rates).max(initial=0.0)
+    if fastest > 0.0:
+        step = SMALL / fastest
+        ends = [_marker_frame(mbs, side, reference + initial + s * step * rates, reference) for s in (1.0, -1.0)]
+        frame[:, 4] = (ends[0][0] - ends[1][0]) / (2.0 * step)
+        spin = (ends[0][1] - ends[1][1]) @ matrix.T / (2.0 * step)
+        frame[:, 5] = 0.5 * np.array([spin[2, 1] - spin[1, 2], spin[0, 2] - spin[2, 0], spin[1, 0] - spin[0, 1]])
+    return frame
+
+
+def _marker_frame(
+    mbs: Any, side: MarkerSide, coordinates: np.ndarray, reference: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Position and rotation of a marker at coordinates of its nodes.
+
+    Before Assemble Exudyn knows the reference configuration only: the nodes' reference coordinates are moved and put back.
+    """
+    output = exu.OutputVariableType
+    try:
+        _set_reference(mbs, side.nodes, coordinates)
+        place = np.array(mbs.GetMarkerOutput(side.marker, output.Position, _REFERENCE))
+        return place, np.array(mbs.GetMarkerOutput(side.marker, output.RotationMatrix, _REFERENCE)).reshape(3, 3)
+    finally:
+        _set_reference(mbs, side.nodes, reference)
+
+
+def _set_reference(mbs: Any, nodes: list[Any], coordinates: np.ndarray) -> None:
+    start = 0
+    for node in nodes:
+        size = len(mbs.GetNodeParameter(node, "referenceCoordinates"))
+        mbs.SetNodeParameter(node, "referenceCoordinates", coordinates[start : start + size].tolist())
+        start += size

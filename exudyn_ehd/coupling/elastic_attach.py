@@ -10,11 +10,14 @@ import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling import kinematics
-from exudyn_ehd.coupling.bush_object import CarriedOuter, CreateFlexibleBush, FixedOuter
+from exudyn_ehd.coupling.bush_object import Mount, add_bush
+from exudyn_ehd.coupling.carrier import initial_frame
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
+from exudyn_ehd.coupling.items import Item
+from exudyn_ehd.coupling.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
-from exudyn_ehd.coupling.sides import MarkerSide, NodeSide, Side
+from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
@@ -22,7 +25,7 @@ from exudyn_ehd.joint.bush import displacements_at_rest
 from exudyn_ehd.joint.elastic import ElasticBearingModel
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.reduce import BoreModes
-from exudyn_ehd.status import InputError, Status
+from exudyn_ehd.status import Status
 
 # the index types exist at run time, but not in the type stubs
 exu: Any = exudyn
@@ -32,7 +35,13 @@ NUMERICAL_PERIOD = 1e-6
 
 
 def attach_bush(
-    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
+    mbs: Any,
+    model: Any,
+    items: tuple[Item, Item],
+    sides: tuple[Side, Side],
+    place: tuple[np.ndarray, np.ndarray],
+    name: str,
+    show: bool,
 ) -> tuple[BoreFilmElement, dict[str, Any]]:
     """Add the bush of ``model`` (an `ElasticBearingModel`).
 
@@ -40,8 +49,8 @@ def attach_bush(
     ----------
     mbs : exudyn.MainSystem
     model : ElasticBearingModel
-    sides : pair of sides
-        Housing and journal in the initial configuration.
+    items, sides : pairs
+        Housing and journal; the sides in the initial configuration if both know it.
     place : ndarray (3,), ndarray (3, 3)
         Joint point and joint frame in the reference configuration, global.
     name : str
@@ -57,12 +66,13 @@ def attach_bush(
         What the element's ObjectGenericODE2 needs beside nodes and functions.
     """
     if not isinstance(model.bore, ModalBore):
-        return _attach_nodes(mbs, model, sides, place, name, show), {}
+        return _attach_nodes(mbs, model, items, sides, place, name, show), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         _settle_modes(mbs, model, sides)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore.stiffness), {}
-    start = initial_coordinates(model, sides)
+    # a marker alone does not know the initial configuration
+    start = None if any(isinstance(side, MarkerSide) for side in sides) else initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
         eii.NodeGenericODE2(
@@ -73,9 +83,12 @@ def attach_bush(
             numberOfODE2Coordinates=k,
         )
     )
-    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     modes = model.bore.modes
     mass = modes.mass if isinstance(modes, BoreModes) else None
+    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
+    if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
+        element.inertia = ModalInertia(mbs, sides[0], modes)
+        return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:
         mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
     return element, {} if mass is None else {"massMatrix": _mass_matrix(element, mass)}
@@ -87,6 +100,8 @@ def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
     node = sides[0].nodes[-1]
     if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
         return
+    if isinstance(sides[1], MarkerSide):
+        return
     held = bush.held()
     start = initial_coordinates(model, sides, ModalBore(held, model.grid))
     if start is not None:
@@ -94,27 +109,21 @@ def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
 
 
 def _attach_nodes(
-    mbs: Any, model: Any, sides: tuple[Side, Side], place: tuple[np.ndarray, np.ndarray], name: str, show: bool
+    mbs: Any,
+    model: Any,
+    items: tuple[Item, Item],
+    sides: tuple[Side, Side],
+    place: tuple[np.ndarray, np.ndarray],
+    name: str,
+    show: bool,
 ) -> NodalFilmElement:
-    housing = sides[0]
-    if not isinstance(housing, NodeSide) or housing.kind == kinematics.PLANAR:
-        raise InputError(
-            "CreateLubricatedJoint.itemNumbers[0] must be ground or a rigid body with an ANCFBush, which it carries; use a "
-            "ModalBush on other markers and planar bodies."
-        )
-    outer = CarriedOuter(itemNumber=housing.nodes[0]) if housing.nodes else FixedOuter()
-    bush = CreateFlexibleBush(
-        mbs,
-        f"{name} bush",
-        bush=model.bearing.bush,
-        outer=outer,
-        position=place[0].tolist(),
-        rotationMatrix=place[1],
-        show=show,
-    )
+    for item, side in zip(items, sides, strict=True):
+        side.frame[:] = initial_frame(mbs, item, side)
+    mount = Mount(sides[0], sides[0].frame.copy(), place[0]) if sides[0].nodes else None
+    bush = add_bush(mbs, f"{name} bush", model.bearing.bush, mount, place, fixed=mount is None, show=show)
     start = initial_coordinates(model, sides)
     if start is not None:
-        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ housing.frame[:, :3].T
+        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
         for number, shift in zip(bush.nodeNumbers, u):
             if number >= 0 and shift.any():
                 node = exu.NodeIndex(int(number))
@@ -142,8 +151,6 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
     first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
     """
-    if any(isinstance(side, MarkerSide) for side in sides):
-        return None
     bearing = dataclasses.replace(model.bearing, thermal=None)
     if bearing.cavitation.conserves_mass:
         closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)

@@ -1,9 +1,11 @@
 """The film element on the bore nodes of a nodal bush.
 
 The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame; normals are fixed in
-the frame. The pressure's nodal loads are ``S^T (p A)``. What the film's wrench has beyond them (shear, and the small moments of
-pressure on displaced points) is spread over the bore's nodes as ``w (a + b x r)``, with a and b from force and moment, so that journal
-and bush receive exactly opposite forces and moments, at any displacement. The housing itself is loaded through the bush.
+the frame. The nodal loads of pressure and shear are the shape functions' transpose of their forces at the film's vertices
+(`exudyn_ehd.joint.traction`). What the film's wrench has beyond them is spread over the bore's nodes as ``w (a + b x r)``, with a and b
+from force and moment, so that journal and bush receive exactly opposite forces and moments, at any displacement: the small moments of
+forces on displaced points, and the shear's net force across the axis, clearance over radius of the load, which the wrench of a film
+leaves out as its Reynolds equation does. The housing itself is loaded through the bush.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from exudyn_ehd.coupling.bush_object import FlexibleBush
 from exudyn_ehd.coupling.elastic_film import SIZE, BoreFilmElement
 from exudyn_ehd.coupling.film_element import Trial
 from exudyn_ehd.coupling.sides import Side
+from exudyn_ehd.joint.traction import BoreForces
 from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -43,6 +46,8 @@ class NodalFilmElement(BoreFilmElement):
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)
+        self.forces = BoreForces(model.bore.values, model.grid)
+        self._nodal: tuple[Any, np.ndarray] = (None, np.zeros((0, 3)))
         self.arms = np.zeros((self.count, 3))
         self.drift = np.zeros((self.count, 3))
 
@@ -54,13 +59,11 @@ class NodalFilmElement(BoreFilmElement):
         d = self.arms @ A - self.place
         return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
 
-    def _complete(self, wrench: np.ndarray, radial: np.ndarray) -> np.ndarray:
-        """Nodal forces (count, 3, ...) of the pressure's (count, 2, ...) and of the rest of minus the wrench (6, ...)."""
+    def _complete(self, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
+        """Nodal forces (count, 3, ...) of pressure and shear (count, 3, ...) and of the rest of minus the wrench (6, ...)."""
         x = self.arms @ self.sides[0].frame[:, :3]
-        rest = -wrench - np.tensordot(resultant(x), radial.reshape(2 * self.count, *radial.shape[2:]), 1)
-        out = np.tensordot(kinematics.spread_matrix(x), rest, 1)
-        out[:, :2] += radial
-        return out
+        rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
+        return local + np.tensordot(kinematics.spread_matrix(x), rest, 1)
 
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
         """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
@@ -70,7 +73,9 @@ class NodalFilmElement(BoreFilmElement):
 
     def nodal_forces(self, evaluation: Any) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
-        return self._complete(evaluation.wrench, evaluation.bore_load.reshape(-1, 2))
+        if self._nodal[0] is not evaluation:
+            self._nodal = evaluation, evaluation.nodal_forces(self.forces)
+        return self._complete(evaluation.wrench, self._nodal[1])
 
     def _quantities(self, evaluation: Any) -> dict[str, Any]:
         out = dict(evaluation.quantities())
@@ -93,16 +98,17 @@ class NodalFilmElement(BoreFilmElement):
 
     def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         evaluation: Any = trial.evaluation
-        T = evaluation.tangent()
+        wrench, nodal = evaluation.nodal_tangent(self.forces)
+        T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(wrench[:, :SIZE]))
         by_place, by_rate = T[:, SIZE : SIZE + k], T[:, SIZE + k :]
         place, rate_place = self._housing_maps()
         A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]
         along = A[:, :2].T
         # the rate in the turning frame changes with the place as -omega x u
         turning = along @ -_skew(omega)
-        by_bore = [np.zeros((6 + k, n + 3 * self.count)) for _ in range(2)]
+        by_bore = [np.zeros((6 + 3 * self.count, n + 3 * self.count)) for _ in range(2)]
         by_bore[0][:, :n_h] = by_place @ place + by_rate @ rate_place
         by_bore[1][:, :n_h] = by_rate @ place
         by_bore[0][:, n:] = _per_node(by_place, along) + _per_node(by_rate, turning)
@@ -144,12 +150,12 @@ class NodalFilmElement(BoreFilmElement):
 
         Parameters
         ----------
-        by_bore : (6 + k, N) array
-            Derivatives of wrench and radial loads through the bore's motion.
+        by_bore : (6 + 3 count, N) array
+            Derivatives of wrench and nodal forces through the bore's motion.
         rigid : (n, n) array
             Those of the generalized forces on the sides through the journal's motion, with geometric terms.
-        by_motion : (6 + k, n) array
-            Derivatives of wrench and radial loads through the journal's motion.
+        by_motion : (6 + 3 count, n) array
+            Derivatives of wrench and nodal forces through the journal's motion.
         """
         n, n_h = self.rigid_size, self.sides[0].size
         size = by_bore.shape[1]
@@ -157,7 +163,7 @@ class NodalFilmElement(BoreFilmElement):
         whole[n_h:n] = self._wrench_map()[n_h:] @ by_bore[:6]
         whole[n_h:n, :n] += rigid[n_h:]
         by_bore[:, :n] += by_motion
-        nodal = self._complete(by_bore[:6], by_bore[6:].reshape(self.count, 2, size))
+        nodal = self._complete(by_bore[:6], by_bore[6:].reshape(self.count, 3, size))
         whole[n:] = np.einsum("ij,ajc->aic", self.sides[0].frame[:, :3], nodal).reshape(-1, size)
         return whole
 
@@ -176,7 +182,7 @@ class NodalTangent:
 
     def __init__(self, element: NodalFilmElement, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> None:
         evaluation: Any = trial.evaluation
-        self.film = evaluation.tangent_product()
+        self.film = evaluation.nodal_product(element.forces)
         self.factors = f_q, f_qt
         self.n, self.n_h, self.count = element.rigid_size, element.sides[0].size, element.count
         stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, self.film.wrench)
@@ -201,11 +207,10 @@ class NodalTangent:
             drift += self.drift @ change[:n_h]
         place, rate = f_q * moved, f_q * drift + f_qt * moved
         motion = self.motion @ change[:n]
-        radial = film.bore_load(motion, place, rate)
+        local = film.nodal_forces(motion, place, rate)
         through_bore = film.wrench_place @ place + film.wrench_rate @ rate
-        rest = through_bore + film.wrench @ motion + self.resultant @ radial
-        nodal = (self.spread @ -rest).reshape(-1, 3)
-        nodal[:, :2] += radial.reshape(-1, 2)
+        rest = through_bore + film.wrench @ motion + self.resultant @ local.ravel()
+        nodal = local + (self.spread @ -rest).reshape(-1, 3)
         out = np.empty_like(change)
         out[:n_h] = 0.0
         out[n_h:n] = self.journal @ through_bore + self.rigid @ change[:n]
@@ -216,10 +221,11 @@ class NodalTangent:
 
 
 def resultant(x: np.ndarray) -> np.ndarray:
-    """Force and moment about O (6, 2 count) of nodal forces in x and y at x (count, 3)."""
-    out = np.zeros((6, len(x), 2))
-    out[0, :, 0] = out[1, :, 1] = 1.0
-    out[3, :, 1], out[4, :, 0] = -x[:, 2], x[:, 2]
+    """Force and moment about O (6, 3 count) of nodal forces at x (count, 3)."""
+    out = np.zeros((6, len(x), 3))
+    out[0, :, 0] = out[1, :, 1] = out[2, :, 2] = 1.0
+    out[3, :, 1], out[3, :, 2] = -x[:, 2], x[:, 1]
+    out[4, :, 0], out[4, :, 2] = x[:, 2], -x[:, 0]
     out[5, :, 0], out[5, :, 1] = -x[:, 1], x[:, 0]
     return out.reshape(6, -1)
 

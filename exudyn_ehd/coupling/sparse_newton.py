@@ -395,11 +395,11 @@ def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) ->
     terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
     constrained = kind.ConstraintJacobian in offered and len(equations) > 0
     object_type = mbs.GetObject(item)["objectType"]
-    point_mass = None
-    if object_type.startswith("MassPoint"):
-        # Exudyn keeps this mass matrix sparse and can't return it; density times position Jacobian is the same matrix
+    own_mass: Callable | None = None
+    if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
+        # Exudyn keeps these mass matrices sparse and can't return them
         terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
-        point_mass = np.asarray(mbs.ComputeItem(item, kind.MassWeightedPositionJacobian))[: len(places)]
+        own_mass = _planar_mass(mbs, item) if object_type == "RigidBody2D" else _point_mass(mbs, item, len(places))
     for what, _ in terms:
         try:
             mbs.ComputeItem(item, what)
@@ -411,7 +411,7 @@ def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) ->
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
     def part(mbs, *factors):
-        values = np.zeros((len(places), len(places))) if point_mass is None else factors[0] * point_mass
+        values = np.zeros((len(places), len(places))) if own_mass is None else factors[0] * own_mass(mbs)
         for what, i in terms:
             matrix = np.asarray(mbs.ComputeItem(item, what))
             if matrix.size:
@@ -427,6 +427,25 @@ def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) ->
         )
 
     return part
+
+
+def _point_mass(mbs: Any, item: Any, size: int) -> Callable:
+    """Mass matrix of a mass point: density times position Jacobian."""
+    mass = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
+    return lambda mbs: mass
+
+
+def _planar_mass(mbs: Any, item: Any) -> Callable:
+    """Mass matrix of a planar rigid body; density times position Jacobian are its first two rows, centre of mass off the node included."""
+    inertia = float(mbs.GetObjectParameter(item, "inertia"))
+
+    def mass(mbs: Any) -> np.ndarray:
+        out = np.zeros((3, 3))
+        out[:2] = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:2]
+        out[2, :2], out[2, 2] = out[:2, 2], inertia
+        return out
+
+    return mass
 
 
 def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:

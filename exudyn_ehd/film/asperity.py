@@ -28,6 +28,9 @@ from exudyn_ehd.status import InputError, require_number
 
 REACH = 8.0
 STEPS_PER_SIGMA = 64
+# Of a column's gap: steps, and the last one as share of roughness and gap.
+MAX_COLUMN_STEPS = 60
+COLUMN_TOLERANCE = 1e-15
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,6 +132,7 @@ class AsperityContact(AverageGap):
 
     def __init__(self, asperity: GreenwoodTripp, clearance: float) -> None:
         super().__init__(asperity.composite_roughness / clearance, asperity.residual_film)
+        self.presses_below = REACH * self.sigma
         self.level = asperity.pressure_scale
         self.friction_coefficient = asperity.friction_coefficient
         self.transition_speed = asperity.transition_speed
@@ -138,6 +142,36 @@ class AsperityContact(AverageGap):
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         asperity_pressure(H, self.sigma, self.level, self.table, P_out, slope_out)
 
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
+        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
+        settle_asperities(X, compliance, self.sigma, self.level, self.table, G)
+
+
+@njit(cache=True)
+def _asperity_at(h, inverse, level, table):
+    """(Contact pressure, its derivative) at one gap h, ``inverse`` = 1 / sigma."""
+    u = h * inverse
+    if u >= REACH:
+        return 0.0, 0.0
+    if u >= -REACH:
+        s = (u + REACH) * STEPS_PER_SIGMA
+        k = int(s)
+        s -= k
+        a = table[k, 0]
+        b = table[k, 1] / STEPS_PER_SIGMA
+        rise = table[k + 1, 0] - a
+        c2 = 3.0 * rise - 2.0 * b - table[k + 1, 1] / STEPS_PER_SIGMA
+        c3 = rise - b - c2
+        return (
+            level * (a + s * (b + s * (c2 + s * c3))),
+            level * (b + s * (2.0 * c2 + s * 3.0 * c3)) * STEPS_PER_SIGMA * inverse,
+        )
+    q = 1.0 / (u * u)
+    root = math.sqrt(-u)
+    series = 1.0 + q * (1.875 + q * (-0.1171875 + q * -0.0732421875))
+    change = 2.5 + q * (0.5 * 1.875 + q * (1.5 * 0.1171875 + q * 3.5 * 0.0732421875))
+    return level * u * u * root * series, level * u * root * change * inverse
+
 
 @njit(cache=True)
 def asperity_pressure(H, sigma, level, table, P_out, slope_out):
@@ -146,25 +180,28 @@ def asperity_pressure(H, sigma, level, table, P_out, slope_out):
     inverse = 1.0 / sigma
     for i in range(n):
         for j in range(m):
-            u = H[i, j] * inverse
-            if u >= REACH:
-                P_out[i, j] = 0.0
-                slope_out[i, j] = 0.0
-            elif u >= -REACH:
-                s = (u + REACH) * STEPS_PER_SIGMA
-                k = int(s)
-                s -= k
-                a = table[k, 0]
-                b = table[k, 1] / STEPS_PER_SIGMA
-                rise = table[k + 1, 0] - a
-                c2 = 3.0 * rise - 2.0 * b - table[k + 1, 1] / STEPS_PER_SIGMA
-                c3 = rise - b - c2
-                P_out[i, j] = level * (a + s * (b + s * (c2 + s * c3)))
-                slope_out[i, j] = level * (b + s * (2.0 * c2 + s * 3.0 * c3)) * STEPS_PER_SIGMA * inverse
-            else:
-                q = 1.0 / (u * u)
-                root = math.sqrt(-u)
-                series = 1.0 + q * (1.875 + q * (-0.1171875 + q * -0.0732421875))
-                change = 2.5 + q * (0.5 * 1.875 + q * (1.5 * 0.1171875 + q * 3.5 * 0.0732421875))
-                P_out[i, j] = level * u * u * root * series
-                slope_out[i, j] = level * u * root * change * inverse
+            P_out[i, j], slope_out[i, j] = _asperity_at(H[i, j], inverse, level, table)
+
+
+@njit(cache=True)
+def settle_asperities(X, compliance, sigma, level, table, G):
+    """Gap on a column of liner that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
+
+    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
+    """
+    n, m = X.shape
+    inverse = 1.0 / sigma
+    for i in range(n):
+        for j in range(m):
+            x = X[i, j]
+            g = max(G[i, j], x)
+            if x >= REACH * sigma:
+                G[i, j] = x
+                continue
+            for _ in range(MAX_COLUMN_STEPS):
+                p, slope = _asperity_at(g, inverse, level, table)
+                step = (x + compliance * p - g) / (1.0 - compliance * slope)
+                g += step
+                if abs(step) <= COLUMN_TOLERANCE * (sigma + abs(g) + abs(x)):
+                    break
+            G[i, j] = g

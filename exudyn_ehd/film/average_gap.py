@@ -42,10 +42,14 @@ class AverageGap:
     def __init__(self, sigma: float, residual: float) -> None:
         self.sigma = sigma
         self.residual = residual
+        self.limits_below = SMOOTH_BEYOND * sigma
 
-    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
-        """Replace the scaled gap H (n, m) by the average gap; its first two derivatives come back."""
-        average_gap(H, self.sigma, self.residual, slope_out, curvature_out)
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Replace scaled gaps and the rate (n, m) by those of the average gap; as `joint.effects.GapLimiter`."""
+        average_gap(H, HF, H_t, self.sigma, self.residual, slope_out, bend_out, face_slope_out)
 
 
 def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
@@ -55,11 +59,13 @@ def average_gap_ratio(x: np.ndarray, residual: float) -> np.ndarray:
 
 
 @njit(cache=True)
-def average_gap(H, sigma, residual, slope_out, curvature_out):
-    """Replace H by the average gap, in place; first and second derivative (n, m) come back."""
+def average_gap(H, HF, H_t, sigma, residual, slope_out, bend_out, face_slope_out):
+    """Replace gaps at vertices and links by their average gaps and H_t by their rate, in place.
+
+    First derivatives at both and the second one times the gap's rate come back, all (n, m).
+    """
     n, m = H.shape
     limit = SMOOTH_BEYOND * sigma
-    inverse = 1.0 / sigma
     last = math.nan
     mean = share = curvature = 0.0
     for i in range(n):
@@ -67,16 +73,32 @@ def average_gap(H, sigma, residual, slope_out, curvature_out):
             h = H[i, j]
             if h > limit:
                 slope_out[i, j] = 1.0
-                curvature_out[i, j] = 0.0
+                bend_out[i, j] = 0.0
                 continue
             if h != last:  # an aligned journal has one gap per column
                 last = h
-                y = h * inverse - residual
-                density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
-                # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
-                share = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
-                mean = sigma * (residual + max(y * share + density, 0.0))
-                curvature = density * inverse
+                mean, share, curvature = average_of(h, sigma, residual)
             H[i, j] = mean
             slope_out[i, j] = share
-            curvature_out[i, j] = curvature
+            bend_out[i, j] = curvature * H_t[i, j]
+            H_t[i, j] *= share
+        for j in range(m):
+            h = HF[i, j]
+            if h > limit:
+                face_slope_out[i, j] = 1.0
+                continue
+            if h != last:
+                last = h
+                mean, share, curvature = average_of(h, sigma, residual)
+            HF[i, j] = mean
+            face_slope_out[i, j] = share
+
+
+@njit(cache=True)
+def average_of(h, sigma, residual):
+    """Average gap of one gap h, with its first two derivatives; all scaled."""
+    y = h / sigma - residual
+    density = _INVERSE_ROOT_2_PI * math.exp(-0.5 * y * y)
+    # erfc keeps its relative accuracy deep below the mean line, where y Phi(y) + phi(y) cancels.
+    share = 0.5 * math.erfc(-y * _INVERSE_ROOT_2)
+    return sigma * (residual + max(y * share + density, 0.0)), share, density / sigma

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.direct import (
     Workspace,
     assemble_band,
@@ -29,6 +28,7 @@ from exudyn_ehd.film.direct import (
     solve_many,
     solve_one,
 )
+from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.status import InputError, Status, require_number
 
 MAX_ACTIVE_SET_STEPS = 200
@@ -55,8 +55,8 @@ class FullSommerfeld:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -99,8 +99,8 @@ class Gumbel:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -147,8 +147,8 @@ class SwiftStieber:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -220,9 +220,12 @@ def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
 def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
     """Right-hand side of the active vertices, with the known pressures of inactive neighbours moved over."""
     n, m = b.shape
+    i = 0
     for r in range(count):
-        i = order[r] // m
         j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         s = b[i, j]
@@ -252,9 +255,9 @@ def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, n
         return False, count, width
     gather_rhs(kx, kz, b, active, order, count, P, unknowns)
     solve_one(band, inv_diag, count, width, unknowns)
-    m = b.shape[1]
+    flat = P.reshape(-1)
     for r in range(count):
-        P[order[r] // m, order[r] % m] = unknowns[r]
+        flat[order[r]] = unknowns[r]
     return True, count, width
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from exudyn_ehd.film.cavitation import Gumbel
 from exudyn_ehd.film.classic import ClassicSolver, ClassicSOR
+from exudyn_ehd.film.compliant import ColumnContact, ColumnLimiter, CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.flux import FluxEffect
 from exudyn_ehd.film.grid import FilmGrid, FiniteLength, ShortBearing, bearing_grid
 from exudyn_ehd.film.impedance import ImpedanceMap
+from exudyn_ehd.film.liner import LinerFilmSolver
 from exudyn_ehd.film.long_bearing import LongBearing, LongSolver, long_bearing_grid
 from exudyn_ehd.film.solver import Closure, FilmSolver
 from exudyn_ehd.film.supply import AxialGroove, SupplyArea
@@ -82,3 +84,12 @@ def film_solver(
         grid, closure, squeeze=squeeze, flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
     )  # fmt: skip
+
+
+def liner_film_solver(
+    grid: FilmGrid, closure: Closure, *, squeeze: bool, contact: ColumnContact | None, limiter: ColumnLimiter | None
+) -> LinerFilmSolver | CompliantFilmSolver:
+    """Solver of a film on an elastic liner; ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open."""
+    if contact is None and not closure.conserves_mass:
+        return LinerFilmSolver(grid, closure, squeeze=squeeze)
+    return CompliantFilmSolver(grid, closure, squeeze=squeeze, contact=contact, limiter=limiter)

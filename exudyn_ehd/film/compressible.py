@@ -25,7 +25,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu
-from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.density import CompressibleLaw, pressure_near
 from exudyn_ehd.film.density_newton import (
     AT,
@@ -54,6 +53,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives, plain_link_derivatives
+from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -298,10 +298,10 @@ class CompressibleFilmSolver(FilmSolver):
         return fields
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
         w = self.work
         lower, upper = self._exact_factor()
-        solve_columns(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
+        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve with Newton's matrix at the solution for rhs (count,), in place."""

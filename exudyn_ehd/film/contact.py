@@ -59,7 +59,7 @@ class WallContact:
     transition_speed = 1.0
 
     def __init__(self, wall: RegularisedWall, clearance: float) -> None:
-        self.onset = wall.onset / clearance
+        self.onset = self.limits_below = self.presses_below = wall.onset / clearance
         self.residual = wall.residual
         self.level = wall.pressure
 
@@ -67,9 +67,16 @@ class WallContact:
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         wall_pressure(H, self.onset, self.level, P_out, slope_out)
 
-    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
-        """Replace the scaled gap H (n, m) by the one that the film sees; its first two derivatives come back."""
-        limit_gap(H, self.onset, self.residual, slope_out, curvature_out)
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
+        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
+        settle_wall(X, compliance, self.onset, self.level, G)
+
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.effects.GapLimiter`."""
+        limit_gap(H, HF, H_t, self.onset, self.residual, slope_out, bend_out, face_slope_out)
 
 
 @njit(cache=True)
@@ -88,16 +95,41 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
 
 
 @njit(cache=True)
-def limit_gap(H, onset, residual, slope_out, curvature_out):
-    """Replace H by the gap that the film sees, in place; first and second derivative (n, m) come back."""
+def settle_wall(X, compliance, onset, pressure, G_out):
+    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``, q = compliance times pressure, by its larger root."""
+    n, m = X.shape
+    q = compliance * pressure
+    for i in range(n):
+        for j in range(m):
+            room = onset - X[i, j]
+            if room <= 0.0:
+                G_out[i, j] = X[i, j]
+            else:
+                # s = 1 - G / onset is the positive root of q s^2 + onset s - room = 0, in the form without cancellation
+                s = 2.0 * room / (onset + np.sqrt(onset * onset + 4.0 * q * room))
+                G_out[i, j] = onset * (1.0 - s)
+
+
+@njit(cache=True)
+def limit_gap(H, HF, H_t, onset, residual, slope_out, bend_out, face_slope_out):
+    """Replace gaps at vertices and links, and the rate H_t, by those that the film sees, in place.
+
+    First derivatives at both and the second one times the gap's rate come back, all (n, m).
+    """
     n, m = H.shape
     a = 1.0 - residual
     for i in range(n):
         for j in range(m):
             slope_out[i, j] = 1.0
-            curvature_out[i, j] = 0.0
+            bend_out[i, j] = 0.0
             if H[i, j] < onset:
                 t = np.tanh((1.0 - H[i, j] / onset) / a)
                 H[i, j] = onset * (1.0 - a * t)
                 slope_out[i, j] = 1.0 - t * t
-                curvature_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset)
+                bend_out[i, j] = 2.0 * t * (1.0 - t * t) / (a * onset) * H_t[i, j]
+                H_t[i, j] *= slope_out[i, j]
+            face_slope_out[i, j] = 1.0
+            if HF[i, j] < onset:
+                t = np.tanh((1.0 - HF[i, j] / onset) / a)
+                HF[i, j] = onset * (1.0 - a * t)
+                face_slope_out[i, j] = 1.0 - t * t

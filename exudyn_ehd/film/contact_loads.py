@@ -144,30 +144,75 @@ def contact_tangent(
         tangent[5, q] -= at * R * sn
 
 
-@njit(cache=True, fastmath=_FAST)
-def chain_links(slope, curvature, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
-    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place, ``curvature`` as in `chain_limiter`."""
-    n, m = slope.shape
-    for i in range(n):
-        for j in range(m):
-            DX[i, j] *= face_slope[i, j]
-            gap_out[i, j] = by_gap[i, j] * slope[i, j] + by_rate[i, j] * curvature[i, j]
-            rate_out[i, j] = by_rate[i, j] * slope[i, j]
+@njit(cache=True)
+def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_out):
+    """Weights of the five integrals of `contact_wrench` at the unknowns, rhs_out (5, count), with d(contact pressure)/dP (n, m)."""
+    m = z.size
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        w = weight[i, j] * by_pressure[i, j]
+        rhs_out[0, r] = w * cos_x[i]
+        rhs_out[1, r] = w * sin_x[i]
+        rhs_out[2, r] = w * cos_x[i] * z[j]
+        rhs_out[3, r] = w * sin_x[i] * z[j]
+        rhs_out[4, r] = w
 
 
 @njit(cache=True)
-def chain_limiter(slope, curvature, face_slope, has_rate, cell, face, rate):
-    """Sensitivities (k, n, m) to the film's gap -> to the true gap, in place; ``curvature`` holds curvature times rigid rate."""
+def contact_chain(gradient, motion, pose_scale, friction, transition, R, tangent):
+    """Add the wrench's answer to the integrals of `contact_wrench` to ``tangent`` (6, 10).
+
+    ``gradient`` (5, 10): of the integrals to (scaled pose, scaled rates, vx, vz), with vx = omega / 2 and vz = w / (2 R).
+    """
+    v = R * motion[8]
+    w = motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a = v / size
+    b = w / size
+    for q in range(10):
+        scale = 0.5 if q == 8 else (0.5 / R if q == 9 else pose_scale[q % 4])
+        scale *= R * R
+        gc, gs = gradient[0, q] * scale, gradient[1, q] * scale
+        gzc, gzs, gn = gradient[2, q] * scale, gradient[3, q] * scale, gradient[4, q] * scale
+        tangent[0, q] += friction * a * gs - gc
+        tangent[1, q] -= friction * a * gc + gs
+        tangent[2, q] -= friction * b * gn
+        tangent[3, q] += R * (gzs + friction * (a * gzc - b * gs))
+        tangent[4, q] += R * (friction * (a * gzs + b * gc) - gzc)
+        tangent[5, q] += motion[1] * gc - motion[0] * gs + R * (motion[3] * gzc - motion[2] * gzs - friction * a * gn)
+
+
+@njit(cache=True, fastmath=_FAST)
+def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
+    """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.
+
+    ``slope``, ``bend`` and ``face_slope`` are what a gap limiter returns (`joint.effects`).
+    """
+    dx, faces = DX.reshape(-1), face_slope.reshape(-1)
+    for k in range(dx.size):
+        dx[k] *= faces[k]
+    a, b, rate, gap = slope.reshape(-1), bend.reshape(-1), by_rate.reshape(-1), by_gap.reshape(-1)
+    by_gap_out, by_rate_out = gap_out.reshape(-1), rate_out.reshape(-1)
+    for k in range(a.size):
+        by_gap_out[k] = gap[k] * a[k] + rate[k] * b[k]
+    for k in range(a.size):
+        by_rate_out[k] = rate[k] * a[k]
+
+
+@njit(cache=True)
+def chain_limiter(slope, bend, face_slope, has_rate, cell, face, rate):
+    """Sensitivities (k, n, m) to the film's gap -> to the true gap, in place; the rest as in `chain_links`."""
     count, n, m = cell.shape
     for i in range(n):
         for j in range(m):
-            if slope[i, j] == 1.0 and face_slope[i, j] == 1.0 and curvature[i, j] == 0.0:
+            if slope[i, j] == 1.0 and face_slope[i, j] == 1.0 and bend[i, j] == 0.0:
                 continue
             for k in range(count):
                 face[k, i, j] *= face_slope[i, j]
                 cell[k, i, j] *= slope[i, j]
                 if has_rate:
-                    cell[k, i, j] += rate[k, i, j] * curvature[i, j]
+                    cell[k, i, j] += rate[k, i, j] * bend[i, j]
                     rate[k, i, j] *= slope[i, j]
 
 

@@ -68,12 +68,23 @@ def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
     n, m = H.shape
     for i in range(n):
         for j in range(m):
-            if inverse_step > 0.0:
-                rate_out[i, j] = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
-            elif squeeze:
-                rate_out[i, j] = fill[i, j] * H_t[i, j]
-            else:
-                rate_out[i, j] = 0.0
+            rate_out[i, j] = _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+
+
+@njit(cache=True, inline="always")
+def _rate(h, h_t, fill, old, inverse_step, squeeze):
+    rate = 0.0
+    if inverse_step > 0.0:
+        rate = (fill * h - old) * inverse_step
+    elif squeeze:
+        rate = fill * h_t
+    return rate
+
+
+@njit(cache=True, inline="always")
+def _flow(k, f, q0, q1, fill0, fill1):
+    """Flow over a link from vertex 0 to vertex 1."""
+    return k * (q0 - q1) + f * (fill0 if f >= 0.0 else fill1)
 
 
 @njit(cache=True)
@@ -93,19 +104,69 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
             up = 0.0
             down = 0.0
             if j + 1 < m:
-                f = fz[i, j]
-                up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
+                up = _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
             if j > 0:
-                f = fz[i, j - 1]
-                down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
+                down = _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
             outside_out[i, j] = up - down
             if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
                 continue
-            f = fx[i, j]
-            out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
-            f = fx[prv, j]
-            into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
+            out = _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+            into = _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
             outside_out[i, j] += out - into + area[i, j] * rate[i, j]
+
+
+@njit(cache=True)
+def exchange_sums(
+    P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, active, conserves, cavity
+):  # fmt: skip
+    """Sums over what `outside_flows` gives with the rates of `content_rate`, without fields in between.
+
+    ``active`` (n, m) is the unbroken film of cavitation models that do not conserve mass (``conserves``), ``cavity`` the scaled
+    cavity pressure.
+
+    Returns
+    -------
+    leaving, work : float
+        What leaves, and ``sum (P - cavity) inflow`` plus, with ``squeeze``, ``cavity sum area dH/dt``.
+    """
+    n, m = H.shape
+    leaving = 0.0
+    work = 0.0
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            if not fixed[i, j]:
+                continue
+            inflow = 0.0
+            if j + 1 < m:
+                inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
+            if j > 0:
+                inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
+            end = 1 if j == 0 else m - 2
+            if (0 < j < m - 1) or conserves or active[i, end] or fixed[i, end]:
+                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+                inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+            leaving -= min(inflow, 0.0)
+            work += (P[i, j] - cavity) * inflow
+    if squeeze and cavity != 0.0:
+        closing = 0.0
+        for i in range(n):
+            for j in range(m):
+                closing += area[i, j] * H_t[i, j]
+        work += cavity * closing
+    return leaving, work
+
+
+@njit(cache=True)
+def end_section(P, H, width_x):
+    """``sum P H ds`` along the end z > 0 less that along the other."""
+    total = 0.0
+    e = P.shape[1] - 1
+    for i in range(width_x.size):
+        total += width_x[i] * (P[i, e] * H[i, e] - P[i, 0] * H[i, 0])
+    return total
 
 
 @njit(cache=True)

@@ -20,42 +20,83 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class LinkFlux:
-    """Buffers of one film's flux coefficients, all (n, m); see the module's docstring."""
+    """Buffers of one film's flux coefficients, all (n, m); see the module's docstring.
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.gap_z = np.zeros(shape)
+    Parameters
+    ----------
+    gap_x : (n, m) array
+        Gap on the links in theta, the film solver's own array.
+    carriers, speeds : bool
+        Whether an effect changes the carriers, or lets conductances depend on the speed. If not, the carriers are the gaps
+        themselves, and the derivatives stay what they are here.
+    """
+
+    def __init__(self, gap_x: np.ndarray, *, carriers: bool = True, speeds: bool = True) -> None:
+        shape = gap_x.shape
+        self.carriers, self.speeds = carriers, speeds
+        self.gap_x = gap_x
+        self.gap_z: np.ndarray = np.zeros(shape)
         self.gx, self.gx_h, self.gx_v = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         self.gz, self.gz_h, self.gz_v = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        self.cx, self.cx_h = np.zeros(shape), np.zeros(shape)
-        self.cz, self.cz_h = np.zeros(shape), np.zeros(shape)
+        self.cx: np.ndarray = np.zeros(shape) if carriers else gap_x
+        self.cx_h: np.ndarray = np.ones(shape)
+        self.cz: np.ndarray = np.zeros(shape) if carriers else self.gap_z
+        self.cz_h: np.ndarray = np.ones(shape)
+
+    def reset(self) -> None:
+        """Plain carriers, and no dependence on the speed, where effects have left others."""
+        if self.carriers:
+            self.cx[:], self.cz[:] = self.gap_x, self.gap_z
+            self.cx_h[:] = self.cz_h[:] = 1.0
+        if self.speeds:
+            self.gx_v[:] = self.gz_v[:] = 0.0
 
 
 class FluxEffect(Protocol):
-    """An effect that changes `LinkFlux` in place."""
+    """An effect that changes `LinkFlux` in place.
+
+    Attributes
+    ----------
+    changes_carriers, depends_on_speed : bool
+        Whether it changes the carriers, or the conductances by the speed.
+    """
+
+    changes_carriers: bool
+    depends_on_speed: bool
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Change conductances and carriers for the links' gaps (n, m) and scaled speeds, with their derivatives."""
 
+    def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
+        """The same from scratch, as the first effect, for the gaps H (n, m) at the vertices; sets the links' gap in z."""
+        plain_flux(H, flux.gap_x, flux.gap_z, flux.gx, flux.gx_h, flux.gz, flux.gz_h)
+        flux.reset()
+        self.apply(flux, flux.gap_x, flux.gap_z, vx, vz)
+
+
+def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
+    """Buffers for these effects; ``gap_x`` (n, m) as in `LinkFlux`."""
+    return LinkFlux(
+        gap_x,
+        carriers=any(effect.changes_carriers for effect in effects),
+        speeds=any(effect.depends_on_speed for effect in effects),
+    )
+
 
 @njit(cache=True, fastmath=_FAST)
-def plain_flux(H, HF, gap_z_out, gx, gx_h, gx_v, gz, gz_h, gz_v, cx, cx_h, cz, cz_h):
-    """Fill the buffers with the plain film's coefficients."""
+def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
+    """The plain film's conductances with their derivatives, and the links' gap in z."""
     n, m = H.shape
     for i in range(n):
         for j in range(m):
             h = HF[i, j]
             gx[i, j] = h * h * h
             gx_h[i, j] = 3.0 * h * h
-            gx_v[i, j] = 0.0
-            cx[i, j] = h
-            cx_h[i, j] = 1.0
+        for j in range(m):
             h = 0.5 * (H[i, j] + H[i, j + 1]) if j + 1 < m else H[i, j]
             gap_z_out[i, j] = h
             gz[i, j] = h * h * h
             gz_h[i, j] = 3.0 * h * h
-            gz_v[i, j] = 0.0
-            cz[i, j] = h
-            cz_h[i, j] = 1.0
 
 
 @njit(cache=True, fastmath=_FAST)

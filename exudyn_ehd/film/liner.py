@@ -117,7 +117,7 @@ class LinerFilmSolver(FilmSolver):
         self.coarse = None
         coarse = grid.coarser()
         self.coarse_liner = None if coarse is None else LinerFilmSolver(coarse, closure, squeeze=squeeze)
-        self.flux = LinkFlux(grid.shape)
+        self.flux = LinkFlux(self.HF, carriers=False, speeds=False)
         self.beta = 0.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -140,9 +140,13 @@ class LinerFilmSolver(FilmSolver):
         return self.beta * self.system.pressure
 
     @property
-    def gap_by_pressure(self) -> np.ndarray:
-        """dH/dP at the vertices (n, m) of the last solution."""
+    def deflection_by_pressure(self) -> np.ndarray:
+        """dD/dP, for these columns also d(gap)/dP, at the vertices (n, m) of the last solution."""
         return np.where(self.grid.fixed | ~self.work.active, 0.0, self.beta)
+
+    def smallest_gap(self) -> float:
+        """Smallest scaled gap of the deformed surfaces, at vertices and links."""
+        return min(float(self.H.min()), float(self.HF.min()))
 
     def stored_power(self) -> float:
         """Scaled power ``sum p d(beta p)/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
@@ -320,6 +324,6 @@ class LinerFilmSolver(FilmSolver):
         """Gradients of the adjoint functionals lam (k, n, m)."""
         f = self.flux
         assert f is not None
-        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
+        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
         add_bending(self.system.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
         return super().sensitivities(lam)

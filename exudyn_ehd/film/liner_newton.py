@@ -21,6 +21,8 @@ STEP_TOLERANCE = 1e-8
 LEAST_DEFLECTION = 1e-10
 # A factor from so near counts as that of the solution.
 EXACT_STEP = 1e-7
+# Of a sum of four flows, each a product of three numbers: a film that carries nothing is balanced to it, and no better.
+ROUNDING = 1e-15
 FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -172,6 +174,19 @@ def liner_residual(
 
 
 @njit(cache=True)
+def flow_rounding(H, HF, rate, vx, vz, width_x, width_z, link_x):
+    """Norm of the balances' rounding: of the Couette flows over the links, and of the squeeze."""
+    n, m = H.shape
+    total = 0.0
+    for i in range(n):
+        v = vx if link_x[i] != 0.0 else 0.0
+        for j in range(m):
+            total += (v * HF[i, j] * width_z[j]) ** 2 + (vz * H[i, j] * width_x[i]) ** 2
+            total += (rate[i, j] * width_x[i] * width_z[j]) ** 2
+    return ROUNDING * np.sqrt(total)
+
+
+@njit(cache=True)
 def assemble_liner(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, number, count, width, lower,
     upper,
@@ -238,7 +253,7 @@ def factor_liner(
 
 
 @njit(cache=True)
-def _select(P, r, fixed, pc, kind, active):
+def select(P, r, fixed, pc, kind, active):
     """Vertices that carry pressure or are about to; returns the number of changes."""
     n, m = P.shape
     changes = 0
@@ -303,7 +318,7 @@ def solve_liner(
         # Vertices leave all at once but join one row per step: start from all of them.
         active[:] = np.logical_not(fixed)
     elif not held:
-        _select(P, r, fixed, pc, kind, active)
+        select(P, r, fixed, pc, kind, active)
     reference = pc if kind != FULL else 0.0
     last = moved = 0.0
     factored = held
@@ -352,14 +367,14 @@ def solve_liner(
             norm, smallest = liner_residual(
                 rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r
             )
-            _select(P, r, fixed, pc, kind, active)
+            select(P, r, fixed, pc, kind, active)
             factored = False
             continue
         if not smallest > 0.0:
             return False, step + 1, False, count, width
         P[:] = trial
         moved += share * largest
-        changes = _select(P, r, fixed, pc, kind, active)
+        changes = select(P, r, fixed, pc, kind, active)
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.

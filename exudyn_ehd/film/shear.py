@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.status import InputError, require_number
 
 TABLE_INTERVALS = 2048
@@ -62,7 +62,7 @@ class CarreauShear:
         return self.residual + (1.0 - self.residual) * b ** (0.5 * (self.exponent - 1.0))
 
 
-class ShearThinning:
+class ShearThinning(FluxEffect):
     """A `CarreauShear` in scaled form: flux effect and shear factor of one bearing model.
 
     Parameters
@@ -71,6 +71,9 @@ class ShearThinning:
     radius, clearance : float
         m.
     """
+
+    changes_carriers = False
+    depends_on_speed = True
 
     def __init__(self, law: CarreauShear, radius: float, clearance: float) -> None:
         self.law = law

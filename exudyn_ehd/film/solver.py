@@ -16,7 +16,7 @@ from exudyn_ehd.film.flux import (
     conductances_from,
     couette_fluxes_from,
     flux_sensitivity,
-    plain_flux,
+    link_flux,
 )
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
@@ -32,6 +32,7 @@ from exudyn_ehd.film.reynolds import (
 )
 from exudyn_ehd.film.sweep import (
     LinkDerivatives,
+    conductance_link_derivatives,
     flux_link_derivatives,
     plain_link_derivatives,
     take_upstream_fill,
@@ -132,7 +133,7 @@ class FilmSolver:
         self.HF = np.ones(shape)
         self.work = Workspace(*shape)
         self.flux_effects = flux_effects
-        self.flux = LinkFlux(shape) if flux_effects else None
+        self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
         self.ones = np.ones(shape)
         self.nothing = np.zeros(shape)
         self.link_fields = LinkDerivatives(shape)
@@ -224,8 +225,9 @@ class FilmSolver:
 
     def _apply_flux_effects(self, f: LinkFlux) -> None:
         g, s = self.grid, self.system
-        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gx_v, f.gz, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h)
-        for effect in self.flux_effects:
+        first, *others = self.flux_effects
+        first.start(f, self.H, self.vx, self.vz)
+        for effect in others:
             effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
         conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
         couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
@@ -272,7 +274,7 @@ class FilmSolver:
         self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
         self.closure.adjoint_columns(self.work, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
@@ -317,6 +319,11 @@ class FilmSolver:
             plain_link_derivatives(
                 s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
                 d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+        elif not (f.carriers or f.speeds):
+            conductance_link_derivatives(
+                s.linear_pressure, f.gx_h, f.gz_h, f.gap_x, f.gap_z, self.vx, self.vz, self.flow_x, g.width_x, g.width_z,
+                g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ,
             )  # fmt: skip
         else:
             flux_link_derivatives(

@@ -17,10 +17,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 
 
-class SteppedGap:
+class SteppedGap(FluxEffect):
     """Flux effect: links between two vertices as two halves of constant gap.
 
     For prescribed gaps only: the derivatives with respect to the link's gap are left at zero.
@@ -30,6 +30,9 @@ class SteppedGap:
     H : (n, m) array
         The film solver's gap at the vertices, read at every solution.
     """
+
+    changes_carriers = True
+    depends_on_speed = False
 
     def __init__(self, H: np.ndarray) -> None:
         self.H = H

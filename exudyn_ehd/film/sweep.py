@@ -66,6 +66,28 @@ def flux_link_derivatives(
 
 
 @njit(cache=True, fastmath=_FAST)
+def conductance_link_derivatives(
+    P, gx_h, gz_h, gap_x, gap_z, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ
+):  # fmt: skip
+    """Derivatives for carriers H and conductances that don't depend on the speed; `flux_link_derivatives` in loops of one result."""
+    n, m = gap_x.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        v = linked * vx
+        lx = link_x[i] * flow_x
+        wx = width_x[i]
+        for j in range(m):
+            DX[i, j] = (v - gx_h[i, j] * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
+        for j in range(m):
+            SX[i, j] = linked * gap_x[i, j] * width_z[j]
+        for j in range(m - 1):
+            DZ[i, j] = (vz - gz_h[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
+        for j in range(m - 1):
+            SZ[i, j] = gap_z[i, j] * wx
+
+
+@njit(cache=True, fastmath=_FAST)
 def take_upstream_fill(fill, fx, fz, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z, link_x, DX, DZ, SX, SZ):
     """Correct the Couette parts of the derivatives for the fill upstream; carriers cx, cz and their slopes as in `LinkFlux`."""
     n, m = fill.shape

@@ -137,11 +137,16 @@ def elasticity(case: Case) -> Finding | None:
     bush = case.bearing.bush
     if bush is None and case.liner is None:
         return None
+
+    def gap(s: Sample) -> float:
+        # surfaces that touch count as a thousandth of the clearance apart
+        return max(s.minimum_gap, 1e-3 * case.bearing.radial_clearance)
+
     if bush is not None:
-        value = max(s.deflection / s.minimum_gap for s in case.samples)
+        value = max(s.deflection / gap(s) for s in case.samples)
     else:
         assert case.liner is not None
-        value = max(case.liner.compliance * s.peak_pressure / s.minimum_gap for s in case.samples)
+        value = max(case.liner.compliance * s.peak_pressure / gap(s) for s in case.samples)
     return _finding(
         "elasticity", "deflection / smallest gap", value, DEFLECTION, bush is not None,
         mattering="give the bearing bush=ElasticLiner(...), or a bush with a mesh.",

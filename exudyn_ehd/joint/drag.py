@@ -29,7 +29,7 @@ def add_drag_rows(model: BearingModel, rows: np.ndarray) -> None:
 
 def drag_by_gap(model: BearingModel) -> tuple[np.ndarray, np.ndarray]:
     """Gradients at fixed pressure to the true gap: of E_x on the links i -> i+1 and of E_z at the vertices, both (1, n, m)."""
-    f, g, limited = _flux(model), model.grid, model.limiter_fields
+    f, g, limited = _flux(model), model.grid, model.limited
     ones = model.solver.ones
     slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
     face, cell = np.empty((1, *g.shape)), np.empty((1, *g.shape))

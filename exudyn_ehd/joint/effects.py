@@ -62,15 +62,32 @@ class GapTerm(Protocol):
 class GapLimiter(Protocol):
     """Keeps the gap that the film sees above zero where surfaces touch."""
 
-    def limit(self, H: np.ndarray, slope_out: np.ndarray, curvature_out: np.ndarray) -> None:
-        """Replace the gap H in place; d(film gap)/dH and its derivative come back."""
+    @property
+    def limits_below(self) -> float:
+        """Scaled gap from which on the film sees the gap itself."""
+
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Replace gaps at vertices (H) and links (HF) and the gap's rate (H_t) by the film's, in place.
+
+        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the gap's rate.
+        """
 
 
 class Contact(Protocol):
     """A pressure between the surfaces that depends on the true gap alone."""
 
+    @property
+    def presses_below(self) -> float:
+        """Scaled gap from which on there is no pressure."""
+
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
         """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
+
+    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
+        """Solve ``G = X + compliance pressure(G)`` for G (n, m), in place; compliance in clearances per Pa."""
 
     @property
     def friction_coefficient(self) -> float:

@@ -18,12 +18,15 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.stencil import add_gap
 from exudyn_ehd.joint.bore import Bore
 from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.joint.effects import History
 from exudyn_ehd.joint.elastic_product import TangentProduct
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
 from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
+from exudyn_ehd.joint.nodal_tangent import NodalProduct, nodal_tangent
+from exudyn_ehd.joint.traction import BoreForces, traction
 from exudyn_ehd.status import Status
 
 # Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the usual meshes.
@@ -53,6 +56,27 @@ class ElasticEvaluation(Evaluation):
         self._require_current()
         model: Any = self._model
         return model.tangent_product()
+
+    def nodal_forces(self, forces: BoreForces) -> np.ndarray:
+        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        shear = traction(model, forces)
+        nodal = forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
+        nodal[:, :2] += self.bore_load.reshape(-1, 2)
+        return nodal
+
+    def nodal_tangent(self, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
+        """As `exudyn_ehd.joint.nodal_tangent.nodal_tangent`; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        return nodal_tangent(model, forces)
+
+    def nodal_product(self, forces: BoreForces) -> NodalProduct:
+        """The tangent of wrench and nodal forces as an operator; RuntimeError as above."""
+        self._require_current()
+        model: Any = self._model
+        return NodalProduct(model, forces)
 
 
 class BoreTerm:
@@ -137,6 +161,10 @@ class ElasticBearingModel(BearingModel):
         self.bore_load = np.zeros(self.bore.size)
         self.end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
         self.settling_steps = 0
+        R = self.grid.reference_length
+        self.area = self.grid.weight * R**2
+        # SI units of the scaled motion
+        self.motion_scale = np.concatenate((self.pose_scale, self.pose_scale, (0.5, 0.5 / R)))
 
     def _set_motion(self, motion: np.ndarray) -> None:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
@@ -145,21 +173,28 @@ class ElasticBearingModel(BearingModel):
         if motion.size == MOTION_SIZE:
             motion = np.concatenate((motion, np.zeros(2 * k)))
         super()._set_motion(motion)
-        c = self.bearing.radial_clearance
+        scaled = self.motion[MOTION_SIZE:] / self.bearing.radial_clearance
         self.coordinates = self.motion[MOTION_SIZE : MOTION_SIZE + k]
         self.rates = self.motion[MOTION_SIZE + k :]
-        place, rate = self.bore.displacements(self.coordinates, self.rates)
-        self.term.displacement, self.term.rate = place / c, rate / c
+        self.term.displacement, self.term.rate = self.bore.displacements(scaled[:k], scaled[k:])
 
     def shape(self) -> np.ndarray | None:
         """As `BearingModel.shape`: without the bore's displacement."""
         fields = [field for field in self.gap_fields if field is not self.term.displacement]
         return np.sum(fields, axis=0) if fields else None
 
-    def _add_gap_terms(self, history: History | None) -> None:
-        super()._add_gap_terms(history)
-        if self.solver.squeeze:
-            self.solver.H_t += self.term.rate
+    def _add_gap_terms(self, history: History | None) -> float:
+        s, g = self.solver, self.grid
+        fields = [term.field(history) for term in self.effects.gap_terms]
+        self.gap_fields = fields
+        self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+        if self.extra_slope_x is None or self.extra_slope_z is None:
+            self.extra_slope_x, self.extra_slope_z = np.empty(g.shape), np.empty(g.shape)
+        return float(
+            add_gap(
+                self.extra, self.term.rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, self.extra_slope_x, self.extra_slope_z
+            )
+        )
 
     def _loads(self) -> np.ndarray:
         wrench = super()._loads()
@@ -170,11 +205,11 @@ class ElasticBearingModel(BearingModel):
 
     def pressure_field(self) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
-        area = self.grid.weight * self.grid.reference_length**2
-        field = self.P * (area * self.pressure_scale)
-        if self.contact_fields is not None:
-            for P in self.contact_fields.P:
-                field = field + P * area
+        field = self.P * self.area
+        field *= self.pressure_scale
+        if self.pressing is not None:
+            for P in self.pressing.P:
+                field += P * self.area
         return field
 
     def evaluate(
@@ -221,11 +256,12 @@ class ElasticBearingModel(BearingModel):
         """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
         return condensed_tangent(self)
 
+    def power_loss(self) -> float:
+        """Of film and contacts as in `BearingModel`, W; what the film does to the bore leaves the film."""
+        return super().power_loss() - float(self.bore_load @ self.rates)
+
     def quantities(self) -> dict[str, float]:
         """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
         out = super().quantities()
-        if self.status is Status.CONVERGED:
-            # what the film does to the bore leaves the film
-            out["power_loss"] -= float(self.bore_load @ self.rates)
         out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
         return out

@@ -36,16 +36,14 @@ class TangentProduct:
         self.serial = model.serial
         balances = Balances(model)
         self.wrench, self.wrench_place, self.wrench_rate = wrench_rows(model, balances)
-        R = model.grid.reference_length
-        scale = np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / R)))
-        self.motion = balances.motion * scale
+        self.motion = balances.motion * model.motion_scale
         self.by_place, self.vertices = balances.stencil(1.0, 0.0)
         # the rate acts on a vertex's own storage alone
         self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
         self.places = balances.places
         self.weight = -model.force_scale * load_weights(model)
         self.contact: np.ndarray | None = None
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             self.contact = contact_slope(model)
             z = model.grid.z
             cos, sin = self.contact * model.cos_x[:, None], self.contact * model.sin_x[:, None]
@@ -62,6 +60,16 @@ class TangentProduct:
             If the model has evaluated another state since.
         """
         model = self.model
+        moved, residual = self.residual(motion, place, rate)
+        field = np.zeros(moved.shape)
+        field.reshape(-1)[self.places] = self.weight * residual
+        if self.contact is None:
+            return model.bore.load(field)
+        return model.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
+
+    def residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
+        model = self.model
         if model.serial != self.serial:
             raise RuntimeError("TangentProduct: the model has evaluated another state since.")
         moved, speed = model.bore.displacements(place, rate)
@@ -77,8 +85,4 @@ class TangentProduct:
             residual,
         )
         model.solver.direct(residual)
-        field = np.zeros(moved.shape)
-        field.reshape(-1)[self.places] = self.weight * residual
-        if self.contact is None:
-            return model.bore.load(field)
-        return model.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
+        return moved, residual

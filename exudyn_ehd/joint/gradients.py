@@ -11,14 +11,22 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.contact_loads import chain_limiter, chain_links, contact_tangent, couette_gradient_ratio
+from exudyn_ehd.film.contact_loads import (
+    chain_limiter,
+    chain_links,
+    contact_adjoint_rhs,
+    contact_chain,
+    contact_tangent,
+    couette_gradient_ratio,
+)
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 from exudyn_ehd.joint.drag import add_drag_rows, drag_by_gap
 
 if TYPE_CHECKING:
+    from exudyn_ehd.film.compliant import CompliantFilmSolver
     from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
     from exudyn_ehd.joint.model import BearingModel, ContactFields
@@ -33,17 +41,20 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
     `adjoint_rows`, if they are known already.
     """
-    ds, dc, extra = _integral_gradients(model, film_gradient(model, slow_motion) if gradient is None else gradient)
+    gradient = film_gradient(model, slow_motion) if gradient is None else gradient
+    ds, dc, extra = _integral_gradients(model, gradient)
     ends = np.zeros(4)
-    if model.limiter_fields is not None and model.end_pressures.any():
+    if _film_gap_slope(model) is not None and any(model.bearing.end_pressures):
         ends = _end_gradient(model)
     out = np.empty((6, SIZE))
     wrench_gradient(
         ds, dc, extra, ends, model.pose, model.integrals, model.pose_scale, model.grid.reference_length, model.force_scale,
         model.shear_scale, model.omega, model.axial_speed, model.couette, out,
     )  # fmt: skip
-    if model.contact_fields is not None:
-        _add_contacts(model, model.contact_fields, out)
+    if model.pressing is not None:
+        _add_contacts(model, model.pressing, out)
+        if gradient.shape[0] > shape_rows(model):
+            _add_pressed_contact(model, model.pressing, gradient[shape_rows(model) :], out)
     return out
 
 
@@ -77,14 +88,18 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
     return gradient[:4], dc, extra
 
 
-def _following_deflection(model: BearingModel, solver: LinerFilmSolver, by_rate: np.ndarray) -> np.ndarray:
+def _following_deflection(
+    model: BearingModel, solver: LinerFilmSolver | CompliantFilmSolver, by_rate: np.ndarray
+) -> np.ndarray:
     """Gradient (k, 4) to the scaled rates through the deflection's rate: a second adjoint solve, of ``by_rate`` (k, n, m) times beta."""
     w, z = solver.work, model.grid.z
-    rows = (by_rate * solver.gap_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
+    rows = (by_rate * solver.deflection_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
     sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
     out = np.zeros((by_rate.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, z, out)
     contract_pose(sens.face, model.cos_f, model.sin_f, z, out)
+    if model.compliant is not None:
+        contract_pose(by_rate * model.compliant.columns.D_r, model.cos_x, model.sin_x, z, out)
     return out
 
 
@@ -102,10 +117,10 @@ def swept_derivatives(model: BearingModel) -> tuple[LinkDerivatives, np.ndarray,
     s = model.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
-    slope, f = s.ones, model.limiter_fields
+    slope, f = s.ones, model.limited
     if f is not None:
         slope = f.slope
-        chain_links(slope, f.curvature, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
+        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
         by_rate, by_gap = f.by_rate, f.by_gap
     return d, slope, by_rate, by_gap
 
@@ -116,7 +131,7 @@ def field_gradient(
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
     s, g = model.solver, model.grid
     sens = s.sensitivities(lam)
-    if model.limiter_fields is not None:
+    if model.limited is not None:
         _chain_limiter(model, sens)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, model.cos_x, model.sin_x, g.z, pose)
@@ -135,15 +150,25 @@ def shear_needs_adjoint(model: BearingModel) -> bool:
 
 
 def has_extra_rows(model: BearingModel) -> bool:
-    """Whether `adjoint_rows` ends with two rows for the slopes of gap terms and for uneven drag."""
+    """Whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
     return model.extra_slope_x is not None or model.effects.uneven_drag
+
+
+def shape_rows(model: BearingModel) -> int:
+    """Number of the film's own integrals: four of the pressure, of the shear, and two as `has_extra_rows` says."""
+    return 4 + shear_needs_adjoint(model) + 2 * has_extra_rows(model)
+
+
+def _pressed_contact(model: BearingModel) -> bool:
+    """Whether a contact acts on a liner, and so answers to the film's pressure."""
+    return model.compliant is not None and model.pressing is not None
 
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
     g, w = model.grid, model.solver.work
-    shear = shear_needs_adjoint(model)
-    rows = np.empty((4 + shear + 2 * has_extra_rows(model), w.count))
+    shear, own = shear_needs_adjoint(model), shape_rows(model)
+    rows = np.empty((own + 5 * _pressed_contact(model), w.count))
     load_adjoint_rhs(w.order, w.count, g.weight, model.cos_x, model.sin_x, g.z, w.active, rows)
     P_q = None
     if model.effects.pressure_law is not None:
@@ -153,22 +178,31 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
     if shear:
         _shear_row(model, rows[4])
     if has_extra_rows(model):
-        rows[-2:] = 0.0
+        extra = rows[own - 2 : own]
+        extra[:] = 0.0
         if model.extra_slope_x is not None and model.extra_slope_z is not None:
-            at = w.order[: w.count]
-            weight = np.where(w.active, g.weight, 0.0).ravel()[at]
-            for row, slope in ((rows[-2], model.extra_slope_x), (rows[-1], model.extra_slope_z)):
-                row[:] = weight * slope.ravel()[at]
+            slope_adjoint_rhs(w.order, w.count, g.weight, w.active, model.extra_slope_x, model.extra_slope_z, extra)
         if model.effects.uneven_drag:
-            add_drag_rows(model, rows[-2:])
+            add_drag_rows(model, extra)
         if P_q is not None:
-            weigh_rows(w.order, w.count, P_q, rows[-2:])
+            weigh_rows(w.order, w.count, P_q, extra)
+    if rows.shape[0] > own and model.compliant is not None:
+        contact_adjoint_rhs(
+            w.order, w.count, g.weight, model.compliant.contact_by_pressure, model.cos_x, model.sin_x, g.z, rows[own:]
+        )
     return rows
 
 
 def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     """Weights of the Couette integral at the unknowns: through pressure where they are pressures, through fill elsewhere."""
     s, g, w = model.solver, model.grid, model.solver.work
+    if model.compliant is not None:
+        # by the pressure's deflection at unknown pressures, by the fill elsewhere
+        field = -g.weight * model.compliant.gap_by_pressure / s.H**2
+        if s.closure.conserves_mass:
+            field += np.where(w.active, 0.0, g.weight / s.H)
+        row[:] = field.ravel()[w.order[: w.count]]
+        return
     if model.liner_solver is not None:
         liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, model.liner_solver.beta, row)
         return
@@ -203,19 +237,27 @@ def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
 
 def _contract_couette(model: BearingModel, gradient: np.ndarray, dc: np.ndarray) -> None:
     """Add dC/dH (1, n, m) to the gradient of C to the scaled pose."""
-    if model.limiter_fields is not None:
-        gradient[0] *= model.limiter_fields.slope
+    slope = _film_gap_slope(model)
+    if slope is not None:
+        gradient[0] *= slope
     out = np.zeros((1, 4))
     contract_pose(gradient, model.cos_x, model.sin_x, model.grid.z, out)
     dc[:4] += out[0]
 
 
+def _film_gap_slope(model: BearingModel) -> np.ndarray | None:
+    """d(film gap)/d(gap of the undeformed surfaces) (n, m) at fixed pressure; None where it is one."""
+    if model.compliant is not None:
+        return model.compliant.columns.H_r
+    return None if model.limited is None else model.limited.slope
+
+
 def _chain_limiter(model: BearingModel, sens: Sensitivities) -> None:
     """From the film's gap to the true gap."""
-    f = model.limiter_fields
+    f = model.limited
     assert f is not None
     rate = sens.cell if sens.rate is None else sens.rate
-    chain_limiter(f.slope, f.curvature, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
+    chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
 
 
 def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> None:
@@ -229,14 +271,20 @@ def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> Non
             )  # fmt: skip
 
 
+def _add_pressed_contact(model: BearingModel, f: ContactFields, gradient: np.ndarray, out: np.ndarray) -> None:
+    """Add what the wrench of a liner's contact owes to the film's pressure: ``gradient`` (5, 10) of its integrals, to ``out``."""
+    friction, transition = f.friction[0]
+    contact_chain(gradient, model.motion, model.pose_scale, friction, transition, model.grid.reference_length, out)
+
+
 def _end_gradient(model: BearingModel) -> np.ndarray:
-    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter acts on the gap."""
-    f = model.limiter_fields
-    assert f is not None
+    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a liner's contact acts on the gap."""
+    slope = _film_gap_slope(model)
+    assert slope is not None
     field = np.zeros((1, *model.grid.shape))
     step = model.grid.width_x[0]
-    field[0, :, -1] = model.end_pressures[1] * step * f.slope[:, -1]
-    field[0, :, 0] = -model.end_pressures[0] * step * f.slope[:, 0]
+    field[0, :, -1] = model.end_pressures[1] * step * slope[:, -1]
+    field[0, :, 0] = -model.end_pressures[0] * step * slope[:, 0]
     out = np.zeros((1, 4))
     contract_pose(field, model.cos_x, model.sin_x, model.grid.z, out)
     return out[0]

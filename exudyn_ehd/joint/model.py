@@ -19,7 +19,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.choice import film_grid, film_solver
+from exudyn_ehd.film.choice import film_grid, film_solver, liner_film_solver
+from exudyn_ehd.film.compliant import CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.contact_loads import contact_wrench, couette_integral_law
 from exudyn_ehd.film.density import CompressibleLaw
@@ -32,6 +33,7 @@ from exudyn_ehd.film.loads import (
     end_flows,
     pressure_integrals,
     refined_peak,
+    slope_integrals,
 )
 from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
@@ -144,14 +146,20 @@ class ContactFields:
         self.integrals = np.zeros((len(contacts), 5))
         self.gradients = np.zeros((5, 4))
         self.friction = [(float(c.friction_coefficient), float(c.transition_speed)) for c in contacts]
+        self.presses_below = max(c.presses_below for c in contacts)
+
+    def clear(self) -> None:
+        """No pressures."""
+        for known in (*self.P, *self.slope, self.integrals):
+            known[:] = 0.0
 
 
 class LimiterFields:
-    """Derivatives of the film's gap with respect to the true gap, at vertices and links."""
+    """Derivatives of the film's gap with respect to the true gap, at vertices and links, as `GapLimiter.limit` gives them."""
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.slope, self.curvature = np.zeros(shape), np.zeros(shape)
-        self.face_slope, self.face_curvature = np.zeros(shape), np.zeros(shape)
+        self.slope, self.bend = np.zeros(shape), np.zeros(shape)
+        self.face_slope = np.zeros(shape)
         self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 
@@ -175,9 +183,15 @@ class BearingModel:
         )
         self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
         self.needs_spin = self.supply is not None and self.supply.rotating
-        self.liner_solver: LinerFilmSolver | None = None
+        self.liner_solver: LinerFilmSolver | CompliantFilmSolver | None = None
         if self.effects.liner is not None:
-            self.liner_solver = LinerFilmSolver(self.grid, bearing.cavitation, squeeze=bearing.squeeze)
+            self.liner_solver = liner_film_solver(
+                self.grid,
+                bearing.cavitation,
+                squeeze=bearing.squeeze,
+                contact=next(iter(self.effects.contacts), None),
+                limiter=self.effects.limiter,
+            )
         self.solver = self.liner_solver or film_solver(
             bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
             density=self.effects.density,
@@ -189,7 +203,19 @@ class BearingModel:
         self.pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
         shape = self.grid.shape
         self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
-        self.limiter_fields = LimiterFields(shape) if self.effects.limiter is not None else None
+        self.limiter_fields: LimiterFields | None = None
+        # a liner's contact and film gap come out of its film solve
+        self.compliant = self.liner_solver if isinstance(self.liner_solver, CompliantFilmSolver) else None
+        if self.effects.limiter is not None and self.compliant is None:
+            self.limiter_fields = LimiterFields(shape)
+        if self.compliant is not None and self.contact_fields is not None:
+            self.contact_fields.P, self.contact_fields.slope = (
+                [self.compliant.contact_pressure],
+                [self.compliant.contact_slope],
+            )
+        # The same, if the surfaces were close enough for them to act in the last evaluation.
+        self.pressing: ContactFields | None = None
+        self.limited: LimiterFields | None = None
         self.extra: np.ndarray | None = None
         self.extra_link: np.ndarray | None = None
         self.extra_slope_x: np.ndarray | None = None
@@ -226,6 +252,8 @@ class BearingModel:
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
         if self.liner_solver is not None and self.effects.liner is not None:
             self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
+        if self.compliant is not None:
+            self.compliant.pressure_scale = self.pressure_scale
         if self.compressible is not None:
             self.compressible.pressure_scale = self.pressure_scale
 
@@ -241,9 +269,9 @@ class BearingModel:
         temperature = None if thermal is None else thermal.initial_temperature(self)
         self._set_motion(motion)
         self._set_gap(None)
-        mass = self.solver.H.copy() if self.remembers_mass else None
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
+        mass = self.solver.H.copy() if self.remembers_mass else None
         return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
@@ -309,13 +337,11 @@ class BearingModel:
         self._set_motion(motion)
         if self.effects.thermal is not None:
             self.effects.thermal.begin(self, history)
-        self.wrench = np.full(6, np.nan)
         self.iterations = 0
         if self.supply is not None and self.supply.turn(spin):
             self.solver.refresh_fixed()
         self.status = self._solve(history, step)
-        if self.status is Status.CONVERGED:
-            self.wrench = self._loads()
+        self.wrench = self._loads() if self.status is Status.CONVERGED else np.full(6, np.nan)
         return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
 
     def _set_motion(self, motion: np.ndarray) -> None:
@@ -333,17 +359,30 @@ class BearingModel:
             rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
         smallest = 1.0 - float(largest_eccentricity(self.pose, self.half_length))
         if self.effects.gap_terms:
-            self._add_gap_terms(history)
-            smallest = min(float(s.H.min()), float(s.HF.min()))
+            smallest = self._add_gap_terms(history)
+        if self.compliant is not None:
+            return smallest
         if self.contact_fields is not None:
-            for k, contact in enumerate(self.effects.contacts):
-                contact.pressure(s.H, self.contact_fields.P[k], self.contact_fields.slope[k])
-        if self.effects.limiter is not None:
-            self._limit_gap(self.effects.limiter)
+            self._set_contacts(self.contact_fields, smallest)
+        self.limited = None
+        if self.effects.limiter is not None and smallest < self.effects.limiter.limits_below:
+            self.limited = f = self.limiter_fields
+            assert f is not None
+            self.effects.limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
         return smallest
 
-    def _add_gap_terms(self, history: History | None) -> None:
-        """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
+    def _set_contacts(self, f: ContactFields, smallest: float) -> None:
+        """Pressures of the contacts at the true gap."""
+        if smallest < f.presses_below:
+            self.pressing = f
+            for k, contact in enumerate(self.effects.contacts):
+                contact.pressure(self.solver.H, f.P[k], f.slope[k])
+        elif self.pressing is not None:
+            self.pressing = None
+            f.clear()
+
+    def _add_gap_terms(self, history: History | None) -> float:
+        """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
         if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
@@ -353,19 +392,10 @@ class BearingModel:
             gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
-
-    def _limit_gap(self, limiter: GapLimiter) -> None:
-        """The gap that the film sees, and its rate."""
-        s, f = self.solver, self.limiter_fields
-        assert f is not None
-        limiter.limit(s.H, f.slope, f.curvature)
-        limiter.limit(s.HF, f.face_slope, f.face_curvature)
-        if s.squeeze:
-            f.curvature *= s.H_t
-            s.H_t *= f.slope
+        return min(float(s.H.min()), float(s.HF.min()))
 
     def _solve(self, history: History | None, step: float) -> Status:
-        if not np.all(np.isfinite(self.motion)):
+        if not all(map(math.isfinite, self.motion.tolist())):
             return Status.NOT_FINITE
         self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
         if self.minimum_gap <= 0.0 and not self.effects.contacts and self.liner_solver is None:
@@ -391,9 +421,10 @@ class BearingModel:
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
         if status is Status.CONVERGED and self.liner_solver is not None:
-            self.minimum_gap = self.bearing.radial_clearance * min(
-                float(self.solver.H.min()), float(self.solver.HF.min())
-            )
+            smallest = self.liner_solver.smallest_gap()
+            self.minimum_gap = self.bearing.radial_clearance * smallest
+            if self.compliant is not None and self.contact_fields is not None:
+                self.pressing = self.contact_fields if smallest < self.contact_fields.presses_below else None
         return status
 
     def _apply_rheology(self) -> Status:
@@ -461,8 +492,7 @@ class BearingModel:
         pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
         self.extra_theta = self.extra_z = 0.0
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
-            self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
-            self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+            self.extra_theta, self.extra_z = slope_integrals(self.P, g.weight, self.extra_slope_x, self.extra_slope_z)
         if self.liner_solver is not None:
             # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
             self.extra_z += (
@@ -473,14 +503,16 @@ class BearingModel:
             self.extra_theta += drag[0]
             self.extra_z += drag[1]
         self.couette, self.couette_unbroken = self._couette()
-        x, y, bx, by = self.pose
-        sc, ss, szc, szs = self.integrals
+        x, y, bx, by = self.pose.tolist()
+        sc, ss, szc, szs = self.integrals.tolist()
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
         # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag
         # pulls the journal by as much as it holds the bore back.
         R, fs = g.reference_length, self.force_scale
-        ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
+        ends, (lower, upper) = 0.0, self.end_pressures.tolist()
+        if lower != 0.0 or upper != 0.0:
+            ends = upper * _ring_integral(s.H[:, -1]) - lower * _ring_integral(s.H[:, 0])
         wrench = np.array(
             [
                 -fs * sc,
@@ -493,8 +525,8 @@ class BearingModel:
             ]
         )
         self.contact_wrench = np.zeros(6)
-        if self.contact_fields is not None:
-            self._add_contacts(self.contact_fields, wrench)
+        if self.pressing is not None:
+            self._add_contacts(self.pressing, wrench)
         return wrench
 
     def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
@@ -577,21 +609,15 @@ class BearingModel:
         torque_scale = self.shear_scale * R**2
         lower, upper = self._end_flows()
         poiseuille = 6.0 * self.s_theta
-        friction = -torque_scale * (self.omega * self.couette - poiseuille) + self._contact_torque()
-        v, f = self.motion, self.wrench
-        along = f[2] + v[2] * f[0] + v[3] * f[1]  # a tilted journal slides along its own axis, not along z
-        power = f[0] * v[4] + f[1] * v[5] - f[3] * v[7] + f[4] * v[6] + friction * self.omega + along * self.axial_speed
-        if self.liner_solver is not None:
-            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
-        load = self.contact_fields.integrals.sum(axis=0) * R**2 if self.contact_fields is not None else np.zeros(5)
+        load = self.pressing.integrals.sum(axis=0) * R**2 if self.pressing is not None else np.zeros(5)
         peak, peak_angle, _ = self.refined_peak()
         out |= {
             "peak_pressure": peak,
             "peak_angle": peak_angle % (2.0 * math.pi),
-            "friction_torque": friction,
+            "friction_torque": self._friction_torque(),
             "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
             "friction_torque_bush": -float(self.wrench[5]),
-            "power_loss": -power,
+            "power_loss": self.power_loss(),
             "leakage": self.flow_scale * (lower + upper),
             "leakage_lower": self.flow_scale * lower,
             "leakage_upper": self.flow_scale * upper,
@@ -600,15 +626,31 @@ class BearingModel:
             "contact_power_loss": 0.0
             - self._contact_torque() * self.omega
             - float(self.contact_wrench[2]) * self.axial_speed,
-            "peak_contact_pressure": 0.0
-            if self.contact_fields is None
-            else max(float(p.max()) for p in self.contact_fields.P),
+            "peak_contact_pressure": 0.0 if self.pressing is None else max(float(p.max()) for p in self.pressing.P),
         }
         if self.supply is not None:
             out["supply_flow"] = float(self.supply_flows().sum())
         if self.effects.thermal is not None:
             out |= self.effects.thermal.quantities()
         return out
+
+    def power_loss(self) -> float:
+        """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
+        x_t, y_t, bx_t, by_t = self.motion[4:8].tolist()
+        bx, by = self.motion[2:4].tolist()
+        fx, fy, fz, mx, my, _ = self.wrench.tolist()
+        along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
+        power = fx * x_t + fy * y_t - mx * by_t + my * bx_t
+        power += self._friction_torque() * self.omega
+        power += along * self.axial_speed
+        if self.liner_solver is not None:
+            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
+        return -power
+
+    def _friction_torque(self) -> float:
+        """Friction of film and contacts on the journal about its own axis, Nm."""
+        torque_scale = self.shear_scale * self.grid.reference_length**2
+        return -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta) + self._contact_torque()
 
     def supply_flows(self) -> np.ndarray:
         """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
@@ -618,8 +660,11 @@ class BearingModel:
 
     def _contact_torque(self) -> float:
         """Contact friction on the journal about its own axis."""
-        f, (x, y, bx, by) = self.contact_wrench, self.motion[:4]
-        return float(f[5] - (x * f[1] - y * f[0] - bx * f[3] - by * f[4]))
+        if self.pressing is None:
+            return 0.0
+        x, y, bx, by = self.motion[:4].tolist()
+        fx, fy, _, mx, my, mz = self.contact_wrench.tolist()
+        return mz - (x * fy - y * fx - bx * mx - by * my)
 
     def _end_flows(self) -> tuple[float, float]:
         s, g = self.solver, self.grid
@@ -640,7 +685,7 @@ class BearingModel:
         """
         R, half = self.grid.reference_length, self.half_length
         if self.effects.gap_terms or self.liner_solver is not None:
-            i, j = np.unravel_index(int(np.argmin(self.solver.H)), self.grid.shape)
+            i, j = divmod(int(np.argmin(self.solver.H)), self.grid.z.size)
             return float(self.grid.x[i] % (2.0 * math.pi)), float(self.grid.z[j] * R)
         x, y, bx, by = self.pose.tolist()
         # |e|^2 at either end differs by 4 half (x bx + y by)

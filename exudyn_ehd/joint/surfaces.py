@@ -95,21 +95,18 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
     if not isinstance(bearing.bush, ElasticLiner):
         return None
     excluded = {
-        "cavitation=ElrodAdams()": bearing.cavitation.conserves_mass,
         f"film={type(bearing.film).__name__}()": not isinstance(bearing.film, FiniteLength),
         "lubricant.pressure_law": bearing.lubricant.pressure_law is not None,
         "lubricant.density_law": bearing.lubricant.density_law is not None,
         "lubricant.shear_law": bearing.lubricant.shear_law is not None,
         "thermal=FilmEnergy(...)": isinstance(bearing.thermal, FilmEnergy),
-        "contact=RegularisedWall(...)": bearing.contact is not None,
-        "asperity=GreenwoodTripp(...)": bearing.asperity is not None,
         "roughness=PatirCheng(...)": bearing.roughness is not None,
     }
     for option, present in excluded.items():
         if present:
             raise InputError(
-                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved for smooth surfaces in "
-                "two dimensions and constant viscosity with FullSommerfeld, Gumbel or SwiftStieber; leave one of the two out."
+                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved in two dimensions, with "
+                "constant viscosity and without flow factors; leave one of the two out."
             )
     return bearing.bush
 

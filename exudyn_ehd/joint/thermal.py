@@ -10,8 +10,16 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.band_lu import PAD, factor_lu, solve_lu
 from exudyn_ehd.film.direct import number_cells
-from exudyn_ehd.film.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
-from exudyn_ehd.film.flux import LinkFlux
+from exudyn_ehd.film.energy import (
+    assemble_energy,
+    content_rate,
+    end_section,
+    exchange_sums,
+    film_flows,
+    film_heat,
+    outside_flows,
+)
+from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.joint.effects import History
@@ -85,18 +93,23 @@ class OilFlows(Exchange):
             self.found[:] = 0.0
 
 
-def heat_power(model: BearingModel, flows: Exchange) -> float:
-    """Power that the film and its contacts turn into heat, W: `BearingModel.quantities` power_loss less the work on the oil."""
-    s, g, b = model.solver, model.grid, model.bearing
+def heat_and_leakage(model: BearingModel) -> tuple[float, float]:
+    """Power that film and contacts of the last evaluation turn into heat, W, and the flow that leaves, in units of c R^2.
+
+    The heat is `BearingModel.power_loss` less the work on the oil; the flow is that of `Exchange`.
+    """
+    s, y, g, b = model.solver, model.solver.system, model.grid, model.bearing
+    conserves = s.closure.conserves_mass
     cavity = b.cavitation.cavity_pressure / model.pressure_scale
-    cavity = cavity if math.isfinite(cavity) else 0.0
-    work = float(np.vdot(model.P - cavity, flows.outside))
-    if cavity != 0.0 and s.squeeze:
-        work += cavity * float(np.vdot(s.area, s.H_t))
+    stepped = conserves and y.inverse_step > 0.0 and not s.instant
+    leaving, work = exchange_sums(
+        model.P, s.pressure, s.H, s.H_t, s.fill if conserves else s.ones, y.mass_old if stepped else s.H,
+        y.inverse_step if stepped else 0.0, s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, s.work.active, conserves,
+        cavity if math.isfinite(cavity) else 0.0,
+    )  # fmt: skip
     if model.axial_speed != 0.0:
-        ends = model.P[:, -1] * s.H[:, -1] - model.P[:, 0] * s.H[:, 0]
-        work += model.axial_speed / g.reference_length * float(np.sum(g.width_x * ends))
-    return model.quantities()["power_loss"] + model.pressure_scale * model.flow_scale * work
+        work += model.axial_speed / g.reference_length * end_section(model.P, s.H, g.width_x)
+    return model.power_loss() + model.pressure_scale * model.flow_scale * work, leaving
 
 
 class LumpedTemperature:
@@ -132,8 +145,8 @@ class LumpedTemperature:
 
     def _rates(self, model: BearingModel) -> tuple[float, float]:
         """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
-        flows = Exchange(model)
-        return heat_power(model, flows), self.flow_capacity * model.flow_scale * flows.leaving
+        heat, leaving = heat_and_leakage(model)
+        return heat, self.flow_capacity * model.flow_scale * leaving
 
     def advance(self, model: BearingModel) -> float:
         """Temperature at the end of the step that was evaluated last."""
@@ -168,8 +181,11 @@ class LumpedTemperature:
         return {"film_temperature": self.temperature, "peak_temperature": self.temperature}
 
 
-class ViscosityField:
+class ViscosityField(FluxEffect):
     """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
+
+    changes_carriers = False
+    depends_on_speed = False
 
     def __init__(self) -> None:
         self.ratio = np.ones((1, 1))
@@ -184,9 +200,9 @@ class ViscosityField:
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Divide the conductances by the ratio on the link."""
-        for conductance in (flux.gx, flux.gx_h, flux.gx_v):
+        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_x
-        for conductance in (flux.gz, flux.gz_h, flux.gz_v):
+        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
             conductance *= self.inverse_z
 
     def factor(
@@ -219,8 +235,7 @@ class FilmTemperature:
         journal = supply if spec.journal_temperature is None else spec.journal_temperature
         self.flow_capacity = oil.density * oil.specific_heat
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
-        transfer = max(self.transfer, 1e-300)
-        self.wall = (spec.bush_coefficient * bush + spec.journal_coefficient * journal) / transfer
+        self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self.temperature = np.zeros((0, 0))
         self.start: np.ndarray | None = None
         self.number: np.ndarray | None = None
@@ -264,6 +279,22 @@ class FilmTemperature:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
         return self._solve(model, model.start[1], temperature)[1]
 
+    def _wall(self, model: BearingModel) -> tuple[float | np.ndarray, float | np.ndarray]:
+        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K: floats, or (n, m) with a conductivity.
+
+        A parabola across the film with mean T and the surfaces' s_1, s_2 passes ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the
+        like on the other side; both solved for the surfaces.
+        """
+        (U1, T1), (U2, T2) = self.walls
+        if self.spec.conductivity is None or self.transfer == 0.0:
+            return self.transfer, (U1 * T1 + U2 * T2) / max(self.transfer, 1e-300)
+        film = self.spec.conductivity / (model.bearing.radial_clearance * model.solver.H)
+        both = U1 * U2 + film * self.transfer
+        return (
+            12.0 * film * both / (U1 * U2 + 4.0 * film * self.transfer + 12.0 * film**2),
+            (0.5 * U1 * U2 * (T1 + T2) + film * (U1 * T1 + U2 * T2)) / both,
+        )
+
     def _heat(self, model: BearingModel) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
         s, R = model.solver, model.grid.reference_length
@@ -279,7 +310,7 @@ class FilmTemperature:
             * ratio
             / s.H
         )
-        contact = model.contact_fields
+        contact = model.pressing
         if contact is not None:
             for k, effect in enumerate(model.effects.contacts):
                 g_theta, g_z, _ = model.slip(effect)
@@ -304,14 +335,15 @@ class FilmTemperature:
         back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
         weight = lost / total_lost if total_lost > 0.0 else lost
         store = area * flows.content / step if step > 0.0 else np.zeros(shape)
-        walls = self.transfer * area * model.grid.reference_length**2 / scale
+        transfer, wall = self._wall(model)
+        walls = transfer * area * model.grid.reference_length**2 / scale
         if known is None:
             rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
             # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
             thinning = self._thinning() * heat / scale if step == 0.0 else 0.0
             diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
             rhs = np.empty((2, *shape))
-            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (self.wall - supply)
+            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
             rhs[1] = back * found
             T0, T1 = self._solve_band(flows.x, flows.z, diagonal, rhs)
             mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
@@ -325,7 +357,7 @@ class FilmTemperature:
         return T, {
             "heat_in": float(heat.sum()),
             "carried_out": scale * carried,
-            "conducted": scale * float(np.sum(walls * (T - self.wall))),
+            "conducted": scale * float(np.sum(walls * (T - wall))),
             "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
 

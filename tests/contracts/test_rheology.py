@@ -142,7 +142,8 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         raise AssertionError("an absent law was called")
 
     for module, names in (
-        (solver, ("plain_flux", "conductances_from", "couette_fluxes_from", "flux_sensitivity")),
+        (flux, ("plain_flux",)),
+        (solver, ("conductance_link_derivatives", "conductances_from", "couette_fluxes_from", "flux_sensitivity")),
         (viscosity, ("barus_inverse", "hermite_inverse")),
     ):
         for name in names:

@@ -28,12 +28,15 @@ EFFECTS = {
     "mixed": {"asperity": ASPERITY, "roughness": ROUGHNESS},
     "worn": {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-12), "profile": PROFILE},
     "liner_profile": {"bush": LINER, "profile": PROFILE},
+    "liner_asperity": {"bush": LINER, "asperity": ASPERITY},
+    "liner_wall": {"bush": LINER, "contact": ehd.RegularisedWall(onset=0.1 * C)},
+    "liner_worn": {"bush": LINER, "asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-12), "profile": PROFILE},
 }
 CLOSURES = {
     "full": ehd.FullSommerfeld(), "gumbel": ehd.Gumbel(), "swift": ehd.SwiftStieber(cavity_pressure=-2e4),
     "elrod": ehd.ElrodAdams(cavity_pressure=-2e4),
 }  # fmt: skip
-PAIRS = [(e, c) for e in EFFECTS for c in CLOSURES if not ("bush" in EFFECTS[e] and c == "elrod")]
+PAIRS = [(e, c) for e in EFFECTS for c in CLOSURES]
 every_pair = pytest.mark.parametrize(("effect", "closure"), PAIRS, ids="-".join)
 
 
@@ -126,7 +129,7 @@ def test_absent_effects_change_no_bit_and_call_nothing(closure, monkeypatch):
         (asperity, ["asperity_pressure", "contact_table"]), (average_gap, ["average_gap"]),
         (contact_loads, ["contact_wrench", "contact_tangent", "chain_limiter", "chain_links", "couette_integral_law"]),
         (liner, ["solve_liner", "deformed_film", "factor_liner"]), (profile, ["ProfileTerm"]),
-        (roughness, ["multiply_by_table", "flow_tables"]), (wear, ["WearDepth"]),
+        (roughness, ["multiply_by_table", "rough_flux", "rough_friction", "flow_tables"]), (wear, ["WearDepth"]),
     ):  # fmt: skip
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
@@ -204,7 +207,7 @@ def test_force_turns_with_the_model(effect):
 def test_random_states_in_mixed_lubrication(closure):
     """Eccentricity to 1.05 anywhere along the bearing, tilt, squeeze, reversed and zero speed: always a finite film and tangent."""
     rng = np.random.default_rng(11)
-    for effect in ("asperity", "mixed", "worn"):
+    for effect in ("asperity", "mixed", "worn", "liner_asperity", "liner_wall"):
         model = build_model(bearing(cavitation=CLOSURES[closure], n_theta=40, n_z=6, **EFFECTS[effect]))
         for _ in range(60):
             reach, share = 1.05 * rng.random() ** 0.3, rng.choice([0.0, rng.random()])

@@ -152,13 +152,3 @@ def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():
     # both to a relative residual of 1e-8; the iterations of full Newton, and up to one more per step
     assert abs(motions[1] - motions[0]).max() < 1e-6 * C
     assert run.iterations <= full + steps
-
-
-def test_a_housing_that_can_not_carry_the_mesh_is_refused_and_the_modal_bush_named():
-    mbs = new_system()
-    housing = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05), create2D=True)
-    journal = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.3, 0.03, 2))
-    with pytest.raises(ehd.InputError, match=r"itemNumbers\[0\].*ANCFBush.*ModalBush"):
-        ehd.CreateLubricatedJoint(
-            mbs, name="b", itemNumbers=[housing, journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=BEARING
-        )

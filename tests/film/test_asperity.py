@@ -82,18 +82,22 @@ def test_average_gap_is_the_mean_of_the_clipped_gap():
     sigma, a = 0.03, 0.02
     x = np.linspace(-6.0, 12.0, 60)
     H = np.atleast_2d(x * sigma)
-    slope, curvature = np.empty(H.shape), np.empty(H.shape)
-    AverageGap(sigma, a).limit(H, slope, curvature)
+    link, rate = H.copy(), np.full(H.shape, 0.7)
+    slope, bend, link_slope = np.empty(H.shape), np.empty(H.shape), np.empty(H.shape)
+    AverageGap(sigma, a).limit(H, link, rate, slope, bend, link_slope)
     y = x - a
     exact = a + np.array([quad(lambda s, y=v: max(y + s, 0.0) * norm.pdf(s), -v, -v + 20 + max(v, 0), epsabs=1e-14, limit=200, points=[0.0])[0] for v in y])  # fmt: skip
     np.testing.assert_allclose(H[0] / sigma, exact, atol=1e-12)
     np.testing.assert_allclose(slope[0], norm.cdf(y), atol=2e-12)
-    np.testing.assert_allclose(curvature[0] * sigma, norm.pdf(y), atol=1e-10)
+    np.testing.assert_allclose(bend[0] / 0.7 * sigma, norm.pdf(y), atol=1e-10)
+    np.testing.assert_allclose(rate, 0.7 * slope, rtol=1e-15)
+    np.testing.assert_array_equal(link, H)
+    np.testing.assert_array_equal(link_slope, slope)
 
 
 def test_average_gap_stays_positive_however_deep():
     H = np.linspace(-2.0, 0.0, 201)[None]
-    AverageGap(0.01, 0.02).limit(H, np.empty(H.shape), np.empty(H.shape))
+    AverageGap(0.01, 0.02).limit(H, H.copy(), np.zeros(H.shape), *(np.empty(H.shape) for _ in range(3)))
     assert H.min() >= 0.02 * 0.01
     assert np.all(np.diff(H[0]) >= 0.0)
 

@@ -28,8 +28,12 @@ def test_twins_and_derivatives():
     np.testing.assert_allclose(P, _pressure(H), rtol=1e-13)
     d = 1e-6  # central differences: truncation and rounding both near 1e-9
     np.testing.assert_allclose(slope, (_pressure(H + d) - _pressure(H - d)) / (2 * d), atol=1e-6)
-    seen, s1, s2 = H.copy(), np.empty_like(H), np.empty_like(H)
-    limit_gap(seen, ONSET, RESIDUAL, s1, s2)
+    seen, link, rate, s1, s2, s_link = H.copy(), H[::-1].copy(), np.full(H.shape, 3.0), *np.empty((3, *H.shape))
+    limit_gap(seen, link, rate, ONSET, RESIDUAL, s1, s2, s_link)
+    np.testing.assert_array_equal(link[::-1], seen)
+    np.testing.assert_array_equal(s_link[::-1], s1)
+    np.testing.assert_allclose(rate, 3.0 * s1, rtol=1e-15)
+    s2 /= 3.0
     np.testing.assert_allclose(seen, _limited(H), rtol=1e-13)
     np.testing.assert_allclose(s1, (_limited(H + d) - _limited(H - d)) / (2 * d), atol=1e-8)
     d = 1e-4
@@ -43,7 +47,7 @@ def test_limits_and_smoothness():
     assert P[0, 0] == P[0, 1] == 0.0
     assert abs(slope[0, 2]) < 1e-6
     seen = H.copy()
-    limit_gap(seen, ONSET, RESIDUAL, s1, s2)
+    limit_gap(seen, H.copy(), np.ones_like(H), ONSET, RESIDUAL, s1, s2, np.empty_like(H))
     assert seen[0, 1] == H[0, 1]  # not a bit changes above the onset
     assert s1[0, 2] == pytest.approx(1.0, abs=1e-12)
     assert s2[0, 2] == pytest.approx(0.0, abs=1e-6)

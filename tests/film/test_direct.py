@@ -8,7 +8,15 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from exudyn_ehd.film.cavitation import gather_rhs, solve_on_active
-from exudyn_ehd.film.direct import Workspace, assemble_band, factor_band, number_cells, solve_many, solve_one
+from exudyn_ehd.film.direct import (
+    Workspace,
+    assemble_band,
+    factor_band,
+    number_cells,
+    solve_four_by_dots,
+    solve_many,
+    solve_one,
+)
 
 
 def _active_sets(n, m, seed):

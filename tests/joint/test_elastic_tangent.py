@@ -4,49 +4,30 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bore_states import BUSHES, OPTIONS, C, make_bearing, random_motion
 
-import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.status import Status
 
-STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
-CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=1, circumferential=12)
-BUSHES = {
-    "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
-    "nodal": ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
-}
-OPTIONS = {
-    "swift": {},
-    "gumbel": {"cavitation": ehd.Gumbel(cavity_shear=0.3)},
-    "full": {"cavitation": ehd.FullSommerfeld()},
-    "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
-    "ends": {"end_pressures": (3e5, 1e5)},
-    "no squeeze": {"squeeze": False},
-    "piezoviscous": {"lubricant": ehd.Lubricant(viscosity=9e-3, pressure_law=ehd.RoelandsPressure(coefficient=1.8e-8))},
-    "shear thinning": {
-        "lubricant": ehd.Lubricant(viscosity=9e-3, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))
-    },
-    "compressible": {"lubricant": ehd.Lubricant(viscosity=9e-3, density_law=ehd.DowsonHigginson())},
-    "rough": {"roughness": ehd.PatirCheng(composite_roughness=1e-6)},
-    "rough journal": {"roughness": ehd.PatirCheng(composite_roughness=3e-6, pattern=1 / 3, journal_share=1.0)},
-    "wall": {"contact": ehd.RegularisedWall(onset=12e-6, pressure=2e7)},
-}
-C = 30e-6
 
-
-def make_bearing(bush, **options):
-    given = {
-        "journal_radius": 0.03, "length": 0.066, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=9e-3),
-        "film": ehd.FiniteLength(n_theta=32, n_z=6), "bush": bush,
-    }  # fmt: skip
-    return ehd.JournalBearing(**(given | options))
-
-
-def random_motion(k, seed):
-    """Eccentric, tilted and moving journal in a bore that bulges by up to a few micrometres, everything moving."""
-    rng = np.random.default_rng(seed)
-    rigid = [0.6 * C, 0.2 * C, 1e-4, -1.2e-4, 1e-4, -2e-4, 1e-3, 2e-3, 300.0, 0.4]
-    return np.concatenate((rigid, 4e-6 / np.sqrt(k) * rng.normal(size=k), 3e-4 / np.sqrt(k) * rng.normal(size=k)))
+@pytest.mark.parametrize("bush", BUSHES)
+def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
+    model = build_model(make_bearing(BUSHES[bush]))
+    k = model.bore.size
+    motion = np.zeros(10 + 2 * k)
+    motion[8] = 1e-3
+    # the whole bore recedes
+    whole = np.ones(model.grid.shape)
+    motion[10 + k :] = 1e-2 * np.linalg.lstsq(model.bore.product(whole), model.bore.load(whole), rcond=1e-9)[0]
+    assert model.bore.displacement(motion[10 + k :]).min() > 0.0
+    evaluation = model.evaluate(motion)
+    assert evaluation.status is Status.CONVERGED
+    assert model.solver.work.count == 0
+    tangent = evaluation.tangent()
+    assert not tangent[6:].any() and not tangent[:2].any() and not tangent[:, 10 + k :].any()
+    assert tangent[5, 8] < 0.0
+    product = model.tangent_product()
+    assert not product.bore_load(np.ones(10), np.ones(k), np.ones(k)).any()
 
 
 @pytest.mark.parametrize("option", OPTIONS)

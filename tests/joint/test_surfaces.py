@@ -14,6 +14,7 @@ from exudyn_ehd.joint.elastic_tangent import friction_rows
 R, L, C, SPEED = 0.02, 0.03, 20e-6, 200.0
 SIGMA = 0.4e-6
 ASPERITY = ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=5e10, friction_coefficient=0.08)
+LINER = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)
 
 
 def bearing(**options):
@@ -146,6 +147,25 @@ def test_parts_of_contact_and_film_add_up():
     assert q["friction_torque"] - q["contact_torque"] == pytest.approx(q0["friction_torque"], rel=1e-12)
     assert q["power_loss"] - q["contact_power_loss"] == pytest.approx(q0["power_loss"], rel=1e-12)
     assert q["contact_power_loss"] == pytest.approx(-q["contact_torque"] * SPEED, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "options", [{"asperity": ASPERITY}, {"contact": ehd.RegularisedWall(onset=1e-6)}], ids=["asperity", "wall"]
+)
+def test_surfaces_that_part_and_meet_again(options):
+    """Nothing of an earlier contact stays behind: every state has the bits of a fresh model, far films those of smooth surfaces."""
+    touching, apart = at(0.99, tilt=(1e-5, 0.0)), at(0.5, 2.0)
+    model = build_model(bearing(**options))
+    for motion in (touching, apart, touching, apart):
+        fresh = build_model(bearing(**options)).evaluate(motion)
+        evaluation = model.evaluate(motion)
+        assert np.array_equal(evaluation.wrench, fresh.wrench)
+        assert np.array_equal(evaluation.tangent(), fresh.tangent())
+        assert evaluation.quantities() == fresh.quantities()
+        assert (evaluation.quantities()["contact_load"] > 0.0) == (motion is touching)
+    assert not model.contact_fields.P[0].any()
+    smooth = build_model(bearing()).evaluate(apart)
+    assert np.array_equal(evaluation.wrench, smooth.wrench) and np.array_equal(evaluation.tangent(), smooth.tangent())
 
 
 def test_coulomb_friction_above_the_transition_speed():
@@ -338,9 +358,11 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation):
         ({"asperity": ASPERITY, "contact": ehd.RegularisedWall(onset=1e-6)}, "exclude each other"),
         ({"asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=1e-6)}, "must equal"),
         ({"roughness": ehd.PatirCheng(composite_roughness=6e-6)}, "quarter of the radial clearance"),
-        ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9), "asperity": ASPERITY}, "can't be combined"),
-        ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9), "cavitation": ehd.ElrodAdams()}, "ElrodAdams"),
-        ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9), "film": ehd.ShortBearing()}, "ShortBearing"),
+        (
+            {"bush": LINER, "asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=SIGMA)},
+            "can't be combined",
+        ),
+        ({"bush": LINER, "film": ehd.ShortBearing()}, "ShortBearing"),
         ({"profile": ehd.Crown(drop=-25e-6)}, "closes the gap"),
     ],
 )

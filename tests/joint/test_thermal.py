@@ -124,6 +124,31 @@ def test_film_between_walls_without_through_flow(sides):
     assert np.ptp(T) < 1e-8
 
 
+@pytest.mark.parametrize(("bush", "journal"), [(1e9, 1e9), (1e9, 0.0), (0.0, 2e3), (1e3, 3e3), (2e3, 1e9)])
+def test_conduction_across_a_film_without_through_flow(bush, journal):
+    """Uniform heat between two walls: the exact parabola, its mean, from k T'' = -heat / h with k T' = U_b (T - T_b) at y = 0 and
+    -k T' = U_j (T - T_j) at y = h, for walls of different temperatures."""
+    k, T_b, T_j = 0.13, 331.0, 315.0
+    thermal = ehd.FilmEnergy(
+        supply_temperature=SUPPLY, bush_coefficient=bush, bush_temperature=T_b, journal_coefficient=journal,
+        journal_temperature=T_j, conductivity=k,
+    )  # fmt: skip
+    T = ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0).temperature
+    heat = float(LAW.viscosity(T[0, 0], 870.0)) * (R * OMEGA) ** 2 / C
+    # T = a + b y - heat y^2 / (2 k h)
+    system = np.array([[bush, -k], [journal, k + journal * C]])
+    a, b = np.linalg.solve(system, [bush * T_b, heat + journal * (T_j + 0.5 * heat * C / k)])
+    np.testing.assert_allclose(T, a + 0.5 * b * C - heat * C / (6.0 * k), atol=1e-6)
+
+
+def test_conductivity_of_an_adiabatic_film_changes_nothing():
+    off, on = (ehd.FilmEnergy(supply_temperature=SUPPLY, conductivity=k) for k in (None, 0.13))
+    first, second = (
+        ehd.steady(bearing(t, end_pressures=(0.0, 4e5)), speed=OMEGA, eccentricity_ratio=0.5) for t in (off, on)
+    )
+    assert np.array_equal(first.temperature, second.temperature)
+
+
 def test_isothermal_walls_are_the_limit_of_strong_cooling():
     """Excess over the wall falls like 1 / U, and the film becomes the isothermal one."""
     plain = ehd.steady(bearing(None), speed=OMEGA, eccentricity_ratio=0.6)
@@ -145,8 +170,9 @@ def test_isothermal_walls_are_the_limit_of_strong_cooling():
     [
         ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01),
         ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0),
+        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e4, bush_temperature=310.0, conductivity=0.13),
     ],
-    ids=["lumped", "field"],
+    ids=["lumped", "field", "conducting"],
 )
 @pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 4e5)])
 def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
