@@ -106,7 +106,7 @@ def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) 
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     start = time.perf_counter()
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     history = joint.history
     later = history.time > 0.3 / turns * history.time[-1]
     return {

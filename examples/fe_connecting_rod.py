@@ -183,7 +183,7 @@ def simulate(
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     start = time.process_time()
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     spent = time.process_time() - start
     h = joint.history
     # without the start from the middle of the bore
@@ -233,8 +233,8 @@ def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
-    """Run all rods over the first firing; with ``results`` write the picture there."""
-    turns, steps = (0.27, 240) if quick else (0.45, 360)
+    """Run all rods over the turn of a firing; with ``results`` write the picture there."""
+    turns, steps = (0.27, 240) if quick else (1.0, 360)
     rods = {name: rod_fem(across, tolerance=0.03 if quick else 0.02) for name, across in SHANKS.items()}
     bearing = big_end(quick=quick)
 

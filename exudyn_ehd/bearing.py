@@ -31,7 +31,8 @@ if TYPE_CHECKING:
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
-
+# Beyond them a film is none, and lengths are in other units.
+THICKEST_FILM_RATIO, LARGEST_RADIUS = 0.1, 10.0
 
 # Far beyond what oil or steel bears, and far from overflow.
 LARGEST_PRESSURE = 1e12
@@ -128,6 +129,16 @@ class JournalBearing:
             "JournalBearing.radial_clearance", self.radial_clearance, "m", above=0.0,
             hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
         )  # fmt: skip
+        if self.journal_radius > LARGEST_RADIUS:
+            raise InputError(
+                f"JournalBearing.journal_radius must be at most {LARGEST_RADIUS:g} m, got {self.journal_radius!r}; lengths are in metres, not "
+                "millimetres."
+            )
+        if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
+            raise InputError(
+                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a thin film, got "
+                f"{self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, usual clearances a thousandth of the radius."
+            )
         _require_type("lubricant", self.lubricant, (Lubricant,))
         _require_type("film", self.film, (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap))
         _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))

@@ -55,7 +55,9 @@ def test_fe_connecting_rod(example, tmp_path):
     # the mechanism sets the force; the shank says where the bore is backed
     for rod in (narrow, wide):
         assert abs(rod["largest_force_kN"] / rigid["largest_force_kN"] - 1) < 0.01
-        assert abs(rod["iterations_per_step"] - rigid["iterations_per_step"]) < 3
+        # with an exact tangent and the start of Newton's method that a crank needs; from zero accelerations it takes 11
+        assert rod["iterations_per_step"] < 7.5
+    assert rigid["iterations_per_step"] < 3.5
     assert narrow["peak_MPa"] > 1.15 * rigid["peak_MPa"]
     assert narrow["minimum_gap_um"] < 0.5 * rigid["minimum_gap_um"]
     assert wide["peak_MPa"] < 0.95 * rigid["peak_MPa"]

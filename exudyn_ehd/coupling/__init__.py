@@ -8,6 +8,8 @@ sides         who carries a marker frame: nodes of rigid bodies, ground, any oth
 kinematics    poses, rates and exact variations of the two frames, as kernels
 film_element  force and Jacobian user functions, failures, accepted steps
 elastic_film  the film element on a flexible bore, modal; nodal_film: on the nodes of a bush; elastic_attach: their items
+modal_inertia inertia of a modal bush on a moving housing
+bush_object   nodal bush as an object of a model; bush_equations: its equations; carrier: the side that carries its outer surface
 solvers       which Exudyn solver is at work
 results       the film now, films kept over a run, pictures; film_record: what keeps them
 history       record of accepted steps; sensors: the same quantities as Exudyn sensors

@@ -15,6 +15,7 @@ from exudyn_ehd.coupling.carrier import initial_frame
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
 from exudyn_ehd.coupling.items import Item
+from exudyn_ehd.coupling.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.film.cavitation import SwiftStieber
@@ -82,9 +83,12 @@ def attach_bush(
             numberOfODE2Coordinates=k,
         )
     )
-    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     modes = model.bore.modes
     mass = modes.mass if isinstance(modes, BoreModes) else None
+    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
+    if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
+        element.inertia = ModalInertia(mbs, sides[0], modes)
+        return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:
         mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
     return element, {} if mass is None else {"massMatrix": _mass_matrix(element, mass)}

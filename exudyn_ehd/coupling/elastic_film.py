@@ -1,8 +1,9 @@
 """The film element on a flexible bore: a third block of coordinates beside housing and journal.
 
 Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is ``Q - K q``; their
-mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object. The wrench on the housing stays the opposite of the journal's, since the modes' forces are internal to the bush: force and
-moment on journal and housing cancel exactly.
+mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves coupled with it (`modal_inertia`). The
+film's wrench on the housing stays the opposite of the journal's, since the modes' forces are internal to the bush: force and moment on
+journal and housing cancel exactly.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 
 from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.film_element import FilmElement, Trial
+from exudyn_ehd.coupling.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.solid.fe_bore import ReducedBore
 
@@ -83,6 +85,11 @@ class ModalFilmElement(BoreFilmElement):
     ----------
     stiffness : (k,) array
         Modal stiffness, N/m.
+
+    Attributes
+    ----------
+    inertia : ModalInertia or None
+        Of modes with mass on a housing that moves.
     """
 
     def __init__(
@@ -90,6 +97,24 @@ class ModalFilmElement(BoreFilmElement):
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
         self.stiffness = stiffness
+        self.inertia: ModalInertia | None = None
+
+    def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """User function of Exudyn: mass matrix (N, N) of modes and housing."""
+        assert self.inertia is not None
+        if not self._bound:
+            self._bind(mbs)
+        n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
+        whole = np.zeros((state.size, state.size))
+        whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])
+        whole[:n_h, n:], whole[n:, :n_h] = coupling, coupling.T
+        return whole
+
+    def _inertia_state(self, trial: Trial) -> list[np.ndarray]:
+        """Coordinates and rates of the housing, then of the modes."""
+        n, n_h = self.rigid_size, self.sides[0].size
+        q, q_t = np.array(trial.q), np.array(trial.q_t)
+        return [q[:n_h], q_t[:n_h], q[n:], q_t[n:]]
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation: Any = trial.evaluation
@@ -99,19 +124,27 @@ class ModalFilmElement(BoreFilmElement):
         force = np.empty(len(trial.q))
         kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
         force[n:] = evaluation.bore_load - self.stiffness * np.array(trial.q[n:])
+        if self.inertia is not None:
+            on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
+            force[: housing.size] += on_housing
+            force[n:] += on_modes
         return force
 
     def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         evaluation: Any = trial.evaluation
         T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
-        stiffness, damping, by_place, by_rate = rigid
+        stiffness, damping, motion_place, motion_rate = rigid
         whole = np.empty((n + k, n + k))
         whole[:n, :n] = f_q * stiffness + f_qt * damping
         whole[:n, n:] = self._wrench_map() @ T[:6, SIZE:]
-        whole[n:, :n] = T[6:, :SIZE] @ (f_q * by_place + f_qt * by_rate)
+        whole[n:, :n] = T[6:, :SIZE] @ (f_q * motion_place + f_qt * motion_rate)
         whole[n:, n:] = T[6:, SIZE:]
         whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
+        if self.inertia is not None:
+            by_place, by_rate = self.inertia.derivatives(*self._inertia_state(trial))
+            places = np.r_[: self.sides[0].size, n : n + k]
+            whole[np.ix_(places, places)] += f_q * by_place + f_qt * by_rate
         return np.negative(whole, out=whole)
 
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:

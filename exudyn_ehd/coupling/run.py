@@ -11,9 +11,26 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.restart import SystemState, load_state
+from exudyn_ehd.coupling.start_guess import StartGuess
 from exudyn_ehd.status import EHDError, InputError, RunError
 
 JOINTS = "lubricatedJoints"
+
+
+def require_system(where: str, mbs: Any) -> None:
+    """Refuse what is no system of Exudyn."""
+    if not isinstance(mbs, exu.MainSystem):
+        raise InputError(
+            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what SystemContainer().AddSystem() returns."
+        )
+
+
+def require_settings(where: str, settings: Any) -> None:
+    """Refuse what are no settings of Exudyn."""
+    if not isinstance(settings, exu.SimulationSettings):
+        raise InputError(
+            f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
+        )
 
 
 def joints_of(mbs: Any) -> list[Any]:
@@ -24,7 +41,11 @@ def joints_of(mbs: Any) -> list[Any]:
 def SolveDynamic(
     mbs: Any, simulationSettings: Any, *, restart: SystemState | str | pathlib.Path | None = None, **options: Any
 ) -> bool:
-    """``mbs.SolveDynamic`` with this package's errors, and with restarts.
+    """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
+
+    Exudyn starts Newton's method of a step at zero accelerations, beside the solution by some 0.3 h^2 a: more than a film is thick
+    in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`): the same solution with two to
+    four times fewer iterations, without halved steps and without the errors that they leave in the forces.
 
     A film that can't be evaluated ends a run with an Exudyn error whose cause is this package's; here it is the package's error itself.
     A run that ends because Newton's method does not converge is explained by the last accepted state of every joint. Either way
@@ -55,11 +76,20 @@ def SolveDynamic(
     InputError
         If the restart belongs to another system.
     """
+    require_system("SolveDynamic", mbs)
+    require_settings("SolveDynamic", simulationSettings)
     going_on: AbstractContextManager[None] = nullcontext()
     if restart is not None:
         state = restart if isinstance(restart, SystemState) else load_state(restart)
         going_on = _restarted(mbs, simulationSettings, state)
-    with going_on, own_errors(mbs, "SolveDynamic"):
+    else:
+        time = simulationSettings.timeIntegration
+        if not time.endTime > time.startTime:
+            raise InputError(
+                f"SolveDynamic.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
+                f"{time.endTime:.9g} s."
+            )
+    with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
 
@@ -83,6 +113,8 @@ def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
     FilmError, RunError
         As `SolveDynamic`.
     """
+    require_system("SolveStatic", mbs)
+    require_settings("SolveStatic", simulationSettings)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options))
 
@@ -118,6 +150,9 @@ def own_errors(mbs: Any, where: str) -> Iterator[None]:
             cause = cause.__cause__
         if isinstance(cause, EHDError):
             raise type(cause)(f"{cause} {_kept(mbs)}") from error
+        # Exudyn wraps an interrupt like any other exception of a user function
+        if isinstance(cause, KeyboardInterrupt):
+            raise KeyboardInterrupt(_kept(mbs)) from error
         if cause is not error:
             raise
         raise RunError(f"{where}: {_story(mbs)}") from error
@@ -146,6 +181,26 @@ def _story(mbs: Any) -> str:
         "accepted steps."
     )
     return "".join(parts)
+
+
+@contextmanager
+def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
+    """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
+    # without a stored solver its step size and parameters are not known
+    if not options.get("storeSolver", True):
+        yield
+        return
+    before = mbs.GetPreNewtonResidualUserFunction()
+    before = before["function"] if isinstance(before, dict) else before
+    own = before if callable(before) else None
+    elements = [joint.element for joint in joints_of(mbs)]
+    bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
+    bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
+    mbs.SetPreNewtonResidualUserFunction(StartGuess(mbs, own, bushes))
+    try:
+        yield
+    finally:
+        mbs.SetPreNewtonResidualUserFunction(0 if own is None else own)
 
 
 @contextmanager

@@ -220,9 +220,12 @@ def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
 def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
     """Right-hand side of the active vertices, with the known pressures of inactive neighbours moved over."""
     n, m = b.shape
+    i = 0
     for r in range(count):
-        i = order[r] // m
         j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         s = b[i, j]
@@ -252,9 +255,9 @@ def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, n
         return False, count, width
     gather_rhs(kx, kz, b, active, order, count, P, unknowns)
     solve_one(band, inv_diag, count, width, unknowns)
-    m = b.shape[1]
+    flat = P.reshape(-1)
     for r in range(count):
-        P[order[r] // m, order[r] % m] = unknowns[r]
+        flat[order[r]] = unknowns[r]
     return True, count, width
 
 

@@ -101,9 +101,12 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
     for r in range(first, count):
         for d in range(reach):
             band_out[r, d] = 0.0
+    i = 0
     for r in range(first, count):
-        i = order[r] // m
         j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         diagonal = kx[prv, j] + kx[i, j]

@@ -68,17 +68,23 @@ def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
     n, m = H.shape
     for i in range(n):
         for j in range(m):
-            rate_out[i, j] = _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j)
+            rate_out[i, j] = _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
 
 
 @njit(cache=True, inline="always")
-def _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j):
+def _rate(h, h_t, fill, old, inverse_step, squeeze):
     rate = 0.0
     if inverse_step > 0.0:
-        rate = (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
+        rate = (fill * h - old) * inverse_step
     elif squeeze:
-        rate = fill[i, j] * H_t[i, j]
+        rate = fill * h_t
     return rate
+
+
+@njit(cache=True, inline="always")
+def _flow(k, f, q0, q1, fill0, fill1):
+    """Flow over a link from vertex 0 to vertex 1."""
+    return k * (q0 - q1) + f * (fill0 if f >= 0.0 else fill1)
 
 
 @njit(cache=True)
@@ -89,35 +95,24 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
     """
     n, m = q.shape
     for i in range(n):
-        for j in range(m):
-            outside_out[i, j] = 0.0
-            if fixed[i, j]:
-                broken = (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2])
-                outside_out[i, j] = _vertex_inflow(q, fill, kx, kz, fx, fz, area[i, j] * rate[i, j], broken, i, j)
-
-
-@njit(cache=True, inline="always")
-def _vertex_inflow(q, fill, kx, kz, fx, fz, storage, broken, i, j):
-    """Flow that enters at one fixed vertex; ``broken``: an end next to a ruptured film."""
-    n, m = q.shape
-    up = 0.0
-    down = 0.0
-    if j + 1 < m:
-        f = fz[i, j]
-        up = kz[i, j] * (q[i, j] - q[i, j + 1]) + f * (fill[i, j] if f >= 0.0 else fill[i, j + 1])
-    if j > 0:
-        f = fz[i, j - 1]
-        down = kz[i, j - 1] * (q[i, j - 1] - q[i, j]) + f * (fill[i, j - 1] if f >= 0.0 else fill[i, j])
-    inflow = up - down
-    if not broken:
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
-        f = fx[i, j]
-        out = kx[i, j] * (q[i, j] - q[nxt, j]) + f * (fill[i, j] if f >= 0.0 else fill[nxt, j])
-        f = fx[prv, j]
-        into = kx[prv, j] * (q[prv, j] - q[i, j]) + f * (fill[prv, j] if f >= 0.0 else fill[i, j])
-        inflow += out - into + storage
-    return inflow
+        for j in range(m):
+            outside_out[i, j] = 0.0
+            if not fixed[i, j]:
+                continue
+            up = 0.0
+            down = 0.0
+            if j + 1 < m:
+                up = _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
+            if j > 0:
+                down = _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
+            outside_out[i, j] = up - down
+            if (j == 0 and not unbroken[i, 1]) or (j == m - 1 and not unbroken[i, m - 2]):
+                continue
+            out = _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+            into = _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+            outside_out[i, j] += out - into + area[i, j] * rate[i, j]
 
 
 @njit(cache=True)
@@ -137,19 +132,31 @@ def exchange_sums(
     n, m = H.shape
     leaving = 0.0
     work = 0.0
-    closing = 0.0
     for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            if squeeze:
+            if not fixed[i, j]:
+                continue
+            inflow = 0.0
+            if j + 1 < m:
+                inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
+            if j > 0:
+                inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
+            end = 1 if j == 0 else m - 2
+            if (0 < j < m - 1) or conserves or active[i, end] or fixed[i, end]:
+                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+                inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+            leaving -= min(inflow, 0.0)
+            work += (P[i, j] - cavity) * inflow
+    if squeeze and cavity != 0.0:
+        closing = 0.0
+        for i in range(n):
+            for j in range(m):
                 closing += area[i, j] * H_t[i, j]
-            if fixed[i, j]:
-                end = 1 if j == 0 else m - 2
-                broken = (j == 0 or j == m - 1) and not (conserves or active[i, end] or fixed[i, end])
-                storage = area[i, j] * _vertex_rate(H, H_t, fill, mass_old, inverse_step, squeeze, i, j)
-                inflow = _vertex_inflow(q, fill, kx, kz, fx, fz, storage, broken, i, j)
-                leaving -= min(inflow, 0.0)
-                work += (P[i, j] - cavity) * inflow
-    return leaving, work + cavity * closing
+        work += cavity * closing
+    return leaving, work
 
 
 @njit(cache=True)

@@ -122,9 +122,12 @@ def weigh_rows(order, count, factor, rows):
 def load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, rhs_out):
     """Weights of S_c, S_s, S_zc, S_zs at the unknowns: rhs_out (4, count); zero where the pressure is clipped."""
     m = z.size
+    i = 0
     for r in range(count):
-        i = order[r] // m
         j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
         w = weight[i, j] if active[i, j] else 0.0
         rhs_out[0, r] = w * cos_x[i]
         rhs_out[1, r] = w * sin_x[i]

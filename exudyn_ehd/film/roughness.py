@@ -290,7 +290,7 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
 
 @njit(cache=True, fastmath=_FAST)
 def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, gz_h):
-    """`flux.plain_flux` times the tables' factors; loops are split, and rows never sliced, for speed."""
+    """`flux.plain_flux` times the tables' factors; loops are split, rows never sliced, and quotients taken first, for speed."""
     n, m = H.shape
     scale = inverse_sigma / TABLE_MIDDLE
     for i in range(n):
@@ -299,13 +299,13 @@ def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, 
         for j in range(1, m):
             differing += (H[i, j] != a) | (HF[i, j] != b)
         if differing == 0:  # an aligned journal has one gap per column
-            f, f_h = _table_factor(b, scale, table_x, 0.0, 1.0)
+            f, f_h = _table_at(1.0 / (1.0 + b * scale), scale, table_x)
             g, g_h = b * b * b * f, b * b * (3.0 * f + b * f_h)
             for j in range(m):
                 gx[i, j] = g
             for j in range(m):
                 gx_h[i, j] = g_h
-            f, f_h = _table_factor(a, scale, table_z, 0.0, 1.0)
+            f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table_z)
             g, g_h = a * a * a * f, a * a * (3.0 * f + a * f_h)
             for j in range(m):
                 gz[i, j] = g
@@ -314,15 +314,21 @@ def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, 
             for j in range(m):
                 gap_z_out[i, j] = a
         else:
+            for j in range(m - 1):
+                gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
+            gap_z_out[i, m - 1] = H[i, m - 1]
+            for j in range(m):
+                gx[i, j] = 1.0 / (1.0 + HF[i, j] * scale)
+            for j in range(m):
+                gz[i, j] = 1.0 / (1.0 + gap_z_out[i, j] * scale)
             for j in range(m):
                 h = HF[i, j]
-                f, f_h = _table_factor(h, scale, table_x, 0.0, 1.0)
+                f, f_h = _table_at(gx[i, j], scale, table_x)
                 gx[i, j] = h * h * h * f
                 gx_h[i, j] = h * h * (3.0 * f + h * f_h)
             for j in range(m):
-                h = 0.5 * (H[i, j] + H[i, j + 1]) if j + 1 < m else H[i, j]
-                f, f_h = _table_factor(h, scale, table_z, 0.0, 1.0)
-                gap_z_out[i, j] = h
+                h = gap_z_out[i, j]
+                f, f_h = _table_at(gz[i, j], scale, table_z)
                 gz[i, j] = h * h * h * f
                 gz_h[i, j] = h * h * (3.0 * f + h * f_h)
 
@@ -338,14 +344,16 @@ def rough_friction(H, inverse_sigma, table, ratio_out, ratio_h_out, ratio_v_out)
         for j in range(1, m):
             differing += H[i, j] != a
         if differing == 0:
-            f, f_h = _table_factor(a, scale, table, 0.0, 1.0)
+            f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
             for j in range(m):
                 ratio_out[i, j] = f
             for j in range(m):
                 ratio_h_out[i, j] = f_h
         else:
             for j in range(m):
-                ratio_out[i, j], ratio_h_out[i, j] = _table_factor(H[i, j], scale, table, 0.0, 1.0)
+                ratio_out[i, j] = 1.0 / (1.0 + H[i, j] * scale)
+            for j in range(m):
+                ratio_out[i, j], ratio_h_out[i, j] = _table_at(ratio_out[i, j], scale, table)
         for j in range(m):
             ratio_v_out[i, j] = 0.0
 
@@ -353,13 +361,19 @@ def rough_friction(H, inverse_sigma, table, ratio_out, ratio_h_out, ratio_v_out)
 @njit(cache=True, fastmath=_FAST, inline="always")
 def _table_factor(gap, scale, table, base, share):
     """(f, df/dgap) of `multiply_by_table`."""
+    f, f_h = _table_at(1.0 / (1.0 + gap * scale), scale, table)
+    return base + share * f, share * f_h
+
+
+@njit(cache=True, fastmath=_FAST, inline="always")
+def _table_at(y, scale, table):
+    """Value of the table at y, and its derivative by the gap."""
     steps = table.shape[0]
-    y = 1.0 / (1.0 + gap * scale)
     u = y * steps
     k = min(int(u), steps - 1)
     u -= k
     b = table[k, 1]
     c2 = table[k, 2]
     c3 = table[k, 3]
-    f = base + share * (table[k, 0] + u * (b + u * (c2 + u * c3)))
-    return f, share * (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)
+    f = table[k, 0] + u * (b + u * (c2 + u * c3))
+    return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)

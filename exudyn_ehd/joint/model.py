@@ -336,13 +336,11 @@ class BearingModel:
         self._set_motion(motion)
         if self.effects.thermal is not None:
             self.effects.thermal.begin(self, history)
-        self.wrench = np.full(6, np.nan)
         self.iterations = 0
         if self.supply is not None and self.supply.turn(spin):
             self.solver.refresh_fixed()
         self.status = self._solve(history, step)
-        if self.status is Status.CONVERGED:
-            self.wrench = self._loads()
+        self.wrench = self._loads() if self.status is Status.CONVERGED else np.full(6, np.nan)
         return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
 
     def _set_motion(self, motion: np.ndarray) -> None:
@@ -396,7 +394,7 @@ class BearingModel:
         s.HF += self.extra_link
 
     def _solve(self, history: History | None, step: float) -> Status:
-        if not np.all(np.isfinite(self.motion)):
+        if not all(map(math.isfinite, self.motion.tolist())):
             return Status.NOT_FINITE
         self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
         if self.minimum_gap <= 0.0 and not self.effects.contacts and self.liner_solver is None:
@@ -497,14 +495,16 @@ class BearingModel:
             self.extra_theta += drag[0]
             self.extra_z += drag[1]
         self.couette, self.couette_unbroken = self._couette()
-        x, y, bx, by = self.pose
-        sc, ss, szc, szs = self.integrals
+        x, y, bx, by = self.pose.tolist()
+        sc, ss, szc, szs = self.integrals.tolist()
         self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
         self.s_z = -(bx * sc + by * ss) + self.extra_z
         # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag
         # pulls the journal by as much as it holds the bore back.
         R, fs = g.reference_length, self.force_scale
-        ends = self.end_pressures[1] * _ring_integral(s.H[:, -1]) - self.end_pressures[0] * _ring_integral(s.H[:, 0])
+        ends, (lower, upper) = 0.0, self.end_pressures.tolist()
+        if lower != 0.0 or upper != 0.0:
+            ends = upper * _ring_integral(s.H[:, -1]) - lower * _ring_integral(s.H[:, 0])
         wrench = np.array(
             [
                 -fs * sc,

@@ -83,8 +83,8 @@ def traction(model: ElasticBearingModel, forces: BoreForces) -> np.ndarray:
     out[1] = model.axial_speed * couette - 6.0 * W * (H * (forces.slope_z @ P) + 2.0 * P * _extra(model.extra_slope_z, P))
     # fmt: on
     out *= model.shear_scale * R
-    if model.contact_fields is not None:
-        for contact, P_c in zip(model.effects.contacts, model.contact_fields.P, strict=True):
+    if model.pressing is not None:
+        for contact, P_c in zip(model.effects.contacts, model.pressing.P, strict=True):
             a, b, _ = model.slip(contact)
             weight = contact.friction_coefficient * R**2 * W * P_c.ravel()
             out[0] += a * weight
@@ -123,7 +123,7 @@ class TractionChange:
         self.by_pressure = -12.0 * scale * W * extra
         self.gap, self.speed = np.zeros((3, P.size)), np.zeros((3, P.size, 2))
         self.slope = -12.0 * scale * W * P
-        limited = np.ones(P.size) if model.limiter_fields is None else model.limiter_fields.slope.ravel()
+        limited = np.ones(P.size) if model.limited is None else model.limited.slope.ravel()
         for c, along in enumerate((forces.slope_x, forces.slope_z)):
             self.gap[1 + c] = scale * (speeds[c] * couette_field(model).ravel() - 6.0 * W * limited * (along @ P))
         density = scale * _density(model)
@@ -133,7 +133,7 @@ class TractionChange:
             # the shear factor knows the scaled speed omega / 2
             thinning = 0.5 * scale * W / H * (model.share() * model.ratio_v).ravel()
             self.speed[1:, :, 0] += speeds[:, None] * thinning
-        if model.contact_fields is not None:
+        if model.pressing is not None:
             self._add_contacts(model)
 
     @staticmethod
@@ -148,7 +148,7 @@ class TractionChange:
 
     def _add_contacts(self, model: ElasticBearingModel) -> None:
         area = model.grid.reference_length**2 * model.grid.weight.ravel()
-        fields = model.contact_fields
+        fields = model.pressing
         assert fields is not None
         self.gap[0] += contact_slope(model).ravel()
         for contact, P, slope in zip(model.effects.contacts, fields.P, fields.slope, strict=True):

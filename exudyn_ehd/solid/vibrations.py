@@ -16,8 +16,10 @@ EXCITED = 1e-6
 SAME_FREQUENCY = 1e-4
 # Share of the energy below which what is left of a vibration is rounding.
 DEPENDENT = 1e-9
+# Of the algorithm: raise it with every change of what a file holds.
+FORMAT = 2
 # What a file of modes depends on besides the bush.
-SETTINGS = (VIBRATIONS, EXCITED, SAME_FREQUENCY, DEPENDENT)
+SETTINGS = (FORMAT, VIBRATIONS, EXCITED, SAME_FREQUENCY, DEPENDENT)
 
 
 def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
@@ -44,7 +46,8 @@ def vibration_modes(solid: TotalLagrange, static: np.ndarray, stiffness: np.ndar
     -------
     dict
         ``displacements`` (r, n, 3) and ``stiffness`` (r,) of what the lowest vibrations add, orthogonal in energy to each other and
-        to the static modes, the largest nodal displacement 1; ``mass`` (k + r, k + r) [kg] of all modes, consistent.
+        to the static modes, the largest nodal displacement 1; ``mass`` (k + r, k + r) [kg] of all modes, consistent; ``moments`` (n, 4)
+        of the shape functions, int rho N [kg] and int rho N X [kg m].
     """
     free, K, factor = held_stiffness(solid)
     M = solid.mass[free][:, free].tocsc()
@@ -70,4 +73,5 @@ def vibration_modes(solid: TotalLagrange, static: np.ndarray, stiffness: np.ndar
         "displacements": added.reshape(len(added), -1, 3),
         "stiffness": energy[keep] / peak**2,
         "mass": 0.5 * (mass + mass.T),
+        "moments": solid.scalar_mass @ np.column_stack((np.ones(len(solid.mesh.nodes)), solid.mesh.nodes)),
     }

@@ -16,6 +16,12 @@ pictures    work-precision diagrams, one-page summary
 cells       measured errors over (eps, L/D, tilt, elasticity)
 advice      `recommend`
 growth      cost over grid, modes and joints
+costs       tables of what options cost, with factors over a base
+effect_costs  effects, closures and reduced films over the plain film
+bush_costs  bores in a run, the film's Jacobian, assembly of elements
+once_costs  what is paid once: kernels, maps, modes
+guide       texts and tables of the guide from all these
+order       whether times keep their order over several runs
 moving_catalogue  the moving scenes and their ladders
 parameters  apart from all that: `parameter_study`, a function over lists of parameters
 

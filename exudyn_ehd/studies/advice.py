@@ -11,7 +11,6 @@ from typing import Any
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.choice import Film
 from exudyn_ehd.film.liner import ElasticLiner
-from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.reduce import ModalBush
 from exudyn_ehd.status import InputError, require_number
@@ -96,7 +95,7 @@ def recommend(
     Parameters
     ----------
     bearing_or_scene : JournalBearing or Scene
-        A plain bearing, rigid, with an `ElasticLiner` or with a solid bush of a hollow cylinder; or one of the measured scenes of
+        A plain bearing, rigid, with an `ElasticLiner` or with a `ModalBush` of a hollow cylinder; or one of the measured scenes of
         `exudyn_ehd.studies`, whose own tables count.
     error : float
         Relative.
@@ -159,12 +158,10 @@ def _for_bearing(
         return Recommendation(
             found=False, reason=f"no evidence: no bearing with {missing} was measured for this table."
         )
+    strange = _unlike_measured_bushes(bearing)
+    if strange:
+        return Recommendation(found=False, reason=f"no evidence: {strange}.")
     kind, compliance = _compliance(bearing)
-    if kind == "":
-        return Recommendation(
-            found=False,
-            reason="no evidence: bushes were measured as hollow cylinders only, half as thick as their radius; a factor of two either way counts.",
-        )
     kappa = 0.0
     if kind != "rigid":
         if speed is None:
@@ -216,19 +213,36 @@ def _not_measured(bearing: JournalBearing) -> str:
     return ""
 
 
+def _unlike_measured_bushes(bearing: JournalBearing) -> str:
+    """Why no measured bush stands for this one; empty if one does."""
+    bush = bearing.bush
+    if bush is None or isinstance(bush, ElasticLiner):
+        return ""
+    if not isinstance(bush, ModalBush):
+        return (
+            f"solid bushes were measured as ModalBush only, not as {type(bush).__name__}, whose bore gives way next to its ends within less "
+            "than an interval of a coarse film; compare a finer film"
+        )
+    if not isinstance(bush.mesh, HollowCylinder) or not (
+        0.5 <= bush.mesh.thickness / (cells.THICKNESS * bush.mesh.inner_radius) <= 2.0
+    ):
+        return "bushes were measured as hollow cylinders only, half as thick as their radius; a factor of two either way counts"
+    if bush.tolerance < cells.TOLERANCE:
+        return (
+            f"modes were measured down to tolerance {cells.TOLERANCE:g}, not {bush.tolerance:g}: finer ones need finer films; compare a finer "
+            "film"
+        )
+    return ""
+
+
 def _compliance(bearing: JournalBearing) -> tuple[str, float]:
-    """Kind of the bore and its displacement per pressure, m/Pa; ("", 0) for an unknown bush."""
+    """Kind of the bore and its displacement per pressure, m/Pa."""
     if bearing.bush is None:
         return "rigid", 0.0
     if isinstance(bearing.bush, ElasticLiner):
         return "liner", bearing.bush.compliance
-    if not isinstance(bearing.bush, ModalBush | ANCFBush):
-        return "", 0.0
-    mesh, material = bearing.bush.mesh, bearing.bush.material
-    if not isinstance(mesh, HollowCylinder):
-        return "", 0.0
-    if not 0.5 <= mesh.thickness / (cells.THICKNESS * mesh.inner_radius) <= 2.0:
-        return "", 0.0
+    bush: Any = bearing.bush
+    mesh, material = bush.mesh, bush.material
     return "solid", cells.bore_compliance(
         mesh.thickness, mesh.inner_radius, material.youngs_modulus, material.poisson_ratio
     )

@@ -89,12 +89,12 @@ def paper_bush(size: ladders.MeshSize) -> HollowCylinder:
 
 
 def steady_bush(scene: SteadyScene) -> Study:
-    """Bushes at a steady position, steel, 20 mm thick; all on one film grid."""
+    """Bushes at a steady position, steel, 20 mm thick, on one film grid and some on finer ones."""
     tilted = scene.tilt_ratio > 0.0
     scene = dataclasses.replace(scene, directions=2)
     return Study(
         name=f"{scene.name}_bush", title=f"{scene.title}: bush", scene=scene,
-        settings=ladders.bush_ladder(paper_bush, STEEL, tilted=tilted),
+        settings=ladders.bush_ladder(paper_bush, STEEL, tilted=tilted, films=ladders.BUSH_FILMS),
         references=ladders.bush_references(paper_bush, STEEL, tilted=tilted),
         quantities=("load", "peak pressure", "minimum film", "friction", "stiffness"),
     )  # fmt: skip

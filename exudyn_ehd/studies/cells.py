@@ -6,7 +6,9 @@ smallest gap that it takes at one end) and, where the bore gives way, on
     kappa = a mu omega / (psi^2 c),    a = displacement of the bore per pressure,
 
 with `ElasticLiner.compliance` for a liner and `bore_compliance`, a thick cylinder's under uniform pressure, for a solid bush. A solid
-bush of another thickness gives way nearly alike at the same kappa; measured on bushes half as thick as the radius (`THICKNESS`).
+bush of another thickness gives way nearly alike at the same kappa; measured on bushes half as thick as the radius (`THICKNESS`), with modes
+of `TOLERANCE`: errors are those of the film on this bush. Finer modes, and meshes, give way next to the ends within less than an interval of
+a coarse film, whose errors are then larger.
 
 Every cell holds the largest error over `DIRECTIONS` of the eccentricity, spread over one column of the coarsest grid, with the
 estimated error of its reference added. Closure: Swift-Stieber.
@@ -57,6 +59,7 @@ RIGID_LEVELS = ((96, 8), (192, 16), (384, 32))
 ELASTIC_LEVELS = ((64, 5), (128, 10), (256, 20))
 DIRECTIONS = 0.3 + np.radians(1.45) * np.arange(8)
 THICKNESS = 0.5
+TOLERANCE = 0.02
 RADIUS, CLEARANCE, VISCOSITY, SPEED = 0.025, 25e-6, 0.02, 300.0
 
 
@@ -84,7 +87,7 @@ LINER = Block(
     eccentricity_ratio=(0.4, 0.6, 0.8, 0.9),
 )  # fmt: skip
 SOLID = Block(
-    kind="solid", length_to_diameter=(0.5, 1.0), tilt_ratio=(0.0,), elasticity=(0.005, 0.02),
+    kind="solid", length_to_diameter=(0.5, 1.0), tilt_ratio=(0.0, 0.35), elasticity=(0.005, 0.02),
     eccentricity_ratio=(0.4, 0.6, 0.8, 0.9),
 )  # fmt: skip
 BLOCKS = (RIGID, LINER, SOLID)
@@ -128,8 +131,10 @@ def elasticity_parameter(bearing: JournalBearing, compliance: float, speed: floa
     return compliance * pressure / bearing.radial_clearance
 
 
-def cell_bearing(kind: str, length_to_diameter: float, elasticity: float, film: Film) -> JournalBearing:
-    """A bearing with the cell's L/D and kappa at the spin `SPEED`."""
+def cell_bearing(
+    kind: str, length_to_diameter: float, elasticity: float, film: Film, *, tilted: bool = False
+) -> JournalBearing:
+    """A bearing with the cell's L/D and kappa at the spin `SPEED`; ``tilted``: a solid bush has modes that are odd in z."""
     length = 2.0 * RADIUS * length_to_diameter
     plain = JournalBearing(
         journal_radius=RADIUS, length=length, radial_clearance=CLEARANCE, lubricant=Lubricant(viscosity=VISCOSITY),
@@ -148,8 +153,8 @@ def cell_bearing(kind: str, length_to_diameter: float, elasticity: float, film: 
             inner_radius=RADIUS, thickness=thickness, length=length, axial=4, radial=2, circumferential=32
         ),
         material=SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.3, density=7800.0),
-        tolerance=0.08,
-        tilted=False,
+        tolerance=TOLERANCE,
+        tilted=tilted,
     )  # fmt: skip
     return dataclasses.replace(plain, bush=bush)
 
@@ -169,17 +174,25 @@ def true_values(
 def measure_block(block: Block, progress: Any = print) -> list[Cell]:
     """Errors and times of every film at every cell of a block."""
     out = []
-    for ratio, kappa in itertools.product(block.length_to_diameter, block.elasticity):
-        progress(f"cells: {block.kind}, L/D {ratio:g}, elasticity {kappa:g}")
-        levels = [
-            build_model(cell_bearing(block.kind, ratio, kappa, FiniteLength(n_theta=n, n_z=m)))
-            for n, m in (RIGID_LEVELS if block.kind == "rigid" else ELASTIC_LEVELS)
-        ]
+    # only a solid bush is another one for tilted journals
+    groups = [[t for t in block.tilt_ratio if (t > 0.0) is tilted] for tilted in (False, True)]
+    if block.kind != "solid":
+        groups = [list(block.tilt_ratio)]
+    for ratio, kappa, tilts in itertools.product(block.length_to_diameter, block.elasticity, groups):
+        if not tilts:
+            continue
+        progress(f"cells: {block.kind}, L/D {ratio:g}, elasticity {kappa:g}, tilt {', '.join(f'{t:g}' for t in tilts)}")
+
+        def build(film: Film, ratio: float = ratio, kappa: float = kappa, tilted: bool = tilts[-1] > 0.0) -> Any:
+            return build_model(cell_bearing(block.kind, ratio, kappa, film, tilted=tilted))
+
+        fine = RIGID_LEVELS if block.kind == "rigid" else ELASTIC_LEVELS
+        levels = [build(FiniteLength(n_theta=n, n_z=m)) for n, m in fine]
         models: dict[str, Any] = {}
         for name, film in FILMS.items():
             if block.kind == "rigid" or isinstance(film, FiniteLength):
-                models[name] = build_model(cell_bearing(block.kind, ratio, kappa, film))
-        for tilt, eps in itertools.product(block.tilt_ratio, block.eccentricity_ratio):
+                models[name] = build(film)
+        for tilt, eps in itertools.product(tilts, block.eccentricity_ratio):
             motions = _motions(levels[0].bearing, eps, tilt)
             out += _measure(block.kind, models, levels, motions, (ratio, tilt, kappa, eps))
     return out

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -40,13 +41,22 @@ def order_changes(tables: Sequence[Sequence[Row]]) -> list[tuple[str, str]]:
     tables : sequence of sequences of Row
         The same rows from several runs; a setting's time is taken from its first row.
     """
-    times = [{row.setting: row for row in reversed(rows) if row.timed} for rows in tables]
-    names = sorted(set.intersection(*(set(t) for t in times))) if times else []
-    changed = []
-    for i, a in enumerate(names):
-        for b in names[i + 1 :]:
-            differences = [t[a].seconds - t[b].seconds for t in times]
-            apart = all(abs(d) > t[a].spread + t[b].spread for d, t in zip(differences, times, strict=True))
-            if apart and min(differences) < 0.0 < max(differences):
-                changed.append((a, b))
-    return changed
+    times = [{r.setting: (r.seconds, r.spread) for r in reversed(rows) if r.timed} for rows in tables]
+    return [pair for pair, kept in pairs_apart(times).items() if not kept]
+
+
+def pairs_apart(tables: Sequence[Mapping[str, tuple[float, float]]]) -> dict[tuple[str, str], bool]:
+    """Pairs whose times differ by more than both spreads in every table; True if with one sign in all of them.
+
+    Parameters
+    ----------
+    tables : sequence of mappings
+        Time and spread by name, s; names that are missing in one table don't count.
+    """
+    names = sorted(set.intersection(*(set(table) for table in tables))) if tables else []
+    out = {}
+    for a, b in itertools.combinations(names, 2):
+        differences = [table[a][0] - table[b][0] for table in tables]
+        if all(abs(d) > table[a][1] + table[b][1] for d, table in zip(differences, tables, strict=True)):
+            out[a, b] = max(differences) < 0.0 or min(differences) > 0.0
+    return out

@@ -188,3 +188,16 @@ def write_growths(path: pathlib.Path, growths: list[Growth], note: str) -> None:
         for n, t in zip(g.sizes, g.seconds, strict=True):
             writer.writerow([g.name, g.size_name, n, f"{t:.4g}", f"{g.exponent:.3f}", f"{g.last_exponent:.3f}"])
     write_atomic(path, text.getvalue())
+
+
+def read_growths(path: pathlib.Path) -> tuple[list[Growth], list[str]]:
+    """What `write_growths` wrote, and its notes."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    points: dict[tuple[str, str], list[tuple[int, float]]] = {}
+    for row in csv.DictReader(line for line in lines if not line.startswith("# ")):
+        points.setdefault((row["what"], row["size"]), []).append((int(row["n"]), float(row["seconds"])))
+    found = [
+        Growth(name=name, size_name=size, sizes=tuple(n for n, _ in p), seconds=tuple(t for _, t in p))
+        for (name, size), p in points.items()
+    ]
+    return found, [line[2:] for line in lines if line.startswith("# ")]

@@ -36,7 +36,14 @@ CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 
 # Cavity pressure of the closures that are compared with the mass-conserving one, Pa gauge.
 CAVITY = -1e5
 SOLID = "elastic solid"
-BUSH_LEVELS: tuple[tuple[MeshSize, float], ...] = (((4, 2, 32), 8e-3), ((6, 3, 48), 4e-3), ((9, 4, 72), 2e-3))
+BushLevel = tuple[MeshSize, float, Grid | None]
+# Mesh, tolerance and film are refined together: next to the ends a bore gives way within less than an interval of a coarse film, and finer
+# modes on such a film converge to something else.
+BUSH_LEVELS: tuple[BushLevel, ...] = (
+    ((4, 2, 32), 8e-3, (128, 16)), ((6, 3, 48), 4e-3, (192, 24)), ((9, 4, 72), 2e-3, (288, 36)),
+)  # fmt: skip
+# Modes with finer films than the scene's.
+BUSH_FILMS: tuple[tuple[float, Grid], ...] = ((0.02, (128, 12)), (0.02, (192, 16)), (0.01, (192, 24)))
 
 
 def grid_label(grid: Grid) -> str:
@@ -168,6 +175,7 @@ def bush_ladder(
     tolerances: Iterable[float] = (0.2, 0.08, 0.04, 0.02, 0.01, 0.005),
     modal_mesh: MeshSize = (4, 2, 40),
     nodal_meshes: Iterable[MeshSize] = ((2, 1, 16), (4, 1, 24), (4, 2, 40)),
+    films: Iterable[tuple[float, Grid]] = (),
     liner: bool = True,
 ) -> tuple[Setting, ...]:
     """Rigid bore, liner by columns, modal bush by tolerance and mesh, nodal bush by mesh.
@@ -182,6 +190,7 @@ def bush_ladder(
     tolerances : of `ModalBush`, on ``modal_mesh``
     modal_mesh : (axial, radial, circumferential)
     nodal_meshes : of `ANCFBush`
+    films : pairs of a tolerance and a film grid other than the scene's
     liner : bool
         Include `ElasticLiner` of the bush's thickness.
     """
@@ -195,6 +204,11 @@ def bush_ladder(
     for tolerance in tolerances:
         bush = ModalBush(mesh=mesh(modal_mesh), material=material, tolerance=tolerance, tilted=tilted)
         out.append(Setting(label=f"modal {tolerance:g}", family="modal", model=SOLID, options={"bush": bush}))
+    for tolerance, grid in films:
+        bush = ModalBush(mesh=mesh(modal_mesh), material=material, tolerance=tolerance, tilted=tilted)
+        options = {"bush": bush, "film": _film(grid)}
+        label = f"modal {tolerance:g}, film {grid_label(grid)}"
+        out.append(Setting(label=label, family="modal, finer film", model=SOLID, options=options))
     for size in nodal_meshes:
         nodal = ANCFBush(mesh=mesh(size), material=material)
         out.append(Setting(label="nodal " + _mesh_label(size), family="nodal", model=SOLID, options={"bush": nodal}))
@@ -202,16 +216,23 @@ def bush_ladder(
 
 
 def bush_references(
-    mesh: Mesh, material: Material, *, tilted: bool, levels: tuple[tuple[MeshSize, float], ...] = BUSH_LEVELS
+    mesh: Mesh, material: Material, *, tilted: bool, levels: tuple[BushLevel, ...] = BUSH_LEVELS
 ) -> tuple[Reference, ...]:
-    """The elastic solid, by modes whose mesh is refined and whose tolerance is tightened together; parameters as in `bush_ladder`."""
-    a, b, c = (
-        Setting(
-            label=f"modal {tolerance:g} on {_mesh_label(size)}", family="reference", model=SOLID,
-            options={"bush": ModalBush(mesh=mesh(size), material=material, tolerance=tolerance, tilted=tilted)},
-        )
-        for size, tolerance in levels
-    )  # fmt: skip
+    """The elastic solid, by modes whose mesh, tolerance and film are refined together; parameters as in `bush_ladder`.
+
+    ``levels`` are meshes, tolerances and films; None: the scene's film.
+    """
+
+    def level(size: MeshSize, tolerance: float, grid: Grid | None) -> Setting:
+        options: dict[str, Any] = {
+            "bush": ModalBush(mesh=mesh(size), material=material, tolerance=tolerance, tilted=tilted)
+        }
+        if grid is not None:
+            options["film"] = _film(grid)
+        label = f"modal {tolerance:g} on {_mesh_label(size)}"
+        return Setting(label=label, family="reference", model=SOLID, options=options)
+
+    a, b, c = (level(*one) for one in levels)
     return (Reference(model=SOLID, levels=(a, b, c), ratio=levels[1][0][2] / levels[0][0][2]),)
 
 

@@ -16,7 +16,7 @@ from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, styled
 from exudyn_ehd.studies.front import cheapest, pareto_front
-from exudyn_ehd.studies.table import Row, format_seconds, read_rows
+from exudyn_ehd.studies.table import Row, format_seconds
 
 LEVELS = (0.1, 0.01, 0.001)
 # Errors below this are rounding.
@@ -206,24 +206,6 @@ def summary_rows(tables: Iterable[tuple[Sequence[Row], str]]) -> list[list[str]]
     return out
 
 
-def guide_text(folder: pathlib.Path) -> str:
-    """The table of the guide from the shipped tables: what `GUIDE` names, of those that exist."""
-    lines = []
-    for name, quantity in GUIDE:
-        path = folder / f"{name}.csv"
-        if path.exists():
-            rows, notes = read_rows(path)
-            lines += summary_rows([([row for row in rows if row.quantity == quantity], notes[0])])
-    return summary_text(lines)
-
-
-GUIDE = (
-    ("steady_500_film", "load"), ("steady_800_film", "load"), ("steady_800_film", "peak pressure"),
-    ("steady_950_film", "load"), ("steady_800_tilted_film", "load"), ("orbit_film", "path"),
-    ("steady_800_bush", "peak pressure"), ("steady_800_bush", "minimum film"),
-    ("orbit_integration", "path"), ("slider_pin_film", "minimum film"), ("slider_pin_integration", "minimum film"),
-    ("whirl_film", "growth"), ("start_stop_film", "friction work"), ("big_end_bush", "peak pressure"),
-)  # fmt: skip
 HEADINGS = ["scene: ladder", "quantity", "reference, its own error", "within 10 %", "within 1 %", "within 0.1 %"]
 
 
@@ -283,6 +265,11 @@ def write_pictures(folder: pathlib.Path, tables: Iterable[tuple[Sequence[Row], s
             save(work_precision(block, title, per), path)
             out.append(path)
     return out
+
+
+def unit_of(notes: Sequence[str]) -> str:
+    """What a study's times are the time of, from its table's notes."""
+    return notes[1].split(";")[0].removeprefix("time per ")
 
 
 def save(figure: Figure, path: pathlib.Path, **options: Any) -> None:

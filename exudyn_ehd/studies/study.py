@@ -6,7 +6,8 @@ the scene's dearest model; a rung's ``error`` is measured against it and holds w
 its own model's reference and holds the discretisation alone.
 
 Times are processor time of one thread. The first run of a setting is apart (compilation); then all settings run in turns, so that a
-disturbance of the machine meets them alike, and the median counts with the quartiles as spread.
+disturbance of the machine meets them alike, and the median counts with the quartiles as spread. References are not timed and run side
+by side.
 """
 
 from __future__ import annotations
@@ -101,13 +102,20 @@ class _Measured:
     outcome: Outcome | None = None
     run: Callable[[], Outcome] | None = None
     setup: float = math.nan
-    first: float = math.nan
+    cold: float = math.nan
+    warm: float = math.nan
     seconds: tuple[float, ...] = ()
     failure: str = ""
 
 
 def run_study(
-    study: Study, *, repeats: int = 7, budget: float = math.inf, processes: int = 1, progress: Progress | None = print
+    study: Study,
+    *,
+    repeats: int = 7,
+    budget: float = math.inf,
+    processes: int = 1,
+    reference_processes: int = 1,
+    progress: Progress | None = print,
 ) -> list[Row]:
     """Compute a study's table.
 
@@ -120,6 +128,8 @@ def run_study(
         Processor time in s after which a setting that has run three times is not repeated further.
     processes : int
         More than 1: settings run side by side through Exudyn's `ParameterVariation`; errors are the same, times are not measured.
+    reference_processes : int
+        How many of the references' settings run side by side, after the timed ones.
     progress : function or None
         Gets a line per step.
 
@@ -134,18 +144,22 @@ def run_study(
     """
     require_integer("run_study: repeats", repeats, at_least=1)
     require_integer("run_study: processes", processes, at_least=1)
+    require_integer("run_study: reference_processes", reference_processes, at_least=1)
+    references = [s for reference in study.references for s in reference.levels]
     say = progress if progress is not None else (lambda text: None)
     if processes > 1:
-        outcomes = _in_parallel(study, processes)
-        count = len(study.settings)
-        rungs = [_Measured(outcome=o, failure=f) for o, f in outcomes[:count]]
-        levels = outcomes[count:]
+        rungs = [_Measured(outcome=o, failure=f) for o, f in _in_parallel(study, study.settings, processes)]
     else:
         rungs = [_first(study, setting, say) for setting in study.settings]
         _repeat(rungs, repeats, budget, say)
-        levels = [_attempt(study, setting, say) for ref in study.references for setting in ref.levels]
-    references = _references(study, levels)
-    return [row for setting, rung in zip(study.settings, rungs, strict=True) for row in _rows(study, setting, rung, references)]  # fmt: skip
+    beside = max(processes, reference_processes)
+    if beside > 1:
+        say(f"{study.name}: {len(references)} settings of references, {beside} side by side")
+        levels = _in_parallel(study, references, beside)
+    else:
+        levels = [_attempt(study, setting, say) for setting in references]
+    found = _references(study, levels)
+    return [row for setting, rung in zip(study.settings, rungs, strict=True) for row in _rows(study, setting, rung, found)]  # fmt: skip
 
 
 def _attempt(study: Study, setting: Setting, say: Progress) -> tuple[Outcome | None, str]:
@@ -173,15 +187,11 @@ def _first(study: Study, setting: Setting, say: Progress) -> _Measured:
     measured = _Measured()
     try:
         start = time.process_time()
-        study.scene.prepare(setting)()
-        cold = time.process_time() - start
+        measured.outcome = study.scene.prepare(setting)()
+        measured.cold = time.process_time() - start
         start = time.process_time()
         measured.run = study.scene.prepare(setting)
         measured.setup = time.process_time() - start
-        start = time.process_time()
-        measured.outcome = measured.run()
-        warm = measured.setup + time.process_time() - start
-        measured.first = max(cold - warm, 0.0)
     except (EHDError, ValueError, RuntimeError) as error:
         measured.failure = _first_line(error)
     return measured
@@ -197,21 +207,22 @@ def _repeat(rungs: Sequence[_Measured], repeats: int, budget: float, say: Progre
                 continue
             start = time.process_time()
             rung.seconds += (rung.run().seconds,)
-            spent[k] += time.process_time() - start
+            taken = time.process_time() - start
+            rung.warm = taken if round_ == 0 else min(rung.warm, taken)
+            spent[k] += taken
 
 
-def _in_parallel(study: Study, processes: int) -> list[tuple[Outcome | None, str]]:
-    """Outcomes of all rungs and reference levels, side by side."""
+def _in_parallel(study: Study, settings: Sequence[Setting], processes: int) -> list[tuple[Outcome | None, str]]:
+    """Outcomes of settings, side by side."""
     from exudyn.processing import ParameterVariation
 
-    everything = [*study.settings, *(s for ref in study.references for s in ref.levels)]
     _, values = ParameterVariation(
         _one_of,
-        {"index": list(range(len(everything)))},
+        {"index": list(range(len(settings)))},
         useMultiProcessing=True,
         numberOfThreads=processes,
         showProgress=False,
-        parameterFunctionData={"study": study, "settings": everything},
+        parameterFunctionData={"study": study, "settings": settings},
     )
     return list(values)
 
@@ -248,7 +259,7 @@ def _references(
 def _rows(
     study: Study, setting: Setting, rung: _Measured, references: Sequence[tuple[Reference, dict[str, Converged]]]
 ) -> list[Row]:
-    times: dict[str, Any] = {"setup": rung.setup, "compile": rung.first}
+    times: dict[str, Any] = {"setup": rung.setup, "compile": max(rung.cold - rung.setup - rung.warm, 0.0)}
     if rung.seconds:
         low, median, high = np.quantile(rung.seconds, (0.25, 0.5, 0.75)).tolist()
         times |= {"seconds": median, "low": low, "high": high}

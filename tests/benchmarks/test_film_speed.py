@@ -7,7 +7,6 @@ to follow as in a time integration.
 
 from __future__ import annotations
 
-import math
 import time
 
 import numpy as np
@@ -19,6 +18,7 @@ from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.studies import effect_costs
 
 pytestmark = pytest.mark.benchmark
 
@@ -29,16 +29,8 @@ TARGETS = {("swift", 64, 16): 0.25, ("swift", 128, 12): 0.35, ("swift", 96, 24):
 GRIDS = [(64, 16), (128, 12), (96, 24)]
 
 
-def _orbit(bearing, count=720):
-    """Motions along an orbit of about 0.8 c with its own velocities."""
-    c = bearing.radial_clearance
-    step = math.radians(1.0)
-    motions = []
-    for k in range(count):
-        a, e = k * step, c * (0.8 + 0.05 * math.sin(5 * k * step))
-        v = 0.3 * SPEED * e
-        motions.append([e * math.cos(a), e * math.sin(a), 0, 0, -v * math.sin(a), v * math.cos(a), 0, 0, SPEED, 0])
-    return np.array(motions, dtype=float)
+def _orbit(bearing):
+    return effect_costs.orbit(bearing.radial_clearance, SPEED, 720)
 
 
 class _Follower:

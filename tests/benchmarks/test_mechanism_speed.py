@@ -1,25 +1,16 @@
-"""Time per step of whole models and time to the first result.
+"""Time per step of whole models.
 
 Peers on the same step-load orbit: another multibody code needs 59 and 192 ms per step on these grids (axial x circumferential
 vertices 13x49 and 21x81). Targets here: 1 and 2 ms; slider-crank 2 ms per step.
 """
 
 import math
-import os
-import subprocess
-import sys
 
 import pytest
 
 import exudyn_ehd as ehd
 
 pytestmark = pytest.mark.benchmark
-
-FIRST_RESULT = """
-import exudyn_ehd as ehd
-b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=.04))
-ehd.steady(b, speed=314.0, eccentricity_ratio=0.6)
-"""
 
 
 @pytest.mark.parametrize(("n_theta", "n_z"), [(48, 12), (80, 20), (96, 10)])
@@ -46,16 +37,3 @@ def test_slider_crank(benchmark, example):
     run = benchmark.pedantic(lambda: slider_crank.simulate(bearing, turns=1, steps_per_turn=720), rounds=5)
     benchmark.extra_info["ms_per_step"] = 1e3 * run.seconds / run.steps
     benchmark.extra_info["factor_over_ideal_joint"] = run.seconds / ideal.seconds
-
-
-@pytest.mark.parametrize("cache", ["empty", "warm"])
-def test_first_result(benchmark, tmp_path, cache):
-    """Import and first film in a new interpreter; targets 20 s with an empty cache, 2 s from the cache."""
-    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path)}
-
-    def run():
-        subprocess.run([sys.executable, "-c", FIRST_RESULT], check=True, env=environment)
-
-    if cache == "warm":
-        run()
-    benchmark.pedantic(run, rounds=1 if cache == "empty" else 3)

@@ -11,14 +11,10 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14
-from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.studies.bush_costs import assembly_run as assembly
+from exudyn_ehd.studies.bush_costs import deformed_solid
 
 pytestmark = pytest.mark.benchmark
-
-MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
-MESH = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=4, radial=2, circumferential=40).mesh()
-U = 1e-3 * np.random.default_rng(20).standard_normal(MESH.nodes.shape)
 
 
 def best(function, repeats=20):
@@ -32,15 +28,6 @@ def best(function, repeats=20):
     return min(times)
 
 
-def assembly(rule, parallel=False):
-    solid = TotalLagrange(mesh=MESH, material=MATERIAL, quadrature=rule, parallel=parallel)
-
-    def both():
-        return solid.force(U), solid.tangent(U)
-
-    return both
-
-
 @pytest.mark.parametrize(("rule", "limit"), [(GAUSS27, 20e-3), (IRONS14, 12e-3)], ids=["27", "14"])
 def test_force_tangent_and_csr_fill_on_one_thread(benchmark, rule, limit):
     both = assembly(rule)
@@ -50,10 +37,10 @@ def test_force_tangent_and_csr_fill_on_one_thread(benchmark, rule, limit):
 
 
 def test_force_alone_on_one_thread(benchmark):
-    solid = TotalLagrange(mesh=MESH, material=MATERIAL, quadrature=IRONS14)
-    solid.force(U)
-    benchmark(solid.force, U)
-    assert best(lambda: solid.force(U)) < 1e-3
+    solid, displacements = deformed_solid(IRONS14)
+    solid.force(displacements)
+    benchmark(solid.force, displacements)
+    assert best(lambda: solid.force(displacements)) < 1e-3
 
 
 @pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="needs two threads")
@@ -68,10 +55,11 @@ def test_two_threads_are_faster(rule):
 def test_assembly_against_an_established_package():
     """The same element, points and material in FElupe, whose material is differentiated by tensortrax."""
     felupe = pytest.importorskip("felupe")
-    lam, mu = MATERIAL.lame
-    mesh = felupe.Mesh(MESH.nodes, MESH.elements, "hexahedron20")
+    solid, displacements = deformed_solid(GAUSS27)
+    lam, mu = solid.material.lame
+    mesh = felupe.Mesh(solid.mesh.nodes, solid.mesh.elements, "hexahedron20")
     field = felupe.FieldContainer([felupe.Field(felupe.RegionQuadraticHexahedron(mesh), dim=3)])
-    field[0].values[:] = U
+    field[0].values[:] = displacements
     body = felupe.SolidBody(felupe.Hyperelastic(felupe.saint_venant_kirchhoff, mu=mu, lmbda=lam), field)
 
     def theirs():

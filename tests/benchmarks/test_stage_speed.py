@@ -1,6 +1,5 @@
 """Stages of a film evaluation, effects on and off, steps of whole scenes, and how cost grows; ``-m benchmark``."""
 
-import dataclasses
 import time
 
 import numpy as np
@@ -11,33 +10,13 @@ from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.studies import growth, moving_catalogue
-from exudyn_ehd.studies.front import order_changes
+from exudyn_ehd.studies import effect_costs, growth, moving_catalogue, order
 from exudyn_ehd.studies.setting import Integration, Setting
 
 # processor time: what other processes of the machine do is no cost of the film
 pytestmark = pytest.mark.benchmark(timer=time.process_time)
 GRIDS = [(48, 6), (96, 10), (192, 16)]
-CLOSURES = {
-    "full Sommerfeld": ehd.FullSommerfeld(),
-    "Gumbel": ehd.Gumbel(),
-    "Swift-Stieber": ehd.SwiftStieber(),
-    "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5),
-}
-OIL = growth.plain_bearing().lubricant
-EFFECTS = {
-    "plain": {},
-    "no squeeze": {"squeeze": False},
-    "wall": {"contact": ehd.RegularisedWall(onset=1e-6)},
-    "asperities": {"asperity": ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1e11)},
-    "roughness": {"roughness": ehd.PatirCheng(composite_roughness=0.4e-6)},
-    "profile": {"profile": ehd.Crown(drop=1e-6)},
-    "groove": {"supply": (ehd.AxialGroove(angle=3.4, width_angle=0.3),)},
-    "liner": {"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e10)},
-    "Barus": {"lubricant": dataclasses.replace(OIL, pressure_law=ehd.BarusPressure(coefficient=1e-8))},
-    "Roelands": {"lubricant": dataclasses.replace(OIL, pressure_law=ehd.RoelandsPressure(coefficient=1.5e-8))},
-    "Carreau": {"lubricant": dataclasses.replace(OIL, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.8))},
-}
+CLOSURES = (effect_costs.PLAIN, *effect_costs.CLOSURES)
 
 
 def _stage_runs(grid):
@@ -80,21 +59,14 @@ def test_stage(benchmark, stage, grid):
 @pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g[0]}x{g[1]}")
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_closure(benchmark, closure, grid):
-    """Twelve positions, a degree apart, force and tangent."""
-    film = ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])
-    model = build_model(growth.plain_bearing(film=film, cavitation=CLOSURES[closure]))
-    states = growth.motions()
-    history = model.initial_history(states[0])
-    benchmark.pedantic(growth._evaluate, args=(model, states, True, history), rounds=20, warmup_rounds=2)
+    """The orbit with tangents and accepted steps."""
+    benchmark.pedantic(effect_costs.benchmark_run(closure, grid), rounds=8, warmup_rounds=1)
 
 
-@pytest.mark.parametrize("effect", EFFECTS)
+@pytest.mark.parametrize("effect", [effect_costs.PLAIN, *effect_costs.EFFECTS, *effect_costs.WITH_CONSERVING])
 def test_effect(benchmark, effect):
-    """Twelve positions, a degree apart, force and tangent, on 96 x 10."""
-    model = build_model(growth.plain_bearing(**EFFECTS[effect]))
-    states = growth.motions()
-    history = model.initial_history(states[0])
-    benchmark.pedantic(growth._evaluate, args=(model, states, True, history), rounds=30, warmup_rounds=2)
+    """The same on 96 x 10."""
+    benchmark.pedantic(effect_costs.benchmark_run(effect), rounds=8, warmup_rounds=1)
 
 
 @pytest.mark.parametrize("scene", ["orbit", "slider_pin", "big_end", "whirl", "start_stop"])
@@ -113,28 +85,32 @@ def test_steps_of_a_scene(benchmark, scene):
     benchmark.extra_info["films_per_step"] = outcome.films
 
 
+# Largest exponents over all sizes. A banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape, which only large
+# grids approach (measured 1.6, 1.5); the mass-conserving film solves several such systems (1.3 to 2.0). Products with the k modes' shapes cost k,
+# those of the modal Jacobian k^2 (1.1 between 29 and 243 modes). A joint costs the same, whatever else is in the model (1.0): more would be
+# a search or a copy over all joints.
+GROWTH_LIMITS = {
+    "SwiftStieber, force": 2.0, "SwiftStieber, force and tangent": 2.0, "ElrodAdams, force and tangent": 2.3,
+    "modal bush, force and tangent": 1.5, "step of a model": 1.25,
+}  # fmt: skip
+# The same between the two largest sizes (measured 1.5 and 1.0).
+LAST_LIMITS = {"modal bush, force and tangent": 2.0, "step of a model": 1.25}
+
+
 def test_growth(capsys):
     """Exponents of cost over grid, modes and joints; what would be a defect is a growth far beyond the algorithm's."""
-    growths = growth.all_growths(repeats=3)
+    growths = {g.name: g for g in growth.all_growths(repeats=3)}
     with capsys.disabled():
-        print("\n" + growth.growth_text(growths))
-    by_name = {g.name: g for g in growths}
-    # a banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape; caches add at the end
-    assert by_name["SwiftStieber, force and tangent"].exponent < 2.0
-    assert by_name["ElrodAdams, force and tangent"].exponent < 2.3
-    assert by_name["modal bush, force and tangent"].exponent < 1.5
-    # every joint costs the same, whatever else is in the model
-    assert by_name["step of a model"].exponent < 1.25
+        print("\n" + growth.growth_text(list(growths.values())))
+    assert set(growths) == set(GROWTH_LIMITS)
+    for name, limit in GROWTH_LIMITS.items():
+        assert growths[name].exponent < limit, name
+    for name, limit in LAST_LIMITS.items():
+        assert growths[name].last_exponent < limit, name
 
 
-def test_times_keep_their_order():
-    """Settings whose times differ by more than both spreads keep their order over three runs of a quick study."""
-    from exudyn_ehd.studies import catalogue
-    from exudyn_ehd.studies.study import run_study
-
-    study = catalogue.quick_catalogue()["steady_800_film"]()
-    study = dataclasses.replace(study, quantities=("load",))
-    start = time.perf_counter()
-    tables = [run_study(study, repeats=7, progress=None) for _ in range(3)]
-    print(f"three runs in {time.perf_counter() - start:.0f} s")
-    assert order_changes(tables) == []
+@pytest.mark.parametrize("name", order.checkable())
+def test_times_keep_their_order(name):
+    """Points whose times differ by more than both spreads keep their order over three runs, in every shipped study."""
+    (found,) = order.check_order([name], runs=3)
+    assert found.changed == ()

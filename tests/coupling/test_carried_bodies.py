@@ -170,8 +170,8 @@ def rod(housing, bush=BUSH):
     return mbs, joint
 
 
-def total(mbs):
-    """Linear momentum in the plane and kinetic energy of everything."""
+def total(mbs, modes=()):
+    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position."""
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
     for part in SystemMatrix.of(mbs).parts:
@@ -179,7 +179,7 @@ def total(mbs):
         own = (rows < n) & (columns < n)
         np.add.at(flow, rows[own], values[own] * q_t[columns[own]])
     ways = np.zeros((2, n))
-    for i in range(mbs.systemData.NumberOfNodes()):
+    for i in set(range(mbs.systemData.NumberOfNodes())) - {int(node) for node in modes}:
         places = mbs.systemData.GetNodeLTGODE2(i)
         if len(places):
             ways[0, places[0]] = ways[1, places[1]] = 1.0

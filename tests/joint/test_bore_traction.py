@@ -52,8 +52,8 @@ def plain(model):
     )
     area = g.weight * R**2
     out *= area
-    if model.contact_fields is not None:
-        for contact, P in zip(model.effects.contacts, model.contact_fields.P, strict=True):
+    if model.pressing is not None:
+        for contact, P in zip(model.effects.contacts, model.pressing.P, strict=True):
             v = np.array([R * model.omega, model.axial_speed])
             slip = v / np.sqrt(v @ v + contact.transition_speed**2)
             out += contact.friction_coefficient * slip[:, None, None] * P * area

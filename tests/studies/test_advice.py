@@ -63,18 +63,20 @@ def _liner(ratio, kappa):
     return _bearing(ratio, bush=dataclasses.replace(liner, youngs_modulus=modulus))
 
 
-def _solid(ratio, kappa):
+def _solid(ratio, kappa, kind=ehd.ModalBush, **options):
     thickness = 0.012
     modulus = (
         cells.elasticity_parameter(_bearing(ratio), cells.bore_compliance(thickness, 0.02, 1.0, 0.3), SPEED) / kappa
     )
-    bush = ehd.ModalBush(
+    if kind is ehd.ModalBush:
+        options = {"tilted": True, "tolerance": 0.08} | options
+    bush = kind(
         mesh=ehd.HollowCylinder(
             inner_radius=0.02, thickness=thickness, length=0.04 * ratio, axial=4, radial=2, circumferential=32
         ),
         material=ehd.SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.3, density=7800.0),
-        tilted=False, tolerance=0.08,
-    )  # fmt: skip
+        **options,
+    )
     return _bearing(ratio, bush=bush)
 
 
@@ -86,7 +88,7 @@ def test_random_bearings():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("make", "tilts", "count"), [(_rigid, [0.0, 0.2, 0.5], 20), (_liner, [0.0, 0.2], 10), (_solid, [0.0], 4)]
+    ("make", "tilts", "count"), [(_rigid, [0.0, 0.2, 0.5], 20), (_liner, [0.0, 0.2], 10), (_solid, [0.0, 0.2], 4)]
 )
 def test_many_random_bearings(make, tilts, count):
     rng = np.random.default_rng(11)
@@ -125,6 +127,26 @@ def test_says_when_it_has_no_evidence(change, place, words):
     assert "no evidence" in advice.reason
     assert words in advice.reason
     assert math.isnan(advice.error)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"tolerance": 0.005}, "modes were measured down to tolerance 0.02, not 0.005"),
+        ({"kind": ehd.ANCFBush}, "measured as ModalBush only, not as ANCFBush"),
+    ],
+)
+def test_says_when_it_has_no_evidence_for_a_bush(options, words):
+    advice = ehd.recommend(_solid(0.7, 0.01, **options), eccentricity_ratio=0.7, speed=SPEED)
+    assert not advice.found
+    assert words in advice.reason
+
+
+def test_tilted_solid_bush():
+    advice = ehd.recommend(_solid(0.7, 0.01), 0.02, eccentricity_ratio=0.7, tilt_ratio=0.2, speed=SPEED)
+    assert advice.found
+    assert all("tilt 0" in line for line in advice.evidence)
+    assert any("tilt 0.35" in line for line in advice.evidence)
 
 
 def test_impossible_accuracy():

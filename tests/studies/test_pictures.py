@@ -1,13 +1,14 @@
 """Pictures of the shipped tables: every point labelled, no label on another; the command line; exponents of growth."""
 
-import pathlib
+import re
 
 import pytest
 from matplotlib.text import Annotation
 
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import FilmError
 from exudyn_ehd.studies import cells, growth, pictures
 from exudyn_ehd.studies.__main__ import main
+from exudyn_ehd.studies.costs import Cost
 from exudyn_ehd.studies.front import cheapest
 from exudyn_ehd.studies.table import read_rows
 
@@ -60,6 +61,24 @@ def test_command_line(tmp_path, capsys):
     assert "within 1 %" in (tmp_path / "summary.md").read_text()
 
 
+def test_a_table_that_fails_leaves_the_others_alone(tmp_path, monkeypatch, capsys):
+    """Nothing is written for it, the rest is measured, and the command says so in the end."""
+
+    def fail(**options):
+        raise FilmError("no film today")
+
+    def one(**options):
+        return [Cost(what="a", per="step", seconds=1.0, low=1.0, high=1.0)]
+
+    monkeypatch.setattr("exudyn_ehd.studies.effect_costs.measure_effects", fail)
+    monkeypatch.setattr("exudyn_ehd.studies.once_costs.measure_once", one)
+    with pytest.raises(SystemExit, match="effect_factors: no film today"):
+        main(["--results", str(tmp_path), "--only", "effect_factors", "paid_once"])
+    assert not (tmp_path / "effect_factors.csv").exists()
+    assert (tmp_path / "paid_once.csv").exists()
+    assert re.search(r"\[2/2\] paid_once: \d+ s", capsys.readouterr().out)
+
+
 def test_exponent():
     sizes = (10, 20, 40)
     assert growth.exponent(sizes, tuple(3e-6 * n**1.7 for n in sizes)) == pytest.approx(1.7)
@@ -70,19 +89,7 @@ def test_growth_runs(tmp_path):
     assert found.sizes == (1, 3)
     assert 0.0 < found.seconds[0] < found.seconds[1]
     growth.write_growths(tmp_path / "growth.csv", [found], "note")
-    assert (tmp_path / "growth.csv").read_text().startswith("# note\nwhat,size,n,seconds")
-
-
-def test_the_guide_says_what_the_tables_say():
-    guide = (pathlib.Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
-    assert pictures.guide_text(cells.DATA) in guide
-
-
-def test_the_guide_is_renewed_and_nothing_else_of_its_file(tmp_path):
-    path = tmp_path / "guide.md"
-    path.write_text("# Title\n\n| scene: ladder | old |\n|---|---|\n| gone | 1 |\n\nText after.\n", encoding="utf-8")
-    main(["--guide", str(path)])
-    assert path.read_text(encoding="utf-8") == f"# Title\n\n{pictures.guide_text(cells.DATA)}\nText after.\n"
-    path.write_text("no table", encoding="utf-8")
-    with pytest.raises(InputError, match="has no table"):
-        main(["--guide", str(path)])
+    (back,), notes = growth.read_growths(tmp_path / "growth.csv")
+    assert notes == ["note"]
+    assert back.sizes == found.sizes and back.name == found.name
+    assert back.exponent == pytest.approx(found.exponent, rel=1e-2)

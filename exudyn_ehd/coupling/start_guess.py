@@ -1,0 +1,150 @@
+"""Where Newton's method starts in a step of Exudyn's generalized alpha or Newmark integrator.
+
+Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System Dynamics 18 (2007)
+185). With accelerations a the first positions are beside the solution by beta h^2 f a, f = (1 - alpha_f) / (1 - alpha_m), about 0.3 h^2 a for any
+spectral radius. A mechanism does not notice, a film does: a crank radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um for 43 mm and
+360 steps, where films are 3 um thick. Newton's first force is then far beyond the film's: it takes two to four times the iterations, halves steps without
+need, and a tolerance relative to its first residual accepts forces that are wrong by more than the film carries.
+
+Accelerations that last are known from the steps before. With a guess g of them, Newton starts at
+
+    q + beta h^2 f g,   dq/dt + gamma h f g,   d2q/dt2 + g,
+
+which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line through the last two
+accelerations if the last three lie in a line but for a tenth of their change, over steps of one size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where they agree
+in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per period, there is no guess. Norms are those of all
+coordinates together, since what one would gain is lost where it meets another; but deformations of bodies, which ring while the body moves smoothly, are judged by
+themselves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any
+
+import exudyn
+import numpy as np
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+_CURRENT = exu.ConfigurationType.Current
+_START_OF_STEP = exu.ConfigurationType.StartOfStep
+# Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
+LARGEST_CHANGE = 0.5
+# Largest change of their change with which they go on in a line, share of their change.
+LARGEST_BEND = 0.1
+
+
+class StartGuess:
+    """Pre-Newton user function of a system that sets the start of Newton's method.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    before : callable or None
+        The user's own function, called after it.
+    bushes : collection of int
+        Numbers of the nodes that hold the deformation of bushes: without inertia they follow the film at once.
+    """
+
+    def __init__(
+        self, mbs: Any, before: Callable[[Any, float, int, int], Any] | None, bushes: Collection[int] = ()
+    ) -> None:
+        self.before = before
+        self.old_solver = mbs.sys.get("dynamicSolver")
+        self.bushes = bushes
+        self.additive = self.groups = np.empty(0)
+        self.start = np.nan
+        self.attempts = 0
+        self.past: list[tuple[float, np.ndarray]] = []
+        self.guess: np.ndarray | None = None
+
+    def __call__(self, mbs: Any, t: float, iteration: int, discontinuous: int) -> None:
+        if iteration == 0 and discontinuous == 0:
+            solver = mbs.sys.get("dynamicSolver")
+            # a stored solver outlives its run
+            if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
+                self._set_start(mbs, solver)
+        if self.before is not None:
+            self.before(mbs, t, iteration, discontinuous)
+
+    def _set_start(self, mbs: Any, solver: Any) -> None:
+        data = mbs.systemData
+        start = data.GetTime(_START_OF_STEP)
+        if not self.past:
+            # not before the run: Exudyn's solver assembles a system that is not
+            self.additive, self.groups = additive_coordinates(mbs), coordinate_groups(mbs, self.bushes)
+        if start != self.start:
+            now = np.array(data.GetODE2Coordinates_tt(_START_OF_STEP), dtype=float)
+            self.past = [*self.past[-2:], (start, now)]
+            expected = lasting(self.past, self.groups)
+            self.guess = None if expected is None else expected * self.additive
+            self.start, self.attempts = start, 0
+        self.attempts += 1
+        # a step that was refused is tried from Exudyn's start and from this one in turns
+        if self.guess is None or self.attempts % 2 == 0:
+            return
+        h = solver.it.currentStepSize
+        change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
+        q, q_t, q_tt = data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE2Coordinates_tt()
+        data.SetODE2Coordinates(np.array(q) + solver.newmarkBeta * h * h * change, _CURRENT)
+        data.SetODE2Coordinates_t(np.array(q_t) + solver.newmarkGamma * h * change, _CURRENT)
+        data.SetODE2Coordinates_tt(np.array(q_tt) + self.guess, _CURRENT)
+
+
+def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
+    """What to expect after the accelerations of the last steps.
+
+    Parameters
+    ----------
+    past : sequence of (float, (n,) array)
+        Times and accelerations, oldest first.
+    groups : (n,) array of int
+        Number of the group that a coordinate belongs to; each is judged by itself.
+
+    Returns
+    -------
+    (n,) array or None
+        Zero in groups in which nothing lasts; None where there is but one step.
+    """
+    if len(past) < 2:
+        return None
+
+    def sizes(values: np.ndarray) -> np.ndarray:
+        return np.sqrt(np.bincount(groups, values * values))
+
+    (t_1, before), (t_0, now) = past[-2:]
+    change = sizes(now - before)
+    lasts = (change <= LARGEST_CHANGE * sizes(now))[groups]
+    expected = np.where(before * now > 0.0, np.sign(now) * np.minimum(np.abs(before), np.abs(now)), 0.0)
+    if len(past) > 2:
+        t_2, earlier = past[-3]
+        even = abs((t_0 - t_1) - (t_1 - t_2)) < 1e-6 * (t_0 - t_1)
+        if even:
+            straight = (sizes(now - 2.0 * before + earlier) < LARGEST_BEND * change)[groups]
+            expected = np.where(straight, 2.0 * now - before, expected)
+    return np.where(lasts, expected, 0.0)
+
+
+def additive_coordinates(mbs: Any) -> np.ndarray:
+    """One for every second-order coordinate (n,) that displacements are added to, zero for rotations of Lie group nodes."""
+    mask = np.ones(len(mbs.systemData.GetODE2Coordinates()))
+    for number in range(mbs.systemData.NumberOfNodes()):
+        node = exu.NodeIndex(number)
+        kind = mbs.GetNode(node)["nodeType"]
+        if "LG" in kind or "LieGroup" in kind:
+            first = mbs.GetNodeODE2Index(node)
+            mask[first + 3 : first + 6] = 0.0
+    return mask
+
+
+def coordinate_groups(mbs: Any, bushes: Collection[int]) -> np.ndarray:
+    """Group (n,) of every second-order coordinate: deformations of a body one each, everything else together."""
+    groups = np.zeros(len(mbs.systemData.GetODE2Coordinates()), dtype=np.intp)
+    for number in range(mbs.systemData.NumberOfNodes()):
+        node = exu.NodeIndex(number)
+        values = mbs.GetNode(node)
+        if values["nodeType"] == "GenericODE2" and number not in bushes:
+            first = mbs.GetNodeODE2Index(node)
+            groups[first : first + values["numberOfODE2Coordinates"]] = 1 + groups.max()
+    return groups

@@ -1,0 +1,67 @@
+"""Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table of factors.
+
+Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
+Targets: roughness
+and asperities 1.1, both 1.15, liner 2, laws of the oil 1.5; limits are these plus a tenth, others what was measured plus a fifth, those of
+laws and heat the target plus 15 %.
+"""
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.studies import effect_costs
+from exudyn_ehd.studies.costs import format_costs
+from exudyn_ehd.studies.growth import plain_bearing
+
+pytestmark = pytest.mark.benchmark
+
+EVALUATION_LIMITS = {
+    "`VogelTemperature`": 1.1, "`PatirCheng`": 1.2, "`GreenwoodTripp`": 1.2, "`PatirCheng`, `GreenwoodTripp`": 1.25, "`Crown`": 1.5,
+    "`GreenwoodTripp`, `ArchardWear`": 1.65, "`ElasticLiner`": 2.1, "`RegularisedWall`": 1.45, "`squeeze=False`": 1.1,
+}  # fmt: skip
+# Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
+STEP_LIMITS = {
+    "`BarusPressure`": 1.5, "`RoelandsPressure`": 1.5, "`CarreauShear`": 1.5, "`DowsonHigginson`": 1.5,
+    "`DowsonHigginson`, `BarusPressure`": 1.5, "`LumpedThermal`": 1.05, "`FilmEnergy`": 2.5,
+}  # fmt: skip
+MARGIN = 1.15
+SMALLER = {"journal_radius": 0.025, "length": 0.05, "radial_clearance": 25e-6, "end_pressures": (1e5, 1e5)}
+AT_REST = np.tile([13e-6, 5e-6, 1e-4, -1.5e-4, 1e-3, -1e-3, 0.05, 0.02, 250.0, 0.3], (3, 1))
+
+
+def test_effects_on_the_orbit():
+    found = effect_costs.measure_effects(EVALUATION_LIMITS, blocks=3, rounds=12, progress=lambda text: None)
+    print("\n" + format_costs(found))
+    factors = {cost.what: cost.factor for cost in found if cost.per == effect_costs.EVALUATION}
+    assert not [cost for cost in found if cost.failure]
+    for name, limit in EVALUATION_LIMITS.items():
+        assert factors[name] < limit, name
+
+
+@pytest.mark.parametrize("name", STEP_LIMITS)
+@pytest.mark.parametrize("base", [effect_costs.PLAIN, effect_costs.CONSERVING], ids=["swift", "elrod"])
+def test_law_at_rest(name, base):
+    """Only two models in turns: the short history of a lumped temperature is sensitive to what else the processor's cache holds."""
+    law = name if base == effect_costs.PLAIN else f"{base}, {name}"
+    models = {n: build_model(plain_bearing(**SMALLER, **effect_costs.CASES[n].options)) for n in (base, law)}
+    times = effect_costs.block(models, AT_REST, 80)
+    factor = times[law][1] / times[base][1]
+    print(f"{law}: {factor:.2f}")
+    assert factor < MARGIN * STEP_LIMITS[name]
+
+
+@pytest.mark.parametrize("tangent", [False, True], ids=["force", "force and tangent"])
+@pytest.mark.parametrize("name", [effect_costs.PLAIN, "`Gumbel`", *effect_costs.FILMS])
+def test_reduced_films(benchmark, name, tangent):
+    """The orbit with and without tangents."""
+    model = build_model(plain_bearing(**effect_costs.CASES[name].options))
+    states = effect_costs.orbit()
+
+    def run():
+        for state in states:
+            evaluation = model.evaluate(state)
+            if tangent:
+                evaluation.tangent()
+
+    benchmark.pedantic(run, rounds=8, warmup_rounds=1)

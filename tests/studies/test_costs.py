@@ -1,0 +1,100 @@
+"""Tables of costs: factors of blocks, the disk, small runs of every measure, failures that stay in their row."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.status import InputError
+from exudyn_ehd.studies import bush_costs, effect_costs, growth
+from exudyn_ehd.studies.costs import Cost, costs_of_blocks, format_costs, read_costs, write_costs
+
+
+def _silent(text):
+    pass
+
+
+def test_factors_are_those_of_a_block():
+    """A machine twice as slow in one block changes the times, not the factors."""
+    blocks = {"plain": [1.0, 2.0, 1.0], "effect": [1.5, 3.0, 1.5], "alone": [3.0, 3.0, 3.0]}
+    plain, effect, alone = costs_of_blocks("run", blocks, {"effect": "plain"}, modes={"alone": 7.0})
+    assert (effect.factor, effect.factor_spread) == (1.5, 0.0)
+    assert effect.spread > 0.0 and effect.base == "plain"
+    assert math.isnan(plain.factor) and plain.base == ""
+    assert alone.modes == 7.0 and alone.seconds == 3.0
+
+
+def test_a_base_that_failed_gives_no_factor():
+    (effect,) = costs_of_blocks("run", {"effect": [1.0, 2.0]}, {"effect": "plain"})
+    assert effect.base == "" and math.isnan(effect.factor)
+
+
+def test_round_trip(tmp_path):
+    costs = [
+        Cost(what='`a`, "b"', per="step", base="c", seconds=1.234e-5, low=1e-5, high=2e-5, factor=1.5),
+        Cost(what="d", per="step", failure="no film, today"),
+    ]
+    path = tmp_path / "costs.csv"
+    write_costs(path, costs, ["note", "machine"])
+    back, notes = read_costs(path)
+    assert notes == ["note", "machine"]
+    write_costs(tmp_path / "again.csv", back, notes)
+    assert (tmp_path / "again.csv").read_bytes() == path.read_bytes()
+    assert "no film, today" in format_costs(back)
+    path.write_text("a,b\n1,2\n")
+    with pytest.raises(InputError, match="columns"):
+        read_costs(path)
+
+
+# tabulating a map takes seconds
+@pytest.mark.parametrize("name", [name for name in effect_costs.CASES if name != "`ImpedanceMap`"])
+def test_every_case_of_effects_is_evaluated_on_the_orbit(name):
+    case = effect_costs.CASES[name]
+    assert case.base in ("", *effect_costs.CASES)
+    model = build_model(growth.plain_bearing(**({"film": ehd.FiniteLength(n_theta=32, n_z=4)} | dict(case.options))))
+    assert np.all(effect_costs.stages(model, effect_costs.orbit(count=6)) >= 0.0)
+
+
+def test_the_orbit_moves_with_its_own_velocity():
+    motions, step = effect_costs.orbit(), effect_costs.DEGREE / (effect_costs.WHIRL * growth.SPEED)
+    angle = np.arctan2(motions[:, 1], motions[:, 0])
+    assert np.diff(angle) == pytest.approx(effect_costs.DEGREE)
+    moved = np.gradient(motions[:, :2], step, axis=0)
+    # the radial velocity is left out: 0.05 * 5 of 0.8
+    assert np.linalg.norm(moved - motions[:, 4:6], axis=1).max() < 0.35 * np.linalg.norm(moved, axis=1).max()
+
+
+def test_effects_of_some_names(monkeypatch):
+    bad = effect_costs.Case(options={"profile": ehd.OutOfRound(order=2, amplitude=2e-5)})
+    monkeypatch.setitem(effect_costs.CASES, "touching", bad)
+    names = ["`Gumbel`", "`ElrodAdams`, `LumpedThermal`", "touching"]
+    found = effect_costs.measure_effects(names, blocks=2, rounds=1, grid=(32, 4), progress=_silent)
+    known = {(cost.what, cost.per): cost for cost in found}
+    for per in (effect_costs.EVALUATION, effect_costs.STEP):
+        assert known["`Gumbel`", per].base == effect_costs.PLAIN
+        assert known["`Gumbel`", per].factor > 0.0
+        assert known["`ElrodAdams`, `LumpedThermal`", per].base == effect_costs.CONSERVING
+        assert known[effect_costs.PLAIN, per].seconds > 0.0
+        assert known["touching", per].failure
+    step, evaluation = (known[effect_costs.PLAIN, per].seconds for per in (effect_costs.STEP, effect_costs.EVALUATION))
+    assert 2.0 < step / evaluation < 4.0
+
+
+def test_bushes():
+    cases = {name: bush_costs.CASES[name] for name in (bush_costs.RIGID, "`ElasticLiner`", "`ModalBush`")}
+    # a liner as soft as rubber is pressed through its film
+    soft = ehd.ElasticLiner(thickness=0.02, youngs_modulus=1e5)
+    cases["soft"] = dataclasses.replace(cases["`ElasticLiner`"], bush=soft)
+    found = bush_costs.measure_bushes(cases, turns=1, share=0.05, progress=_silent)
+    known = {(cost.what, cost.per): cost for cost in found}
+    for name in list(cases)[:3]:
+        cost = known[name, bush_costs.STEP_TIME]
+        assert cost.seconds > 0.0 and 1.0 <= cost.iterations < 20.0
+    assert known["`ModalBush`", bush_costs.STEP_TIME].modes == 31
+    assert known["`ModalBush`", bush_costs.STEP_TIME].base == bush_costs.RIGID
+    assert known["`ModalBush`", bush_costs.JACOBIAN].seconds > 0.0
+    assert known["soft", bush_costs.STEP_TIME].failure
+    assert {cost.what for cost in found if cost.per == bush_costs.ASSEMBLY} == set(bush_costs.ASSEMBLIES)
