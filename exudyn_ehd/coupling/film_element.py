@@ -193,7 +193,7 @@ class FilmElement:
         assert trial.evaluation is not None
         housing, journal = self.sides
         n_h, n = housing.size, housing.size + journal.size
-        q, q_t = np.array(trial.q)[:n], np.array(trial.q_t)[:n]
+        q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
