@@ -110,6 +110,13 @@ def require_integer(where: str, value: int, *, at_least: int, hint: str = "") ->
     return int(value)
 
 
+def require_bool(where: str, value: bool) -> bool:
+    """Return ``value`` as a bool; 0 and 1 count as such."""
+    if not isinstance(value, (bool, np.bool_, int, np.integer)) or value not in (0, 1):
+        raise InputError(f"{where} must be True or False, got {value!r}.")
+    return bool(value)
+
+
 def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, unit: str = "") -> np.ndarray:
     """Return ``value`` as a finite float64 vector of ``size``, or raise `InputError`."""
     expected = f"must be {size} finite numbers" + (f" in {unit}" if unit else "")

@@ -18,11 +18,11 @@ from exudyn_ehd.coupling.history import JointHistory, Quantity
 from exudyn_ehd.coupling.items import Item, body_of_node, resolve
 from exudyn_ehd.coupling.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.results import JointResults
-from exudyn_ehd.coupling.run import joints_of
+from exudyn_ehd.coupling.run import joints_of, require_system
 from exudyn_ehd.coupling.sensors import add_sensor
 from exudyn_ehd.coupling.sides import MarkerSide, Side
 from exudyn_ehd.coupling.step_control import GapWatch, StepControl
-from exudyn_ehd.status import InputError, require_vector
+from exudyn_ehd.status import InputError, require_bool, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import ElasticLiner
@@ -120,6 +120,10 @@ class LubricatedJoint(JointResults):
 
         See `SaveState` for the whole system.
         """
+        if not self.mbs.systemIsConsistent:
+            raise InputError(
+                f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
+            )
         time, memory, rows = self.element.remembered(self.mbs)
         return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
 
@@ -264,12 +268,19 @@ def CreateLubricatedJoint(
         axis other than z, the two axes not parallel within the clearance or the journal outside the bore in the initial
         configuration, an assembled system.
     """
+    require_system(_WHERE, mbs)
+    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):
+        require_bool(f"{_WHERE}.{argument}", value)
     if not isinstance(axial, (Free, Held)):
         raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
     if not isinstance(stepControl, (StepControl, type(None))):
         raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
+    if name in {joint.name for joint in joints_of(mbs)}:
+        raise InputError(
+            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: choose another."
+        )
     require_vector(f"{_WHERE}.color", color, 4)
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")

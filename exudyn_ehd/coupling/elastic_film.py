@@ -119,11 +119,11 @@ class ModalFilmElement(BoreFilmElement):
     def _generalized_force(self, trial: Trial) -> np.ndarray:
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
-        n = self.rigid_size
+        n, k = self.rigid_size, self.stiffness.size
         kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
         kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
-        force[n:] = evaluation.bore_load - self.stiffness * np.array(trial.q[n:])
+        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
         if self.inertia is not None:
             on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
             force[: housing.size] += on_housing
@@ -134,18 +134,13 @@ class ModalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
-        stiffness, damping, motion_place, motion_rate = rigid
         whole = np.empty((n + k, n + k))
-        whole[:n, :n] = f_q * stiffness + f_qt * damping
-        whole[:n, n:] = self._wrench_map() @ T[:6, SIZE:]
-        whole[n:, :n] = T[6:, :SIZE] @ (f_q * motion_place + f_qt * motion_rate)
-        whole[n:, n:] = T[6:, SIZE:]
-        whole[np.arange(n, n + k), np.arange(n, n + k)] -= f_q * self.stiffness
+        kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
         if self.inertia is not None:
             by_place, by_rate = self.inertia.derivatives(*self._inertia_state(trial))
             places = np.r_[: self.sides[0].size, n : n + k]
-            whole[np.ix_(places, places)] += f_q * by_place + f_qt * by_rate
-        return np.negative(whole, out=whole)
+            whole[np.ix_(places, places)] -= f_q * by_place + f_qt * by_rate
+        return whole
 
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
         """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""

@@ -29,6 +29,8 @@ from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
+# Largest eccentricity ratio of an accepted step in a rigid bore: contacts that give way by more than the clearance are none.
+DEEPEST = 2.0
 
 
 class Trial:
@@ -191,7 +193,7 @@ class FilmElement:
         assert trial.evaluation is not None
         housing, journal = self.sides
         n_h, n = housing.size, housing.size + journal.size
-        q, q_t = np.array(trial.q)[:n], np.array(trial.q_t)[:n]
+        q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
         kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
@@ -232,7 +234,12 @@ class FilmElement:
             )
         else:
             state = self._place(trial)
-        return where + state + advice(trial.status, bearing)
+        explicit = (
+            " An explicit solver can't repeat a step: use smaller ones, or an implicit solver."
+            if solvers.is_explicit(self._solver)
+            else ""
+        )
+        return where + state + advice(trial.status, bearing) + explicit
 
     def _place(self, trial: Trial) -> str:
         bearing = self.model.bearing
@@ -252,6 +259,20 @@ class FilmElement:
             f"journal chatters: its last velocities miss its last displacement by {error:.3g} m; {self._place(trial)}with the journal's mass m "
             f"and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with forward Euler and 2.8 m / C with RK44, "
             "tilting motions alike: use smaller steps, DOPRI5 with its automatic steps, or an implicit solver."
+        )
+
+    def _is_pressed_through(self, trial: Trial) -> bool:
+        """Whether the journal is so deep in a rigid bore that no contact stands for it."""
+        bearing = self.model.bearing
+        if getattr(bearing, "bush", None) is not None:
+            return False
+        return eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)[1] > DEEPEST
+
+    def _through_message(self, t: float, trial: Trial) -> str:
+        return (
+            f"LubricatedJoint '{self.name}' at t = {t:.9g} s: the journal was pressed through its contact by more than the clearance; "
+            f"{self._place(trial)}check load, mass and units; give the contact more stiffness (RegularisedWall.pressure), or take smaller steps or "
+            "a StepControl if the step has overshot."
         )
 
     # --- accepted steps -------------------------------------------------------------------------------------------
@@ -295,6 +316,8 @@ class FilmElement:
                 self._memory = trial.evaluation.history()
                 self._trial = None
         last, self._start = self._start, start
+        if row is not None and self._is_pressed_through(trial):
+            raise FilmError(self._through_message(start, trial))
         if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
             raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
 

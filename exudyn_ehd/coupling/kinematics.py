@@ -423,6 +423,42 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j, map_out):
 
 
 @njit(cache=True)
+def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f_q, f_qt, stiffness, out):
+    """Derivative ``-(f_q dQ/dq + f_qt dQ/dq_t)`` of the forces on two sides (n coordinates) and on k modes: out (n + k, n + k).
+
+    Parameters
+    ----------
+    tangent : (6 + k, 10 + k) array
+        Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness (k,).
+    k_rigid, d_rigid, motion_q, motion_qt : (n, n), (n, n), (10, n), (10, n) arrays
+        Of the sides, see `tangent_matrices`.
+    wrench_map : (n, 6) array
+    """
+    n, k = wrench_map.shape[0], stiffness.size
+    for i in range(n):
+        for j in range(n):
+            out[i, j] = -(f_q * k_rigid[i, j] + f_qt * d_rigid[i, j])
+        row = out[i, n:]
+        row[:] = 0.0
+        for c in range(6):
+            w, known = wrench_map[i, c], tangent[c, 10:]
+            if w != 0.0:
+                for b in range(k):
+                    row[b] -= w * known[b]
+    motion = f_q * motion_q + f_qt * motion_qt
+    for a in range(k):
+        known = tangent[6 + a]
+        for i in range(n):
+            total = 0.0
+            for c in range(10):
+                total += known[c] * motion[c, i]
+            out[n + a, i] = -total
+        for b in range(k):
+            out[n + a, n + b] = -known[10 + b]
+        out[n + a, n + a] += f_q * stiffness[a]
+
+
+@njit(cache=True)
 def spread_matrix(x):
     """Map (count, 3, 6) from a force and a moment about O to forces ``(a + b x r) / count`` at points x (count, 3) with these resultants."""
     count = len(x)

@@ -5,8 +5,8 @@ velocity omega) stands at r + A (X + u), u = Phi q. Of its kinetic energy beyond
 
     T = int rho d(A X + r)/dt . d(A u)/dt dV + q_t^T M q_t / 2,
 
-what is left out is of the order of u over the size of the bush: gyroscopic and centrifugal terms of u with itself. T is the same in every inertial frame,
-so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
+what is left out is of the second order in u: gyroscopic and centrifugal terms of u with itself. T does not change when the whole model is
+displaced or turned, so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
 accelerations in the frame's components,
 
     delta r:    a_w = alpha x p + Omega x (Omega x p) + 2 Omega x p_t + p_tt,
@@ -15,8 +15,6 @@ accelerations in the frame's components,
 
 need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see `BoreModes.moments`.
 The modes were made for pressures; to a uniform acceleration in the plane of the bearing the bore answers within some 10 % of the mesh.
-
-A. A. Shabana, Dynamics of Multibody Systems, chapter 5, has the general formulation; derived here.
 """
 
 from __future__ import annotations

@@ -147,6 +147,10 @@ def load_state(path: str | pathlib.Path) -> SystemState:
     InputError
         If it is damaged or holds something else.
     """
+    if not isinstance(path, (str, pathlib.Path)):
+        raise InputError(
+            f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
+        )
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
             if "format" not in file.files or str(file["format"]) != _FORMAT:

@@ -17,6 +17,22 @@ from exudyn_ehd.status import EHDError, InputError, RunError
 JOINTS = "lubricatedJoints"
 
 
+def require_system(where: str, mbs: Any) -> None:
+    """Refuse what is no system of Exudyn."""
+    if not isinstance(mbs, exu.MainSystem):
+        raise InputError(
+            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what SystemContainer().AddSystem() returns."
+        )
+
+
+def require_settings(where: str, settings: Any) -> None:
+    """Refuse what are no settings of Exudyn."""
+    if not isinstance(settings, exu.SimulationSettings):
+        raise InputError(
+            f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
+        )
+
+
 def joints_of(mbs: Any) -> list[Any]:
     """The lubricated joints of a system, in the order in which they were created."""
     return mbs.variables.setdefault(JOINTS, [])
@@ -60,10 +76,19 @@ def SolveDynamic(
     InputError
         If the restart belongs to another system.
     """
+    require_system("SolveDynamic", mbs)
+    require_settings("SolveDynamic", simulationSettings)
     going_on: AbstractContextManager[None] = nullcontext()
     if restart is not None:
         state = restart if isinstance(restart, SystemState) else load_state(restart)
         going_on = _restarted(mbs, simulationSettings, state)
+    else:
+        time = simulationSettings.timeIntegration
+        if not time.endTime > time.startTime:
+            raise InputError(
+                f"SolveDynamic.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
+                f"{time.endTime:.9g} s."
+            )
     with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
@@ -88,6 +113,8 @@ def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
     FilmError, RunError
         As `SolveDynamic`.
     """
+    require_system("SolveStatic", mbs)
+    require_settings("SolveStatic", simulationSettings)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options))
 
@@ -123,9 +150,12 @@ def own_errors(mbs: Any, where: str) -> Iterator[None]:
             cause = cause.__cause__
         if isinstance(cause, EHDError):
             raise type(cause)(f"{cause} {_kept(mbs)}") from error
+        # Exudyn wraps an interrupt like any other exception of a user function
+        if isinstance(cause, KeyboardInterrupt):
+            raise KeyboardInterrupt(_kept(mbs)) from error
         if cause is not error:
             raise
-        raise RunError(f"{where}: {_story(mbs)}") from error
+        raise RunError(f"{where}: {_story(mbs, static=where == 'SolveStatic')}") from error
 
 
 def _kept(mbs: Any) -> str:
@@ -133,7 +163,7 @@ def _kept(mbs: Any) -> str:
     return f"The last accepted state is at t = {time:.9g} s; joint.history holds all steps up to it."
 
 
-def _story(mbs: Any) -> str:
+def _story(mbs: Any, *, static: bool) -> str:
     """What the joints looked like when a solver gave up."""
     time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
@@ -144,6 +174,11 @@ def _story(mbs: Any) -> str:
         parts.append(
             f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum gap "
             f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+        )
+    if static:
+        parts.append(
+            "a film without relative speed, and a journal's spin and place along the axis, have no stiffness of their own: give speeds by "
+            "initial velocities and hold what is free by springs or constraints; "
         )
     parts.append(
         "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), smaller steps or a "

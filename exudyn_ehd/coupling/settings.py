@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from exudyn_ehd.status import require_number
+import exudyn as exu
+
+from exudyn_ehd.status import InputError, require_bool, require_number
 
 
 def ConfigureSolver(
@@ -40,11 +42,16 @@ def ConfigureSolver(
     exudyn.SimulationSettings
         The same object.
     """
+    if not isinstance(simulationSettings, exu.SimulationSettings):
+        raise InputError(
+            f"ConfigureSolver.simulationSettings must be exudyn.SimulationSettings(), got {type(simulationSettings).__name__}."
+        )
+    modified = require_bool("ConfigureSolver.useModifiedNewton", useModifiedNewton)
     tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
     smallest = require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, above=0.0)
     for solver in (simulationSettings.timeIntegration, simulationSettings.staticSolver):
         solver.newton.relativeTolerance = tolerance
         solver.newton.absoluteTolerance = max(smallest, solver.newton.absoluteTolerance)
-        solver.newton.useModifiedNewton = useModifiedNewton
+        solver.newton.useModifiedNewton = modified
         solver.adaptiveStep = True
     return simulationSettings

@@ -19,7 +19,6 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.direct import (
     Workspace,
     assemble_band,
@@ -29,6 +28,7 @@ from exudyn_ehd.film.direct import (
     solve_many,
     solve_one,
 )
+from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.status import InputError, Status, require_number
 
 MAX_ACTIVE_SET_STEPS = 200
@@ -55,8 +55,8 @@ class FullSommerfeld:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -99,8 +99,8 @@ class Gumbel:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
@@ -147,8 +147,8 @@ class SwiftStieber:
         solve_symmetric(work, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the (symmetric) transposed system for every column of rhs (count, k), in place."""
-        solve_columns(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
+        """Solve the (symmetric) transposed system for every column of tiles rhs, in place."""
+        solve_in_tiles(work.band, work.band, work.inv_diag, True, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""

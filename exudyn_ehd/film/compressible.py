@@ -25,7 +25,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu, solve_lu_transposed
-from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.density_newton import (
     CLIPPED,
@@ -49,6 +48,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.film.sweep import LinkDerivatives, flux_link_derivatives, plain_link_derivatives
+from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -280,10 +280,10 @@ class CompressibleFilmSolver(FilmSolver):
         return fields
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
         self._make_exact()
         w, b = self.work, self.buffers
-        solve_columns(b.upper, b.lower, b.inv_diag, False, w.count, w.width, rhs)
+        solve_in_tiles(b.upper, b.lower, b.inv_diag, False, w.count, w.width, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve with Newton's matrix at the solution for rhs (count,), in place."""

@@ -29,8 +29,8 @@ from numba import njit
 
 from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation import FilmSystem, SwiftStieber
-from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.direct import PAD, Workspace, number_cells, solve_many
+from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.film.transport import (
     FULL_COUNT,
     WIDTH,
@@ -149,12 +149,13 @@ class ElrodAdams:
         solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
-        """Solve the transposed system for every column of rhs (count, k), in place."""
+        """Solve the transposed system for every column of tiles rhs, in place."""
         if work.carried:
-            solve_transport_transposed(_transport(work), work.count, rhs)
+            for tile in rhs:
+                solve_transport_transposed(_transport(work), work.count, tile[: work.count])
             return
         lower, upper = _lu_buffers(work)
-        solve_columns(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
+        solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""

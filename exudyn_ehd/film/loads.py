@@ -40,6 +40,39 @@ def pressure_integrals(P, weight, cos_x, sin_x, z, out):
 
 
 @njit(cache=True, fastmath=_FAST)
+def slope_integrals(P, weight, slope_x, slope_z):
+    """Integrals of the pressure times the slopes (n, m) of a gap term in theta and z."""
+    n, m = P.shape
+    along_x, along_z = 0.0, 0.0
+    for i in range(n):
+        for j in range(m):
+            pw = P[i, j] * weight[i, j]
+            along_x += pw * slope_x[i, j]
+            along_z += pw * slope_z[i, j]
+    return along_x, along_z
+
+
+@njit(cache=True)
+def unknown_weights(order, count, weight, active, out):
+    """Weights at the unknowns (count,), zero where the pressure is clipped."""
+    weights, actives = weight.reshape(-1), active.reshape(-1)
+    for r in range(count):
+        out[r] = weights[order[r]] if actives[order[r]] else 0.0
+
+
+@njit(cache=True)
+def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
+    """Weights of the integrals of `slope_integrals` at the unknowns: rhs_out (2, count); zero where the pressure is clipped."""
+    weights, actives = weight.reshape(-1), active.reshape(-1)
+    x, z = slope_x.reshape(-1), slope_z.reshape(-1)
+    for r in range(count):
+        at = order[r]
+        w = weights[at] if actives[at] else 0.0
+        rhs_out[0, r] = w * x[at]
+        rhs_out[1, r] = w * z[at]
+
+
+@njit(cache=True, fastmath=_FAST)
 def couette_integral(H, weight, active, fixed, cavity_share):
     """(C, C over the unbroken film, dC as -W share/H^2 is left to `couette_gradient`)."""
     n, m = H.shape

@@ -274,7 +274,7 @@ class FilmSolver:
         self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of rhs (count, k), C-contiguous, in place."""
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
         self.closure.adjoint_columns(self.work, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:

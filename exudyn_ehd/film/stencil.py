@@ -9,6 +9,7 @@ An adjoint functional's gradient is ``-lam . dr``.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -56,26 +57,6 @@ def gap_stencil(order, count, DX, DZ, slope, AR, AC, by_gap, by_rate, weight_out
 
 
 @njit(cache=True, fastmath=_FAST)
-def add_modes(transposed, q, q_t, place_out, rate_out):
-    """Add sums of the rows of ``transposed`` (k, n m) with the weights q and with q_t (k,) to two fields (n m,), in one pass, by fours."""
-    k, size = transposed.shape
-    whole = k - k % 4
-    for a in range(0, whole, 4):
-        s0, s1, s2, s3 = transposed[a], transposed[a + 1], transposed[a + 2], transposed[a + 3]
-        p0, p1, p2, p3 = q[a], q[a + 1], q[a + 2], q[a + 3]
-        r0, r1, r2, r3 = q_t[a], q_t[a + 1], q_t[a + 2], q_t[a + 3]
-        for v in range(size):
-            b0, b1, b2, b3 = s0[v], s1[v], s2[v], s3[v]
-            place_out[v] += p0 * b0 + p1 * b1 + p2 * b2 + p3 * b3
-            rate_out[v] += r0 * b0 + r1 * b1 + r2 * b2 + r3 * b3
-    for a in range(whole, k):
-        row = transposed[a]
-        for v in range(size):
-            place_out[v] += q[a] * row[v]
-            rate_out[v] += q_t[a] * row[v]
-
-
-@njit(cache=True, fastmath=_FAST)
 def sparse_product(indptr, indices, data, x, out):
     """CSR matrix times vector, without the checks that would take longer than a small product."""
     for r in range(out.size):
@@ -86,26 +67,18 @@ def sparse_product(indptr, indices, data, x, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def weighted_rows(shapes, place, weight, first, out):
-    """Rows ``place`` (count,) of shapes (n m, k) times ``weight`` (count,) into the columns from ``first`` on of out (count, >= first + k)."""
-    k = shapes.shape[1]
-    for r in range(place.size):
-        own, target, w = shapes[place[r]], out[r, first : first + k], weight[r]
-        for q in range(k):
-            target[q] = w * own[q]
-
-
-@njit(cache=True, fastmath=_FAST)
-def combine_rows(weight, place, shapes, out):
-    """Stencil (count, 5) times fields: out (count, k) for shapes (n m, k)."""
-    count = len(weight)
-    for r in range(count):
-        a, b, c, d, e = weight[r, 0], weight[r, 1], weight[r, 2], weight[r, 3], weight[r, 4]
-        own, nxt, prv = shapes[place[r, 0]], shapes[place[r, 1]], shapes[place[r, 2]]
-        up, down = shapes[place[r, 3]], shapes[place[r, 4]]
-        target = out[r]
-        for q in range(target.size):
-            target[q] = a * own[q] + b * nxt[q] + c * prv[q] + d * up[q] + e * down[q]
+def put_rows(shapes, place, weight, first, out):
+    """Rows ``place`` (count,) of shapes (., k) times ``weight`` (count,) into the columns from ``first`` on of tiles out (tiles, >= count, width)."""
+    k, wide, done = shapes.shape[1], out.shape[2], 0
+    while done < k:
+        tile = (first + done) // wide
+        low = first + done - tile * wide
+        size = min(wide - low, k - done)
+        for r in range(place.size):
+            own, target, w = shapes[place[r], done : done + size], out[tile, r, low : low + size], weight[r]
+            for q in range(size):
+                target[q] = w * own[q]
+        done += size
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -224,3 +197,92 @@ def transposed_slopes(field, width, z, along_x_out, along_z_out):
             along_z_out[i, j + 1] += low * low * share
             along_z_out[i, j - 1] -= high * high * share
             along_z_out[i, j] += (high * high - low * low) * share
+
+
+@njit(cache=True, fastmath=_FAST)
+def add_gap(field, rate, width, z, H, HF, H_t, slope_x_out, slope_z_out):
+    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as of `gap_slopes`. Returns the smallest gap."""
+    n, m = field.shape
+    link = np.empty((n, m))
+    gap_slopes(field, width, z, link, slope_x_out, slope_z_out)
+    smallest = np.inf
+    for i in range(n):
+        for j in range(m):
+            H[i, j] += field[i, j]
+            HF[i, j] += link[i, j]
+            H_t[i, j] += rate[i, j]
+            smallest = min(smallest, H[i, j], HF[i, j])
+    return smallest
+
+
+@njit(cache=True, fastmath=_FAST)
+def shear_fields(P, weight, width, z, couette, ends, factors, out):
+    """Combinations (2, n, m) of the fields that shear owes to an elastic gap.
+
+    Parameters
+    ----------
+    P, weight : (n, m) arrays
+        Pressure and integration weights: slopes of the gap act on their product.
+    couette, ends : (n, m) arrays
+        Gradients of the Couette shear and of the ends' pressure force to the gap.
+    factors : (2, 4) array
+        Of couette, slopes in theta, slopes in z, ends.
+    """
+    n, m = P.shape
+    along_x, along_z = np.empty((n, m)), np.empty((n, m))
+    transposed_slopes(P * weight, width, z, along_x, along_z)
+    for r in range(2):
+        a, b, c, d = factors[r, 0], factors[r, 1], factors[r, 2], factors[r, 3]
+        for i in range(n):
+            for j in range(m):
+                out[r, i, j] = a * couette[i, j] + b * along_x[i, j] + c * along_z[i, j] + d * ends[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motion_scale, motion_out, bore_out):
+    """Rows of the tangent of an elastic film from the gradients of its r integrals and k loads of the bore.
+
+    Parameters
+    ----------
+    tiles : (tiles, 10, width) array
+        Minus gradients of integrals and loads to the motion; only those of the loads are wanted.
+    by_bore : (r + k, k) array
+        Gradients of integrals and loads to the bore.
+    order : (k,) int array
+        Coordinates to which the loads belong.
+    weights, direct : (6, r), (6, k) arrays
+        Integrals in the wrench; gradient of the wrench to the gap at fixed pressure, which counts ``by_gap`` times.
+    scale, motion_scale : float, (10,) array
+        Units of the loads and of the motion.
+    motion_out, bore_out : (k, 10), (6 + k, k) arrays
+        Gradients of the loads to the motion; of wrench and loads to the bore.
+    """
+    r, k, width = weights.shape[1], direct.shape[1], tiles.shape[2]
+    for a in range(k):
+        tile, q = (r + a) // width, (r + a) % width
+        own, target = by_bore[r + a], bore_out[6 + order[a]]
+        for c in range(10):
+            motion_out[order[a], c] = -scale * motion_scale[c] * tiles[tile, c, q]
+        for b in range(k):
+            target[b] = scale * own[b]
+    for i in range(6):
+        for b in range(k):
+            bore_out[i, b] = by_gap * direct[i, b]
+        for c in range(r):
+            w = weights[i, c]
+            if w != 0.0:
+                for b in range(k):
+                    bore_out[i, b] += w * by_bore[c, b]
+
+
+@njit(cache=True)
+def integral_weights(pose, R, force, shear, omega, w, out):
+    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench; symbols as in `sweep.wrench_gradient`."""
+    x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
+    out[:] = 0.0
+    out[0, 0] = out[1, 1] = -force
+    out[3, 3], out[4, 2] = force * R, -force * R
+    axial, turning = -6.0 * shear * R, -6.0 * shear * R * R
+    out[2, 0], out[2, 1], out[2, 4], out[2, 6], out[2, 7] = -axial * bx, -axial * by, -shear * w, -axial, -axial
+    out[5, 0], out[5, 1], out[5, 2], out[5, 3] = -turning * y, turning * x, -turning * by, turning * bx
+    out[5, 4], out[5, 5] = -shear * R * R * omega, -turning

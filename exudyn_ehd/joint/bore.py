@@ -9,13 +9,24 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix, diags
+from scipy.sparse import csr_matrix
 
+from exudyn_ehd.film.folding import (
+    fold_adjoints,
+    folded_displacements,
+    folded_loads,
+    folded_rows,
+    place_columns,
+)
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.stencil import add_modes, add_transposed, combine_rows, sparse_product, weighted_rows
+from exudyn_ehd.film.stencil import add_transposed, put_rows, sparse_product
+from exudyn_ehd.film.tiles import TILE
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.reduce import BoreModes
+
+# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue problems.
+ASYMMETRY = 1e-9
 
 
 class Bore(Protocol):
@@ -24,6 +35,10 @@ class Bore(Protocol):
     @property
     def size(self) -> int:
         """k, the number of coordinates."""
+
+    @property
+    def order(self) -> np.ndarray:
+        """Coordinates (k,) in the sequence of `fill_rows`."""
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m) for coordinates or rates q (k,)."""
@@ -38,10 +53,16 @@ class Bore(Protocol):
         """S q and S q_t (n, m)."""
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into out (count, >= first + k) from column ``first`` on."""
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `tiles.make_tiles` from column ``first`` on.
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """``X^T B S`` (r, k) for X = ``fields`` (count, r) and B with five weights at five flat vertices per row, both (count, 5)."""
+        The coordinates come in the sequence ``order``.
+        """
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B of `stencil.gap_stencil`.
+
+        B has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
+        """
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -50,6 +71,9 @@ class Bore(Protocol):
 class ModalBore:
     """Bore that moves in modes.
 
+    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows (see
+    `film.folding`).
+
     Parameters
     ----------
     modes : BoreModes or ReducedBore
@@ -57,19 +81,28 @@ class ModalBore:
 
     Attributes
     ----------
-    shapes : (n m, k) array
-        S.
     stiffness : (k,) array
         Modal stiffness, N/m.
     modes : BoreModes or ReducedBore
+    order : (k,) int array
+        Modes in the sequence of `fill_rows`: the even ones first.
+    mirrored : int
+        Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
     """
 
     def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
         self.modes = modes
         self.grid_shape = grid.shape
-        self.shapes = modes.radial(grid.x, grid.z * grid.reference_length).reshape(-1, modes.count)
-        self.transposed = np.ascontiguousarray(self.shapes.T)
         self.stiffness = modes.stiffness
+        whole = modes.radial(grid.x, grid.z * grid.reference_length)
+        is_even = _snap_parity(whole)
+        n, m = grid.shape
+        self.mirrored = 0 if is_even is None else m // 2
+        is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
+        self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
+        even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
+        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
+        self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
 
     @property
     def size(self) -> int:
@@ -78,35 +111,79 @@ class ModalBore:
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m)."""
-        return (self.shapes @ q).reshape(self.grid_shape)
+        return self.displacements(q, q)[0]
 
     def load(self, field: np.ndarray) -> np.ndarray:
         """S^T f (k,)."""
-        return self.transposed @ field.ravel()
+        return self.contract(field[None])[0]
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
-        return fields.reshape(len(fields), -1) @ self.shapes
+        out = np.empty((len(fields), self.size))
+        folded_loads(fields, self._even, self._odd, self.order, out)
+        return out
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
-        place, rate = np.zeros(len(self.shapes)), np.zeros(len(self.shapes))
-        add_modes(self.transposed, q, q_t, place, rate)
-        return place.reshape(self.grid_shape), rate.reshape(self.grid_shape)
+        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
+        folded_displacements(self._even, self._odd, self.order, q, q_t, place, rate)
+        return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        weighted_rows(self.shapes, places, weight, first, out)
+        folded_rows(self._even, self._odd, *self.grid_shape, places, weight, first, out)
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """X^T B S (r, k)."""
-        rows = np.empty((len(weight), self.size))
-        combine_rows(weight, places, self.shapes, rows)
-        return fields.T @ rows
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        if not len(places):
+            return np.zeros((size, self.size))
+        upper, out = self.grid_shape[1] - self.mirrored, np.empty((size, self.size))
+        # one tile after the other: a tile's fields stay in the cache until they are multiplied
+        for start in range(0, size, TILE):
+            tile, rows = start // TILE, min(TILE, size - start)
+            first, even, odd = fold_adjoints(
+                weight, places[:, 0], self.grid_shape, self.mirrored, self._odd.shape[1] > 0, fields[tile]
+            )
+            by_even = self._product(even[:, :rows], self._even, first, upper)
+            by_odd = self._product(odd[:, :rows], self._odd, first, self.mirrored) if len(odd) else np.empty((rows, 0))
+            place_columns(by_even, by_odd, self.order, out[start : start + rows])
+        return out
+
+    def _product(self, fields: np.ndarray, shapes: np.ndarray, first: int, rows: int) -> np.ndarray:
+        """Folded fields (columns rows, r), from column ``first`` in theta on, transposed times folded shapes (n rows, k): (r, k)."""
+        start, seam = first * rows, len(shapes) - first * rows
+        if len(fields) <= seam:
+            return fields.T @ shapes[start : start + len(fields)]
+        return fields[:seam].T @ shapes[start:] + fields[seam:].T @ shapes[: len(fields) - seam]
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
-        return (self.transposed * field.ravel()) @ self.shapes
+        n, m = self.grid_shape
+        upper, mirrored, split = m - self.mirrored, self.mirrored, self._even.shape[1]
+        even = field[:, :upper].copy()
+        even[:, :mirrored] += field[:, ::-1][:, :mirrored]
+        odd = (field - field[:, ::-1])[:, :mirrored]
+        # the even part of the field keeps the symmetry of a shape, the odd part turns it
+        halves = self._even.reshape(n, upper, -1)[:, :mirrored].reshape(n * mirrored, split)
+        out = np.empty((self.size, self.size))
+        out[:split, :split] = (self._even * even.reshape(-1, 1)).T @ self._even
+        out[split:, split:] = (self._odd * even[:, :mirrored].reshape(-1, 1)).T @ self._odd
+        out[:split, split:] = (halves * odd.reshape(-1, 1)).T @ self._odd
+        out[split:, :split] = out[:split, split:].T
+        back = np.argsort(self.order)
+        return out[np.ix_(back, back)]
+
+
+def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
+    """Which of the shapes (n, m, k) are even in z, the others being odd; rounding is taken off them. None if any is neither."""
+    mirror = shapes[:, ::-1]
+    even, odd = 0.5 * (shapes + mirror), 0.5 * (shapes - mirror)
+    sizes = np.abs(even).max(axis=(0, 1)), np.abs(odd).max(axis=(0, 1))
+    if np.any(np.minimum(*sizes) > ASYMMETRY * np.maximum(*sizes)):
+        return None
+    is_even = sizes[0] >= sizes[1]
+    shapes[:] = np.where(is_even, even, odd)
+    return is_even
 
 
 class NodalBore:
@@ -124,6 +201,8 @@ class NodalBore:
         S, k twice the number of nodes.
     values : csr matrix (n m, nodes)
         Shape functions at the film's vertices.
+    order : (k,) int array
+        0 to k - 1.
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
@@ -134,6 +213,7 @@ class NodalBore:
         self.values: csr_matrix = surface.interpolation(T.ravel(), Z.ravel())
         self.shapes: csr_matrix = full[:, columns].tocsr()
         self.transposed: csr_matrix = self.shapes.T.tocsr()
+        self.order = np.arange(len(columns))
 
     @property
     def size(self) -> int:
@@ -164,12 +244,15 @@ class NodalBore:
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        out[:, first : first + self.size] = diags(weight).dot(self.shapes[places]).toarray()
+        rows = self.shapes[places].toarray()
+        put_rows(rows, np.arange(len(places)), weight, first, out)
 
-    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray) -> np.ndarray:
-        """X^T B S (r, k)."""
-        at_vertices = np.zeros((self.shapes.shape[0], fields.shape[1]))
-        add_transposed(weight, places, fields, at_vertices)
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], len(fields) * TILE)
+        known = np.ascontiguousarray(known[: len(weight), :size])
+        at_vertices = np.zeros((self.shapes.shape[0], size))
+        add_transposed(weight, places, known, at_vertices)
         return (self.transposed @ at_vertices).T
 
     def product(self, field: np.ndarray) -> np.ndarray:

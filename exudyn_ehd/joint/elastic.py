@@ -18,6 +18,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.stencil import add_gap
 from exudyn_ehd.joint.bore import Bore
 from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
 from exudyn_ehd.joint.effects import History
@@ -160,6 +161,10 @@ class ElasticBearingModel(BearingModel):
         self.bore_load = np.zeros(self.bore.size)
         self.end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
         self.settling_steps = 0
+        R = self.grid.reference_length
+        self.area = self.grid.weight * R**2
+        # SI units of the scaled motion
+        self.motion_scale = np.concatenate((self.pose_scale, self.pose_scale, (0.5, 0.5 / R)))
 
     def _set_motion(self, motion: np.ndarray) -> None:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
@@ -168,21 +173,28 @@ class ElasticBearingModel(BearingModel):
         if motion.size == MOTION_SIZE:
             motion = np.concatenate((motion, np.zeros(2 * k)))
         super()._set_motion(motion)
-        c = self.bearing.radial_clearance
+        scaled = self.motion[MOTION_SIZE:] / self.bearing.radial_clearance
         self.coordinates = self.motion[MOTION_SIZE : MOTION_SIZE + k]
         self.rates = self.motion[MOTION_SIZE + k :]
-        place, rate = self.bore.displacements(self.coordinates, self.rates)
-        self.term.displacement, self.term.rate = place / c, rate / c
+        self.term.displacement, self.term.rate = self.bore.displacements(scaled[:k], scaled[k:])
 
     def shape(self) -> np.ndarray | None:
         """As `BearingModel.shape`: without the bore's displacement."""
         fields = [field for field in self.gap_fields if field is not self.term.displacement]
         return np.sum(fields, axis=0) if fields else None
 
-    def _add_gap_terms(self, history: History | None) -> None:
-        super()._add_gap_terms(history)
-        if self.solver.squeeze:
-            self.solver.H_t += self.term.rate
+    def _add_gap_terms(self, history: History | None) -> float:
+        s, g = self.solver, self.grid
+        fields = [term.field(history) for term in self.effects.gap_terms]
+        self.gap_fields = fields
+        self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+        if self.extra_slope_x is None or self.extra_slope_z is None:
+            self.extra_slope_x, self.extra_slope_z = np.empty(g.shape), np.empty(g.shape)
+        return float(
+            add_gap(
+                self.extra, self.term.rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, self.extra_slope_x, self.extra_slope_z
+            )
+        )
 
     def _loads(self) -> np.ndarray:
         wrench = super()._loads()
@@ -193,11 +205,11 @@ class ElasticBearingModel(BearingModel):
 
     def pressure_field(self) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
-        area = self.grid.weight * self.grid.reference_length**2
-        field = self.P * (area * self.pressure_scale)
+        field = self.P * self.area
+        field *= self.pressure_scale
         if self.pressing is not None:
             for P in self.pressing.P:
-                field = field + P * area
+                field += P * self.area
         return field
 
     def evaluate(

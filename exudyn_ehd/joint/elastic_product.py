@@ -36,9 +36,7 @@ class TangentProduct:
         self.serial = model.serial
         balances = Balances(model)
         self.wrench, self.wrench_place, self.wrench_rate = wrench_rows(model, balances)
-        R = model.grid.reference_length
-        scale = np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / R)))
-        self.motion = balances.motion * scale
+        self.motion = balances.motion * model.motion_scale
         self.by_place, self.vertices = balances.stencil(1.0, 0.0)
         # the rate acts on a vertex's own storage alone
         self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]

@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.stencil import gap_stencil, motion_columns, transposed_slopes
+from exudyn_ehd.film.loads import couette_gradient, unknown_weights
+from exudyn_ehd.film.stencil import gap_stencil, integral_weights, motion_columns, shear_fields, spread_gradient
+from exudyn_ehd.film.tiles import make_tiles
 from exudyn_ehd.joint.drag import drag_by_gap
 from exudyn_ehd.joint.gradients import (
     SIZE,
@@ -26,8 +28,8 @@ from exudyn_ehd.joint.gradients import (
 if TYPE_CHECKING:
     from exudyn_ehd.joint.elastic import ElasticBearingModel
 
-# Columns of right-hand sides come in whole vectors of the processor.
-VECTOR = 8
+# Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
+_WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
 
 
 def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, float]) -> np.ndarray:
@@ -47,16 +49,16 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
     k = model.bore.size
     lam, count = _adjoints(model, whole=True)
     balances = Balances(model)
-    gradient = -(lam.T @ balances.motion)
+    gradient = balances.gradient(lam)
     out = np.empty((6 + k, SIZE + k * len(combinations)))
-    out[:6, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
-    out[6:, :SIZE] = _scaled(model, gradient[count : count + k])
+    out[:6, :SIZE] = wrench_tangent(model, gradient=np.negative(gradient[0, :, :count].T, order="C"))
     weights, direct = wrench_weights(model)
     for i, (by_gap, by_rate) in enumerate(combinations):
         block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
-        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam)
-        block[:6] = weights @ by_bore[:count] + by_gap * direct
-        np.multiply(by_bore[count : count + k], model.force_scale, out=block[6:])
+        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
+        spread_gradient(
+            gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, model.motion_scale, out[6:, :SIZE], block,
+        )  # fmt: skip
         if model.pressing is not None:
             _add_contact_loads(model, block[6:], by_gap)
     if model.pressing is not None:
@@ -86,6 +88,10 @@ class Balances:
             model.cos_x, model.sin_x, model.cos_f, model.sin_f, model.grid.z, self.motion,
         )  # fmt: skip
 
+    def gradient(self, lam: np.ndarray) -> np.ndarray:
+        """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
+        return self.motion.T @ lam[:, : len(self.places)]
+
     def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
         count, c = len(self.places), self.clearance
@@ -102,99 +108,82 @@ def wrench_rows(model: ElasticBearingModel, balances: Balances) -> tuple[np.ndar
     lam, count = _adjoints(model, whole=False)
     weights, direct = wrench_weights(model)
     by_place, by_rate = (
-        weights @ model.bore.project(*balances.stencil(*f), lam)[:count] for f in ((-1.0, 0.0), (0.0, -1.0))
+        weights @ model.bore.project(*balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0))
     )
-    return wrench_tangent(model, gradient=-(lam[:, :count].T @ balances.motion)), by_place + direct, by_rate
+    wrench = wrench_tangent(model, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
+    return wrench, by_place + direct, by_rate
 
 
 def load_weights(model: ElasticBearingModel) -> np.ndarray:
     """Weight of every unknown (count,) in the scaled pressure integral over the bore."""
     w = model.solver.work
-    at = w.order[: w.count]
-    weight = np.where(w.active.ravel()[at], model.grid.weight.ravel()[at], 0.0)
+    weight = np.empty(w.count)
+    unknown_weights(w.order, w.count, model.grid.weight, w.active, weight)
     if model.P_q is not None:
-        weight *= model.P_q.ravel()[at]
+        weight *= model.P_q.ravel()[w.order[: w.count]]
     return weight
 
 
 def _adjoints(model: ElasticBearingModel, whole: bool) -> tuple[np.ndarray, int]:
-    """Adjoint solutions (count, >= integrals + k) at the unknowns, those of the bore's loads only if ``whole``, and the number of integrals."""
-    k = model.bore.size if whole else 0
+    """Adjoint solutions as tiles of integrals, then k loads of the bore only if ``whole``, and the number of integrals."""
     integrals = adjoint_rows(model)
     count, unknowns = integrals.shape
-    lam = np.empty((unknowns, -(-(count + k) // VECTOR) * VECTOR))
-    lam[:, :count] = integrals.T
-    lam[:, count + k :] = 0.0
+    lam = make_tiles(integrals, count + (model.bore.size if whole else 0))
     if whole:
         model.bore.fill_rows(model.solver.work.order[:unknowns], load_weights(model), count, lam)
     model.solver.adjoint_columns(lam)
     return lam, count
 
 
-def _scaled(model: ElasticBearingModel, gradient: np.ndarray) -> np.ndarray:
-    """Gradients (k, 10) of scaled loads in SI units."""
-    out = model.force_scale * gradient
-    out[:, :4] *= model.pose_scale
-    out[:, 4:8] *= model.pose_scale
-    out[:, 8] *= 0.5
-    out[:, 9] *= 0.5 / model.grid.reference_length
-    return out
-
-
 def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
     """What the wrench owes to q at fixed film pressure (6, k): gap, slopes and contacts."""
     g = model.grid
-    fields = np.empty((4, *g.shape))
-    fields[0], fields[3] = couette_field(model), _end_field(model)
-    transposed_slopes(model.P * g.weight, g.width_x[0], g.z, fields[1], fields[2])
+    # force and moment across the axis owe nothing to the gap
+    factors, rows = weights[2::3, 4:] / model.bearing.radial_clearance, np.empty((2, *g.shape))
+    couette, ends = couette_field(model), _end_field(model)
+    shear_fields(model.P, g.weight, g.width_x[0], g.z, couette, ends, factors, rows)
     if model.effects.uneven_drag:
         face, cell = drag_by_gap(model)
         # the gap on a link is the mean of its two columns
-        fields[1] += 0.5 * (face[0] + np.roll(face[0], 1, axis=0))
-        fields[2] += cell[0]
-    out = (weights[:, 4:] / model.bearing.radial_clearance) @ model.bore.contract(fields)
+        rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
+        rows += factors[:, 2, None, None] * cell[0]
+    out = np.zeros((6, model.bore.size))
+    out[2::3] = model.bore.contract(rows)
     return out if model.pressing is None else out + _contact_wrench(model)
 
 
 def couette_field(model: ElasticBearingModel) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
     s, g = model.solver, model.grid
-    share = model.share()
     if model.ratio is not None and model.ratio_h is not None:
-        field = g.weight * share / s.H * (model.ratio_h - model.ratio / s.H)
+        field = g.weight * model.share() / s.H * (model.ratio_h - model.ratio / s.H)
+    elif s.closure.conserves_mass:
+        field = -g.weight * s.fill / s.H**2
     else:
-        field = -g.weight * share / s.H**2
+        field = np.empty(g.shape)
+        couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
     return field if model.limited is None else field * model.limited.slope
 
 
 def _end_field(model: ElasticBearingModel) -> np.ndarray:
     """Gradient (n, m) of the ends' pressure force to the true gap."""
+    if not model.end_pressures.any():
+        return model.solver.nothing
     field = np.zeros(model.grid.shape)
     step = model.grid.width_x[0]
     field[:, -1] = model.end_pressures[1] * step
     field[:, 0] = -model.end_pressures[0] * step
-    if model.limited is not None:
-        field *= model.limited.slope
-    return field
+    return field if model.limited is None else field * model.limited.slope
 
 
 def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
     """Weights of the integrals of `adjoint_rows` in the wrench, and what the wrench owes to q at fixed film pressure (6, k)."""
-    weights = _all_weights(model)
+    weights, shear = np.empty((6, 8)), shear_needs_adjoint(model)
+    integral_weights(
+        model.pose, model.grid.reference_length, model.force_scale, model.shear_scale, model.omega, model.axial_speed, weights
+    )  # fmt: skip
     direct = _direct(model, weights)
-    return (weights[:, :7] if shear_needs_adjoint(model) else weights[:, [0, 1, 2, 3, 5, 6]]), direct
-
-
-def _all_weights(model: ElasticBearingModel) -> np.ndarray:
-    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench."""
-    x, y, bx, by = model.pose.tolist()
-    R, fs, c0 = model.grid.reference_length, model.force_scale, model.shear_scale
-    out = np.zeros((6, 8))
-    out[0, 0] = out[1, 1] = -fs
-    out[3, 3], out[4, 2] = fs * R, -fs * R
-    out[2] = -6.0 * c0 * R * np.array([-bx, -by, 0.0, 0.0, model.axial_speed / (6.0 * R), 0.0, -1.0, -1.0])
-    out[5] = -6.0 * c0 * R**2 * np.array([-y, x, -by, bx, model.omega / 6.0, -1.0, 0.0, 0.0])
-    return out
+    return weights[:, :7] if shear else weights[:, _WITHOUT_SHEAR], direct
 
 
 def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:

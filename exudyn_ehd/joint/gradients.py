@@ -21,7 +21,7 @@ from exudyn_ehd.film.contact_loads import (
 )
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
-from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 from exudyn_ehd.joint.drag import add_drag_rows, drag_by_gap
 
@@ -183,10 +183,7 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
         extra = rows[own - 2 : own]
         extra[:] = 0.0
         if model.extra_slope_x is not None and model.extra_slope_z is not None:
-            at = w.order[: w.count]
-            weight = np.where(w.active, g.weight, 0.0).ravel()[at]
-            for row, slope in ((extra[0], model.extra_slope_x), (extra[1], model.extra_slope_z)):
-                row[:] = weight * slope.ravel()[at]
+            slope_adjoint_rhs(w.order, w.count, g.weight, w.active, model.extra_slope_x, model.extra_slope_z, extra)
         if model.effects.uneven_drag:
             add_drag_rows(model, extra)
         if P_q is not None:

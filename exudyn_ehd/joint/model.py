@@ -33,6 +33,7 @@ from exudyn_ehd.film.loads import (
     end_flows,
     pressure_integrals,
     refined_peak,
+    slope_integrals,
 )
 from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
@@ -358,8 +359,7 @@ class BearingModel:
             rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
         smallest = 1.0 - float(largest_eccentricity(self.pose, self.half_length))
         if self.effects.gap_terms:
-            self._add_gap_terms(history)
-            smallest = min(float(s.H.min()), float(s.HF.min()))
+            smallest = self._add_gap_terms(history)
         if self.compliant is not None:
             return smallest
         if self.contact_fields is not None:
@@ -381,8 +381,8 @@ class BearingModel:
             self.pressing = None
             f.clear()
 
-    def _add_gap_terms(self, history: History | None) -> None:
-        """Sum of the gap terms and its slopes (central differences; one-sided at the ends)."""
+    def _add_gap_terms(self, history: History | None) -> float:
+        """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
         if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
@@ -392,6 +392,7 @@ class BearingModel:
             gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
         s.H += self.extra
         s.HF += self.extra_link
+        return min(float(s.H.min()), float(s.HF.min()))
 
     def _solve(self, history: History | None, step: float) -> Status:
         if not all(map(math.isfinite, self.motion.tolist())):
@@ -483,8 +484,7 @@ class BearingModel:
         pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
         self.extra_theta = self.extra_z = 0.0
         if self.extra_slope_x is not None and self.extra_slope_z is not None:
-            self.extra_theta = float(np.sum(self.P * g.weight * self.extra_slope_x))
-            self.extra_z = float(np.sum(self.P * g.weight * self.extra_slope_z))
+            self.extra_theta, self.extra_z = slope_integrals(self.P, g.weight, self.extra_slope_x, self.extra_slope_z)
         if self.liner_solver is not None:
             # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
             self.extra_z += (
@@ -677,7 +677,7 @@ class BearingModel:
         """
         R, half = self.grid.reference_length, self.half_length
         if self.effects.gap_terms or self.liner_solver is not None:
-            i, j = np.unravel_index(int(np.argmin(self.solver.H)), self.grid.shape)
+            i, j = divmod(int(np.argmin(self.solver.H)), self.grid.z.size)
             return float(self.grid.x[i] % (2.0 * math.pi)), float(self.grid.z[j] * R)
         x, y, bx, by = self.pose.tolist()
         # |e|^2 at either end differs by 4 half (x bx + y by)

@@ -11,8 +11,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags
 
+from exudyn_ehd.film.stencil import put_rows
+from exudyn_ehd.film.tiles import make_tiles
 from exudyn_ehd.joint.elastic_product import TangentProduct
-from exudyn_ehd.joint.elastic_tangent import VECTOR, Balances, wrench_weights
+from exudyn_ehd.joint.elastic_tangent import Balances, wrench_weights
 from exudyn_ehd.joint.gradients import SIZE, adjoint_rows, wrench_tangent
 from exudyn_ehd.joint.traction import BoreForces, TractionChange
 
@@ -33,14 +35,14 @@ def nodal_tangent(model: ElasticBearingModel, forces: BoreForces) -> tuple[np.nd
     change, balances = TractionChange(model, forces), Balances(model)
     integrals = adjoint_rows(model)
     count, unknowns = integrals.shape
-    lam = np.zeros((unknowns, -(-(count + rows) // VECTOR) * VECTOR))
-    lam[:, :count] = integrals.T
-    lam[:, count : count + rows] = forces.rows(change.by_unknown()).T.toarray()
+    lam = make_tiles(integrals, count + rows)
+    loads = np.ascontiguousarray(forces.rows(change.by_unknown()).T.toarray())
+    put_rows(loads, np.arange(unknowns), np.ones(unknowns), count, lam)
     model.solver.adjoint_columns(lam)
-    gradient = -(lam.T @ balances.motion)
+    gradient = -balances.gradient(lam).transpose(0, 2, 1).reshape(-1, SIZE)
     wrench, nodal = np.empty((6, SIZE + 2 * k)), np.empty((rows, SIZE + 2 * k))
     wrench[:, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
-    nodal[:, :SIZE] = gradient[count : count + rows] * motion_scale(model) + _by_motion(model, forces, change)
+    nodal[:, :SIZE] = gradient[count : count + rows] * model.motion_scale + _by_motion(model, forces, change)
     weights, direct = wrench_weights(model)
     c = model.bearing.radial_clearance
     gaps = [diags(field) for field in change.gap]
@@ -50,9 +52,9 @@ def nodal_tangent(model: ElasticBearingModel, forces: BoreForces) -> tuple[np.nd
     at_once = (forces.rows(gaps) @ shapes).toarray() / c
     for i, (by_gap, by_rate) in enumerate(((1.0, 0.0), (0.0, 1.0))):
         part = slice(SIZE + i * k, SIZE + (i + 1) * k)
-        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam)
+        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + rows)
         wrench[:, part] = weights @ by_bore[:count] + by_gap * direct
-        nodal[:, part] = by_bore[count : count + rows] + by_gap * at_once
+        nodal[:, part] = by_bore[count:] + by_gap * at_once
     return wrench, forces.by_node(nodal)
 
 
@@ -77,11 +79,6 @@ class NodalProduct(TangentProduct):
         gap = scaled - self.columns @ motion[:4]
         forces = self.change.vertex_forces(-residual, gap, scaled, motion[8:])
         return self.forces.nodal(forces)
-
-
-def motion_scale(model: ElasticBearingModel) -> np.ndarray:
-    """Derivatives (10,) of (scaled pose, scaled rates, vx, vz) to the motion."""
-    return np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / model.grid.reference_length)))
 
 
 def _pose_columns(model: ElasticBearingModel) -> np.ndarray:

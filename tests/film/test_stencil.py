@@ -3,13 +3,11 @@
 import numpy as np
 
 from exudyn_ehd.film.stencil import (
-    add_modes,
     add_transposed,
-    combine_rows,
     gap_slopes,
     gap_stencil,
+    put_rows,
     transposed_slopes,
-    weighted_rows,
 )
 
 
@@ -50,20 +48,16 @@ def test_stencil_is_the_derivative_of_the_balances():
     np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
 
 
-def test_rows_and_sums_of_modes():
+def test_transposed_stencil_and_rows_in_tiles():
     rng = np.random.default_rng(2)
     shapes, weight, place = rng.normal(size=(30, 6)), rng.normal(size=(8, 5)), rng.integers(0, 30, (8, 5))
-    out = np.empty((8, 6))
-    combine_rows(weight, place, shapes, out)
-    np.testing.assert_allclose(out, np.einsum("rc,rck->rk", weight, shapes[place]), rtol=1e-12, atol=1e-14)
+    out = np.einsum("rc,rck->rk", weight, shapes[place])
     back, fields = np.zeros((30, 3)), rng.normal(size=(8, 3))
     add_transposed(weight, place, fields, back)
     np.testing.assert_allclose(np.sum(back * shapes[:, :3]), np.sum(fields * out[:, :3]), rtol=1e-12)
-    wide = np.zeros((8, 9))
-    weighted_rows(shapes, place[:, 0], weight[:, 0], 2, wide)
-    np.testing.assert_allclose(wide[:, 2:8], shapes[place[:, 0]] * weight[:, :1])
-    assert not wide[:, :2].any() and not wide[:, 8:].any()
-    q, q_t = rng.normal(size=(2, 6))
-    sums = np.zeros((2, 30))
-    add_modes(np.ascontiguousarray(shapes.T), q, q_t, sums[0], sums[1])
-    np.testing.assert_allclose(sums, [shapes @ q, shapes @ q_t], rtol=1e-12, atol=1e-14)
+    for first, width in ((2, 9), (1, 3), (5, 4)):
+        tiles = np.zeros((3, 8, width))
+        put_rows(shapes, place[:, 0], weight[:, 0], first, tiles)
+        wide = tiles.transpose(1, 0, 2).reshape(8, -1)
+        np.testing.assert_allclose(wide[:, first : first + 6], shapes[place[:, 0]] * weight[:, :1], rtol=1e-15)
+        assert not wide[:, :first].any() and not wide[:, first + 6 :].any()

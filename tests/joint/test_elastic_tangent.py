@@ -10,6 +10,26 @@ from exudyn_ehd.joint.build import build_model
 from exudyn_ehd.status import Status
 
 
+@pytest.mark.parametrize("bush", BUSHES)
+def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
+    model = build_model(make_bearing(BUSHES[bush]))
+    k = model.bore.size
+    motion = np.zeros(10 + 2 * k)
+    motion[8] = 1e-3
+    # the whole bore recedes
+    whole = np.ones(model.grid.shape)
+    motion[10 + k :] = 1e-2 * np.linalg.lstsq(model.bore.product(whole), model.bore.load(whole), rcond=1e-9)[0]
+    assert model.bore.displacement(motion[10 + k :]).min() > 0.0
+    evaluation = model.evaluate(motion)
+    assert evaluation.status is Status.CONVERGED
+    assert model.solver.work.count == 0
+    tangent = evaluation.tangent()
+    assert not tangent[6:].any() and not tangent[:2].any() and not tangent[:, 10 + k :].any()
+    assert tangent[5, 8] < 0.0
+    product = model.tangent_product()
+    assert not product.bore_load(np.ones(10), np.ones(k), np.ones(k)).any()
+
+
 @pytest.mark.parametrize("option", OPTIONS)
 @pytest.mark.parametrize("bush", BUSHES)
 def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
