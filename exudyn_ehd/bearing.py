@@ -6,6 +6,8 @@ import warnings
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from exudyn_ehd.film.asperity import GreenwoodTripp
 from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.choice import Film, check_film
@@ -36,6 +38,8 @@ THICKEST_FILM_RATIO, LARGEST_RADIUS = 0.1, 10.0
 
 # Far beyond what oil or steel bears, and far from overflow.
 LARGEST_PRESSURE = 1e12
+# Pa s; of a gas far from cold, and of pitch.
+LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,6 +149,7 @@ class JournalBearing:
         _require_type("inlet", self.inlet, (Periodic, MaximumGap))
         _require_type("contact", self.contact, (RegularisedWall, type(None)))
         _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
+        _check_temperatures(self)
         _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
         _require_type("roughness", self.roughness, (PatirCheng, type(None)))
         _require_type("wear", self.wear, (ArchardWear, type(None)))
@@ -271,6 +276,24 @@ def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None
         raise InputError(
             f"JournalBearing.{argument} must be {names}, got {value!r}; options are objects, not strings or classes."
         )
+
+
+def _check_temperatures(bearing: JournalBearing) -> None:
+    """Refuse temperatures at which the lubricant's law gives no viscosity, as of degrees Celsius taken for kelvin."""
+    law = bearing.lubricant.temperature_law
+    if bearing.thermal is None or law is None:
+        return
+    for field in fields(bearing.thermal):
+        value = getattr(bearing.thermal, field.name)
+        if value is None or not field.name.endswith("temperature"):
+            continue
+        with np.errstate(all="ignore"):
+            viscosity = float(law.viscosity(value, bearing.lubricant.density))
+        if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:
+            raise InputError(
+                f"JournalBearing.thermal.{field.name} = {value!r} K: the lubricant's {type(law).__name__} gives a viscosity of {viscosity:g} Pa s "
+                "there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
+            )
 
 
 def _check_bush(bearing: JournalBearing) -> None:

@@ -155,7 +155,7 @@ def own_errors(mbs: Any, where: str) -> Iterator[None]:
             raise KeyboardInterrupt(_kept(mbs)) from error
         if cause is not error:
             raise
-        raise RunError(f"{where}: {_story(mbs)}") from error
+        raise RunError(f"{where}: {_story(mbs, static=where == 'SolveStatic')}") from error
 
 
 def _kept(mbs: Any) -> str:
@@ -163,7 +163,7 @@ def _kept(mbs: Any) -> str:
     return f"The last accepted state is at t = {time:.9g} s; joint.history holds all steps up to it."
 
 
-def _story(mbs: Any) -> str:
+def _story(mbs: Any, *, static: bool) -> str:
     """What the joints looked like when a solver gave up."""
     time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
@@ -174,6 +174,11 @@ def _story(mbs: Any) -> str:
         parts.append(
             f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum gap "
             f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+        )
+    if static:
+        parts.append(
+            "a film without relative speed, and a journal's spin and place along the axis, have no stiffness of their own: give speeds by "
+            "initial velocities and hold what is free by springs or constraints; "
         )
     parts.append(
         "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), smaller steps or a "

@@ -46,7 +46,7 @@ from exudyn_ehd.film.compliant_newton import (
 )
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.liner import LINER_INSTANT
+from exudyn_ehd.film.liner import LINER_INSTANT, failed_film
 from exudyn_ehd.film.liner_newton import (
     CLIPPED,
     COMPLEMENTARY,
@@ -211,7 +211,9 @@ class CompliantFilmSolver(FilmSolver):
             steps += more
         self.work.warm = ok
         if not ok:
-            return (Status.NO_FILM if self.kind == FULL else Status.NOT_CONVERGED), steps
+            if self.contact is not None:
+                return Status.NOT_CONVERGED, steps
+            return failed_film(self.kind, self.rigid[0], self.beta, cavity_pressure), steps
         self._finish(P)
         return Status.CONVERGED, steps
 
@@ -372,8 +374,9 @@ class CompliantFilmSolver(FilmSolver):
             if w.count == 0 or norm == 0.0:
                 self.exact = True
                 return True, step
-            error, peak = step_size(
-                P, fill, self.full, w.order, w.count, x, reference, LEAST_DEFLECTION * smallest / self.beta
+            opening = smallest / self.beta
+            error, square, peak = step_size(
+                P, self.full, w.order, w.count, x, reference, kind == CLIPPED, LEAST_DEFLECTION * opening, opening
             )
             if not error < 1e300:
                 return False, step
@@ -388,7 +391,7 @@ class CompliantFilmSolver(FilmSolver):
                 if smallest > 0.0 and (norm < before or error <= STEP_TOLERANCE or (conserves and changes > 0)):
                     break
                 share *= 0.5
-            if not smallest > 0.0:
+            if not (smallest > 0.0 and norm < 1e300):
                 return False, step
             P[:], self.full[:] = self.trial, self.trial_full
             if conserves:
@@ -396,9 +399,9 @@ class CompliantFilmSolver(FilmSolver):
             else:
                 changes = select(P, self.residual, g.fixed, pc, kind, active)
             if norm <= noise and not conserves:
-                self.exact = False
-                return True, step
-            if changes == 0 and share == 1.0 and (error <= ERROR_TOLERANCE or 10.0 * error * error <= ERROR_TOLERANCE):
+                self.exact = self._step(P, fill, active, x)
+                return self.exact, step
+            if changes == 0 and share == 1.0 and (error <= ERROR_TOLERANCE or 10.0 * square <= ERROR_TOLERANCE):
                 self.exact = error <= EXACT_STEP and extra == 0.0
                 return not conserves or self._sound(fill), step
         return False, MAX_NEWTON_STEPS

@@ -251,21 +251,30 @@ def longest_step(c, full, order, count, x):
 
 
 @njit(cache=True)
-def step_size(P, fill, full, order, count, x, pc, least):
-    """Largest step over the peak pressure (but at least ``least``), or of a fill."""
+def step_size(P, full, order, count, x, pc, clips, least, opening):
+    """Largest step over the peak pressure (at least ``least``), or of a fill; the square of what is left after it; the peak.
+
+    What a film that clips cuts off may lie far below pc and drops over the bent gaps, so that its steps are small by what presses and by
+    ``opening``, the pressure that opens the smallest gap. Infinite for steps that are not finite.
+    """
     m = P.shape[1]
     peak = least
+    pressing = least
     largest = 0.0
     filled = 0.0
     for k in range(count):
         i = order[k] // m
         j = order[k] - i * m
+        if not abs(x[k]) < 1e300:
+            return np.inf, np.inf, peak
         if full[i, j]:
             peak = max(peak, abs(P[i, j] - pc))
+            pressing = max(pressing, P[i, j] - pc)
             largest = max(largest, abs(x[k]))
         else:
             filled = max(filled, abs(x[k]))
-    return max(largest / peak, filled), peak
+    unit = min(pressing, opening) if clips else peak
+    return max(largest / peak, filled), max(largest / unit, filled) ** 2, peak
 
 
 @njit(cache=True)

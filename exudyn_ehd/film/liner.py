@@ -16,10 +16,11 @@ which is exact for a rigid gap that is constant along the link, and that of the 
 volume is solved by Newton's method with the exact matrix on the vertices that carry pressure.
 
 `SwiftStieber` keeps ``P >= Pc, r >= 0, (P - Pc) r = 0``: a step is cut off at the cavity pressure, vertices without pressure join where oil piles up (r <= 0). `Gumbel` keeps its linear pressure below the cavity pressure, but
-the liner answers to the clipped one. `FullSommerfeld` has no film where surfaces part so fast that tension pulls the liner shut: followed
-from a stiff liner to a soft one, its smallest gap goes to zero at a finite compliance (status NO_FILM; take a closure that breaks). A step is shortened where it would use up more than 80 % of a gap, and halved while the
+the liner answers to the clipped one; no theorem says that such a film exists, and of extreme steady ones some are not found. `FullSommerfeld` has no film where surfaces part so fast that tension pulls the liner shut: followed
+from a stiff liner to a soft one, its smallest gap goes to zero at a finite compliance (status NO_FILM; take a closure that breaks). So
+may the cavity's tension, where it pulls a column further than the undeformed gap. A step is shortened where it would use up more than 80 % of a gap, and halved while the
 residual does not fall. Should it not settle, the liner's own rate ``beta dP/dt`` carries the film through pseudo time to the
-steady state. With `SwiftStieber` there always is one: the balance is continuous and coercive on ``P >= Pc`` (no gap is smaller than with
+steady state. With `SwiftStieber` there always is one, as long as the cavity's pressure leaves a gap: the balance is continuous and coercive on ``P >= Pc`` (no gap is smaller than with
 the cavity's pressure, and oil that is pressed together opens the liner until it can leave), so that its complementarity problem has a
 solution (Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271).
 
@@ -46,7 +47,10 @@ from exudyn_ehd.film.liner_newton import (
     deformed_film,
     ends_open,
     factor_liner,
+    flow_rounding,
     liner_link_derivatives,
+    liner_residual,
+    select,
     solve_liner,
 )
 from exudyn_ehd.film.loads import scatter
@@ -57,7 +61,7 @@ from exudyn_ehd.status import InputError, Status, require_number
 
 # Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
 LINER_INSTANT = 1e-6
-MAX_PSEUDO_STEPS = 40
+MAX_PSEUDO_STEPS = 150
 LARGEST_PSEUDO_RATE = 1e5
 
 
@@ -94,6 +98,16 @@ class ElasticLiner:
         """Deflection per pressure K_nu t / E, m/Pa."""
         nu = self.poisson_ratio
         return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu) * self.thickness / self.youngs_modulus
+
+
+def failed_film(kind: int, rigid: np.ndarray, beta: float, cavity_pressure: float) -> Status:
+    """Status of a film on a liner that was not found, for its closure's ``kind`` and undeformed gaps (n, m).
+
+    NO_FILM where tension may pull the liner shut: without cavitation, or by the cavity's own pressure.
+    """
+    if kind == FULL or float(rigid.min()) + beta * cavity_pressure <= 0.0:
+        return Status.NO_FILM
+    return Status.NOT_CONVERGED
 
 
 class LinerFilmSolver(FilmSolver):
@@ -182,9 +196,17 @@ class LinerFilmSolver(FilmSolver):
         if not ends_open(r, P, self.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
-        if not self.work.warm:
+        was_warm = self.work.warm
+        if not was_warm:
             self._guess(P, inverse, delta_old, step)
         ok, steps = self._newton(P, inverse, delta_old)
+        if not ok and was_warm:
+            # a start from another state can mislead where the film itself is benign
+            self.work.warm = False
+            self._guess(P, inverse, delta_old, step)
+            ok, more = self._newton(P, inverse, delta_old)
+            steps += more
+        ok = ok or self._carries_nothing(P, inverse, delta_old)
         if not ok:
             self.work.warm = False
             self._dry_guess(P)
@@ -192,8 +214,7 @@ class LinerFilmSolver(FilmSolver):
             steps += more
         self.work.warm = ok
         if not ok:
-            # Without cavitation nothing keeps tension from pulling a soft liner shut.
-            return (Status.NO_FILM if self.kind == FULL else Status.NOT_CONVERGED), steps
+            return failed_film(self.kind, self.rigid[0], self.beta, cavity_pressure), steps
         self._finish(P, inverse, delta_old)
         return Status.CONVERGED, steps
 
@@ -242,6 +263,29 @@ class LinerFilmSolver(FilmSolver):
         )  # fmt: skip
         self.held = ok
         return ok, steps
+
+    def _carries_nothing(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> bool:
+        """Whether a film without pressure, into P, meets its balances to the rounding of the flows, where Newton's steps never stand still."""
+        g, s, w = self.grid, self.system, self.work
+        found = P.copy()
+        P[~g.fixed] = 0.0
+        norm, smallest = liner_residual(
+            self.rigid, P, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, s.cavity_pressure, self.kind,
+            self.beta, inverse, delta_old, self.residual,
+        )  # fmt: skip
+        noise = flow_rounding(
+            self.rigid[0], self.rigid[1], self.rigid[2], self.vx, self.vz, g.width_x, g.width_z, g.link_x
+        )
+        if not (smallest > 0.0 and norm <= noise):
+            P[:] = found
+            return False
+        select(P, self.residual, g.fixed, s.cavity_pressure, self.kind, w.active)
+        lower, upper = _lu_buffers(w)
+        self.exact, w.count, w.width = factor_liner(
+            self.rigid, P, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
+            self.kind, self.beta, inverse, w.active, w.order, w.number, lower, upper, w.inv_diag,
+        )  # fmt: skip
+        return self.exact
 
     def _pseudo_transient(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
         """Implicit steps of the liner's own rate towards the target, from short to long; the last one is the target itself."""

@@ -336,17 +336,22 @@ def solve_liner(
             moved = 0.0
         # pressures that no gap answers to are none: a film at rest ends here
         peak = LEAST_DEFLECTION * smallest / beta
+        pressing = peak
         for k in range(count):
             i = order[k] // m
             j = order[k] - i * m
             x[k] = -r[i, j]
             peak = max(peak, abs(P[i, j] - reference))
+            pressing = max(pressing, P[i, j] - reference)
+        # What is cut off may lie far below the cavity pressure and drops over the bent gaps: there a step is small by what presses and
+        # by what opens the smallest gap.
+        bent = min(pressing, smallest / beta) if kind == CLIPPED else peak
         solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
         largest = 0.0
         for k in range(count):
+            if not abs(x[k]) < 1e300:
+                return False, step + 1, False, count, width
             largest = max(largest, abs(x[k]))
-        if not largest < 1e300:
-            return False, step + 1, False, count, width
         borrowed = held and step == 0
         standing = largest <= ERROR_TOLERANCE * peak
         if not fresh and not borrowed and not standing and largest > 0.2 * last:
@@ -370,7 +375,7 @@ def solve_liner(
             select(P, r, fixed, pc, kind, active)
             factored = False
             continue
-        if not smallest > 0.0:
+        if not (smallest > 0.0 and norm < 1e300):
             return False, step + 1, False, count, width
         P[:] = trial
         moved += share * largest
@@ -378,8 +383,10 @@ def solve_liner(
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
-            rest, unit = (10.0 * largest * largest, peak) if fresh else (largest * largest, last)
-            if standing or (not borrowed and rest <= ERROR_TOLERANCE * peak * unit):
+            rest, unit = (10.0 * largest * largest, bent) if fresh else (largest * largest, last)
+            if kind == CLIPPED:
+                unit = min(unit, bent)
+            if standing or (not borrowed and rest <= ERROR_TOLERANCE * bent * unit):
                 return True, step + 1, not borrowed and moved <= EXACT_STEP * peak, count, width
         last = largest
     return False, MAX_NEWTON_STEPS, False, count, width

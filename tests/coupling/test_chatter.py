@@ -8,6 +8,7 @@ from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.chatter import LIMIT, ChatterWatch
+from exudyn_ehd.joint.build import build_model
 
 CLEARANCE, LENGTH, MASS, SPIN = 50e-6, 0.025, 2.0, 300.0
 BEARING = ehd.JournalBearing(
@@ -99,6 +100,17 @@ def test_two_steps_per_period_are_chatter_in_any_direction():
         assert k == LIMIT // 2
 
 
+def test_kicks_are_chatter_and_external_hits_are_none():
+    """Every fourth step throws the journal, as an unstable film does; every tenth one, as a gear or a hammer could."""
+    for every, expected in ((4, True), (10, False)):
+        watch, motion, seen = ChatterWatch(BEARING), np.zeros(10), False
+        for k in range(400):
+            motion[4] = 0.1 if k % every == 0 else motion[4] * 0.3
+            motion[0] = 1e-5 * motion[4] * 0.1
+            seen = seen or watch.sees_chatter(1e-5 * k, motion)
+        assert seen == expected
+
+
 def test_rounding_and_impacts_are_none():
     watch, rng, motion = ChatterWatch(BEARING), np.random.default_rng(1), np.zeros(10)
     for k in range(500):
@@ -126,6 +138,31 @@ def test_step_beyond_the_limit_raises(solver):
     assert h.time.size > LIMIT // 2
     assert np.all(np.isfinite(h.motion))
     assert np.hypot(*(h.eccentricity[-1] - at)) < 0.02 * CLEARANCE
+
+
+@pytest.mark.parametrize(
+    ("solver", "eccentricity_ratio", "share"),
+    [
+        (exu.DynamicSolverType.ExplicitEuler, 0.95, 30.0),
+        # thrown out of the thin film by ever other amounts, and back
+        (exu.DynamicSolverType.RK33, 0.95, 3.0),
+        (exu.DynamicSolverType.RK33, 0.8, 10.0),
+        (exu.DynamicSolverType.VelocityVerlet, 0.95, 6.0),
+        # a wrong place in a film of a fiftieth of the clearance, held without any jump
+        (exu.DynamicSolverType.RK44, 0.98, 1.5),
+    ],
+    ids=str,
+)
+def test_step_far_beyond_the_limit_raises(solver, eccentricity_ratio, share):
+    at = eccentricity_ratio * CLEARANCE * np.array([0.5, -0.866])
+    film = build_model(BEARING).evaluate(np.array([*at, *6 * [0.0], SPIN, 0.0]))
+    load, damping = tuple(-film.wrench[:2]), -film.tangent()[:2, 4:6]
+    damping = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
+    step = share * LIMITS.get(solver, 2.0) * MASS / damping
+    mbs, joint = rotor(load, tuple(at))
+    with pytest.raises(ehd.FilmError, match=r"'pin' at t = .* explicit solver's step .* smaller steps"):
+        run(mbs, 2000 * step, step, solver)
+    assert np.all(np.isfinite(joint.history.motion))
 
 
 @pytest.mark.parametrize("solver", LIMITS, ids=str)

@@ -214,3 +214,22 @@ def test_lengths_in_millimetres():
         ehd.JournalBearing(journal_radius=25.0, length=25.0, radial_clearance=0.05, **size)
     with pytest.raises(ehd.InputError, match=r"radial_clearance must be at most 0.1 of .* metres"):
         ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=0.05, **size)
+
+
+@pytest.mark.parametrize("thermal", [ehd.LumpedThermal, ehd.FilmEnergy])
+def test_temperatures_in_degrees_celsius(thermal):
+    with pytest.raises(ehd.InputError, match=r"thermal\.supply_temperature = 40.0 K: .* kelvin"):
+        dataclasses.replace(BEARING, lubricant=ehd.oil("ISO VG 46"), thermal=thermal(supply_temperature=40.0))
+    assert dataclasses.replace(BEARING, lubricant=ehd.oil("ISO VG 46"), thermal=thermal(supply_temperature=313.0))
+
+
+def test_static_solution_without_stiffness_says_what_is_missing():
+    mbs = scenes.new_system()
+    ground = mbs.CreateGround()
+    body = scenes.add_body(mbs, "2D", gravity=[0, -9.81, 0])
+    ehd.CreateLubricatedJoint(
+        mbs, name="still", itemNumbers=[ground, body], position=[0, 0, 0], axis=[0, 0, 1], bearing=BEARING
+    )
+    mbs.Assemble()
+    with pytest.raises(ehd.RunError, match=r"SolveStatic: .*'still'.*no stiffness of their own: give speeds"):
+        ehd.SolveStatic(mbs, settings())

@@ -6,7 +6,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film import liner_newton
 from exudyn_ehd.film.grid import bearing_grid
-from exudyn_ehd.film.liner import LinerFilmSolver
+from exudyn_ehd.film.liner import LinerFilmSolver, failed_film
 from exudyn_ehd.film.solver import FilmSolver
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
@@ -244,3 +244,54 @@ def test_separation_pulls_a_soft_liner_shut():
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(0.5, rate=-30.0)
     assert solver.solve(50.0, 3.0, -np.inf)[0] is ehd.Status.NO_FILM
     assert solve(closure, 1e4, eps=0.5).H.min() > 0.1
+
+
+def bearing_on_liner(closure, modulus, length, n_theta, n_z):
+    from exudyn_ehd.joint.build import build_model
+
+    return build_model(
+        ehd.JournalBearing(
+            journal_radius=0.01, length=length, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=0.04),
+            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure,
+            bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=modulus),
+        )
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
+def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
+    """Aligned, a hair from the bore: the flows balance to rounding at no pressure, and no step of Newton's would ever stand still."""
+    model = bearing_on_liner(closure, 1e8, 0.005, 64, 16)
+    evaluation = model.evaluate(np.array([1.9e-5, 4.4e-6, 0, 0, 0, 0, 0, 0, 0, -0.57]))
+    assert evaluation.status is ehd.Status.CONVERGED
+    assert np.abs(model.solver.pressure).max() * model.liner_solver.beta < 1e-10
+    assert np.all(np.isfinite(evaluation.tangent()))
+
+
+def test_suction_that_is_cut_off_spoils_no_balance():
+    """A linear film 1e5 times deeper below the cavity pressure than above it: the balance of what presses holds to 1e-9 of its flows."""
+    model = bearing_on_liner(ehd.Gumbel(), 7e10, 0.04, 64, 10)
+    model.evaluate(
+        np.array([-2.08374301e-06, -1.98784312e-05, 0, 0, -2.16895329e-05, 2.79668814e-05, -2.7e-03, -1.4e-04, 0, 0])
+    )
+    s = model.solver
+    P = s.system.linear_pressure
+    assert P.min() < -1e5 * P.max() < 0.0
+    g, r = model.grid, np.empty(model.grid.shape)
+    liner_newton.liner_residual(
+        s.rigid, P, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, 0.0, s.kind, s.beta, 0.0, s.none, r
+    )
+    flow = np.abs(s.rigid[2] * s.area).max()
+    assert np.abs(r[~g.fixed]).max() < 1e-9 * flow
+
+
+def test_status_of_films_that_are_not_found():
+    """Tension that may pull the liner shut: no film to be found; else the closure did not settle."""
+    gap = np.array([[0.1, 0.5]])
+    for kind, cavity, status in (
+        (liner_newton.FULL, -np.inf, ehd.Status.NO_FILM),
+        (liner_newton.COMPLEMENTARY, -20.0, ehd.Status.NO_FILM),
+        (liner_newton.COMPLEMENTARY, -1.0, ehd.Status.NOT_CONVERGED),
+        (liner_newton.CLIPPED, 0.0, ehd.Status.NOT_CONVERGED),
+    ):
+        assert failed_film(kind, gap, 0.01, cavity) is status

@@ -6,6 +6,11 @@ uniform in its logarithm down to 1e-4 c (pressed into each other up to 1.02 with
 direction, spin positive, negative, zero, tiny and large, axial speed, rates from 1e-3 to 10 times the spin; warm and cold starts.
 Mass-conserving films also in transient sequences with jumps of position and speed at steps from 1e-6 to 3e-3 s.
 
+Films on liners of 1e7 to 1e11 Pa, 1 mm thick on 20 mm, half of them with wall or asperities, steady and in motion. What they leave out, because there
+no film need exist: tension that pulls a liner shut (`FullSommerfeld` only with contact and above 1e10 Pa; no contact, no tension in the
+cavity; else no more than an atmosphere), and steady films after `Gumbel`, whose balance is not that of a complementarity problem (2 to 3 in
+a thousand of these states are not found). Impedance maps over their whole domain, and beyond it, which they must say.
+
 A state counts as failed if its status is not CONVERGED, a number of it is not finite, its pressure or fill leaves its bounds, or a
 balance of its discrete equations is not met. The one exception: oils with a pressure law have no viscosity beyond some GPa, where they
 count as solid. A film that would need such pressures has no solution and must say so (NO_PRESSURE); these states are counted apart,
@@ -122,6 +127,38 @@ def random_bearing(rng, closure, *, laws=True):
     )  # fmt: skip
 
 
+def random_liner(rng, closure):
+    """A bearing with a liner; every other one with a contact."""
+    bearing = random_bearing(rng, closure, laws=False)
+    lowest, contact = 7.0, rng.random() < 0.5
+    options = {"contact": None, "asperity": None, "roughness": None}
+    if isinstance(closure, ehd.FullSommerfeld):
+        lowest, contact = 10.0, True
+    elif not contact:
+        options["cavitation"] = closure
+    elif bearing.cavitation.cavity_pressure < -1e5:
+        options["cavitation"] = dataclasses.replace(closure, cavity_pressure=-1e5)
+    if isinstance(closure, ehd.ElrodAdams) and not contact:
+        options["end_pressures"] = (1e4, 2e4)
+    if contact and rng.random() < 0.5:
+        options["contact"] = ehd.RegularisedWall(onset=0.03 * CLEARANCE)
+    elif contact:
+        options["asperity"] = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1e11)
+    if not isinstance(bearing.film, ehd.FiniteLength):
+        options["film"] = ehd.FiniteLength()
+    liner = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=float(10.0 ** rng.uniform(lowest, 11.0)))
+    return dataclasses.replace(bearing, bush=liner, **options)
+
+
+def random_map(rng):
+    """A bearing with an impedance map; two lengths, as every one takes seconds to build."""
+    closure = [ehd.Gumbel(), ehd.SwiftStieber()][rng.integers(2)]
+    return ehd.JournalBearing(
+        journal_radius=RADIUS, length=RADIUS * float(rng.choice([1.0, 2.0])), radial_clearance=CLEARANCE, cavitation=closure,
+        lubricant=ehd.Lubricant(viscosity=VISCOSITY), film=ehd.ImpedanceMap(n_theta=96),
+    )  # fmt: skip
+
+
 def random_state(rng, bearing):
     """Motion (10,)."""
     half = 0.5 * bearing.length
@@ -141,6 +178,8 @@ def random_state(rng, bearing):
     if rng.random() < 0.6 and not bearing.cavitation.conserves_mass:
         rates = rng.normal(size=4) * max(abs(omega), 1.0) * 10.0 ** rng.uniform(-3.0, 1.0)
         rates *= np.array([CLEARANCE, CLEARANCE, CLEARANCE / half, CLEARANCE / half])
+    if isinstance(bearing.film, ehd.ImpedanceMap):
+        tilt = rates[2] = rates[3] = 0.0
     pose = [eps * CLEARANCE * np.cos(a), eps * CLEARANCE * np.sin(a), tilt * np.cos(b), tilt * np.sin(b)]
     return np.array([*pose, *rates, omega, axial])
 
@@ -203,6 +242,8 @@ def check(model, evaluation):
     """What is wrong with an evaluation, or None; and its balance error."""
     if evaluation.status is ehd.Status.NO_PRESSURE and beyond_law(model):
         return SOLID, 0.0
+    if isinstance(model.bearing.film, ehd.ImpedanceMap):
+        return check_map(model, evaluation), 0.0
     if evaluation.status is not ehd.Status.CONVERGED:
         return evaluation.status.name, 0.0
     if not np.all(np.isfinite(evaluation.wrench)):
@@ -223,14 +264,27 @@ def check(model, evaluation):
     return ("balance" if not error <= BALANCE else None), error
 
 
-def steady_campaign(name: str, make: Callable, states: int, seed: int) -> Record:
+def check_map(model, evaluation):
+    """What is wrong with an evaluation of an impedance map, or None: beyond its table it must say so, within it heat what it brakes."""
+    motion = evaluation.motion
+    inside = math.hypot(*motion[:2]) <= model.bearing.film.largest_eccentricity_ratio * CLEARANCE
+    if evaluation.status is not (ehd.Status.CONVERGED if inside else ehd.Status.OUTSIDE_MAP):
+        return evaluation.status.name
+    if not inside:
+        return None
+    if not (np.all(np.isfinite(evaluation.wrench)) and np.all(np.isfinite(evaluation.tangent()))):
+        return "wrench or tangent not finite"
+    return None if evaluation.quantities()["power_loss"] >= 0.0 else "power out of nothing"
+
+
+def steady_campaign(name: str, make: Callable, states: int, seed: int, per_model: int = STATES_PER_MODEL) -> Record:
     """Films at random motions, without history."""
     record, rng = Record(name=name), np.random.default_rng(seed)
     begin = time.process_time()
     while record.states < states:
         bearing = make(rng)
         model = build_model(bearing)
-        for _ in range(min(STATES_PER_MODEL, states - record.states)):
+        for _ in range(min(per_model, states - record.states)):
             motion = random_state(rng, bearing)
             if rng.random() < 0.5:
                 model.forget()
@@ -239,7 +293,7 @@ def steady_campaign(name: str, make: Callable, states: int, seed: int) -> Record
     return record
 
 
-def transient_campaign(name: str, make: Callable, states: int, seed: int) -> Record:
+def transient_campaign(name: str, make: Callable, states: int, seed: int, per_model: int = STATES_PER_MODEL) -> Record:
     """Sequences of steps with the history of the ones before."""
     record, rng = Record(name=name), np.random.default_rng(seed)
     begin = time.process_time()
@@ -248,7 +302,7 @@ def transient_campaign(name: str, make: Callable, states: int, seed: int) -> Rec
         model = build_model(bearing)
         motion, step = random_state(rng, bearing), 10.0 ** rng.uniform(-6.0, -2.5)
         history = model.initial_history(motion)
-        for k in range(min(STATES_PER_MODEL, states - record.states)):
+        for k in range(min(per_model, states - record.states)):
             new = random_state(rng, bearing)
             if rng.random() < 0.8:
                 # a small move; now and then a jump
@@ -309,3 +363,19 @@ CAMPAIGNS: dict[str, Callable[[int, int], Record]] = {
     ),
     "ElrodAdams, compressible": lambda n, seed: transient_campaign("ElrodAdams, compressible", _compressible, n, seed),
 }
+
+
+def _liner_campaign(closure, moving: bool) -> Callable[[int, int], Record]:
+    run, kind = (transient_campaign, "in motion") if moving else (steady_campaign, "steady")
+    name = f"{type(closure).__name__}, liner, {kind}"
+    return lambda n, seed: run(name, lambda r: random_liner(r, closure), n, seed, 50)
+
+
+LINERS = {
+    f"{type(closure).__name__}, liner, {'in motion' if moving else 'steady'}": _liner_campaign(closure, moving)
+    for closure in (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams())
+    for moving in (False, True)
+    if moving or not isinstance(closure, ehd.Gumbel)
+}
+CAMPAIGNS |= LINERS
+CAMPAIGNS["ImpedanceMap"] = lambda n, seed: steady_campaign("ImpedanceMap", random_map, n, seed, 500)
