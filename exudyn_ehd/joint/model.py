@@ -232,6 +232,9 @@ class BearingModel:
             )
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers_density = (
+            self.remembers_mass and self.compressible is not None and self.effects.thermal is not None
+        )
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
@@ -272,7 +275,8 @@ class BearingModel:
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
         mass = self.solver.H.copy() if self.remembers_mass else None
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+        density = self.solver.ones if self.remembers_density else None
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
         """Scaled deflection of the steady film at this motion; None if there is no such film."""
@@ -301,7 +305,10 @@ class BearingModel:
             deflection = self.liner_solver.deflection
         thermal = self.effects.thermal
         temperature = None if thermal is None else thermal.advance(self)
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+        density = None
+        if self.remembers_density and self.compressible is not None:
+            density = self.compressible.rho.copy()
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
 
     def worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""
@@ -581,7 +588,8 @@ class BearingModel:
 
         with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
         equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
-        ends' cross section, which the journal's wrench carries. What bends an elastic bore is not in it: that is the bush's.
+        ends' cross section, which the journal's wrench carries. Compressible oil takes its elastic energy along: dp becomes dp / (rho / rho_0)
+        in p - pc, times the mass flow, and what the film holds is not heat, either. What bends an elastic bore is not in it: that is the bush's.
 
         Returns
         -------
