@@ -27,7 +27,7 @@ from exudyn_ehd.status import InputError, require_bool, require_vector
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import ElasticLiner
     from exudyn_ehd.joint.audit import Audit
-    from exudyn_ehd.joint.steady import EquilibriumResult
+    from exudyn_ehd.joint.equilibrium import EquilibriumResult
 
 _WHERE = "CreateLubricatedJoint"
 

@@ -37,11 +37,10 @@ from exudyn_ehd.film.transport import (
     Transport,
     factor_transport,
     flow_direction,
-    reduce_transposed,
     solve_transport,
-    solve_transport_transposed,
     transport_buffers,
 )
+from exudyn_ehd.film.transport_transposed import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.status import Status, require_number
 
 MAX_NEWTON_STEPS = 60

@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
     from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
-    from exudyn_ehd.joint.model import BearingModel, ContactFields
+    from exudyn_ehd.joint.buffers import ContactFields
+    from exudyn_ehd.joint.model import BearingModel
 
 SIZE = 10
 

@@ -12,11 +12,10 @@ from exudyn_ehd.film.transport import (
     WIDTH,
     factor_transport,
     flow_direction,
-    reduce_transposed,
     solve_transport,
-    solve_transport_transposed,
     transport_buffers,
 )
+from exudyn_ehd.film.transport_transposed import reduce_transposed, solve_transport_transposed
 
 N, M, PC = 14, 6, -0.3
 CASES = {
