@@ -16,7 +16,7 @@ from exudyn_ehd.status import require_number
 
 @dataclass(frozen=True, kw_only=True)
 class LumpedThermal:
-    """One temperature T for the whole film; for warm-up and a first idea of the viscosity. Costs 5 % of a step at most.
+    """One temperature T for the whole film; for warm-up and a first idea of the viscosity. Costs 5 % of a step at most, a sixth with a density law.
 
     ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film dissipates,
     Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing, ``C = rho c_p 2 pi R L c + capacity``
@@ -54,7 +54,7 @@ class LumpedThermal:
 class FilmEnergy:
     """Temperature field T(theta, z), averaged across the film; where heating decides load or peak temperature.
 
-    One factorisation per accepted step: a third of a step's time with `ElrodAdams`, as much as the step with `SwiftStieber`.
+    One factorisation per accepted step: a third of a step's time with `ElrodAdams`, as much as the step with `SwiftStieber` (half more with a density law).
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure and
     Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, fully upwind (first order), backward Euler.
