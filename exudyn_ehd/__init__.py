@@ -49,7 +49,7 @@ from exudyn_ehd.joint.audit import Audit, Finding
 from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, RunError, Status
+from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, Status
 
 __version__ = "0.1.0"
 
@@ -175,6 +175,7 @@ __all__ = [
     "RegularisedWall",
     "Revolutions",
     "ReynoldsTemperature",
+    "RingingWarning",
     "RoelandsPressure",
     "RunError",
     "SaintVenantKirchhoff",
