@@ -198,7 +198,7 @@ class Mechanism:
         settings.solution.file.write = False
         ehd.ConfigureSolver(settings)
         start = time.process_time()
-        self.mbs.SolveDynamic(settings)
+        ehd.SolveDynamic(self.mbs, settings)
         seconds = time.process_time() - start
         displacement, velocity, acceleration = (self.mbs.GetSensorStoredData(s) for s in self.sensors)
         deflection, stretch = np.zeros((2, displacement.shape[0]))

@@ -132,7 +132,7 @@ def simulate(bearing: ehd.JournalBearing, *, start_up: float, steps_per_cycle: i
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
     clock = time.perf_counter()
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     seconds = (time.perf_counter() - clock) / steps
     history = joint.history
     angle = 720.0 * (history.time / CYCLE - start_up)

@@ -228,7 +228,7 @@ class Mechanism:
         settings.solution.file.write = False
         ehd.ConfigureSolver(settings)
         start = time.process_time()
-        self.mbs.SolveDynamic(settings)
+        ehd.SolveDynamic(self.mbs, settings)
         seconds = time.process_time() - start
         tool = self.mbs.GetSensorStoredData(self.tool)
         reaction = None if self.reaction is None else self.mbs.GetSensorStoredData(self.reaction)[:, 1:4]
@@ -294,7 +294,7 @@ def with_parallel_axes(history: ehd.JointHistory, bearing: ehd.JournalBearing) -
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     return joint.history
 
 

@@ -140,7 +140,7 @@ def turning_load(
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     history = joint.history
     return np.degrees(LOAD_SPEED * history.time) - 180.0, history
 

@@ -64,7 +64,7 @@ def simulate(turns: int, steps_per_turn: int) -> ehd.LubricatedJoint:
     settings.timeIntegration.generalizedAlpha.spectralRadius = 0.5
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     return joint
 
 

@@ -189,7 +189,7 @@ class Rotor:
         settings.solution.file.write = False
         ehd.ConfigureSolver(settings)
         start = time.process_time()
-        self.mbs.SolveDynamic(settings)
+        ehd.SolveDynamic(self.mbs, settings)
         milliseconds = 1e3 * (time.process_time() - start) / steps
         history = self.joints[0].history
         disc = self.mbs.GetSensorStoredData(self.disc_sensor)

@@ -146,7 +146,7 @@ def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
     start = time.perf_counter()
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     seconds = time.perf_counter() - start
 
     def stored(sensor):

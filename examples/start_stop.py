@@ -98,7 +98,7 @@ def simulate(bearing: ehd.JournalBearing, *, end: float, step: float) -> Run:
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
     ehd.ConfigureSolver(settings)
-    mbs.SolveDynamic(settings)
+    ehd.SolveDynamic(mbs, settings)
     history = joint.history
     iterations = mbs.sys["dynamicSolver"].it.newtonStepsCount / (history.time.size - 1)
     return Run(history=history, film=joint.film(), iterations_per_step=iterations)

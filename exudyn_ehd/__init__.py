@@ -46,8 +46,9 @@ from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.joint.any_gap import FilmResult, solve_film
 from exudyn_ehd.joint.audit import Audit, Finding
+from exudyn_ehd.joint.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.fields import FilmFields
-from exudyn_ehd.joint.steady import EquilibriumResult, SteadyResult, equilibrium, steady
+from exudyn_ehd.joint.steady import SteadyResult, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, Status
 

@@ -3,6 +3,7 @@
 Module map
 ----------
 api           `CreateLubricatedJoint`, the handle `LubricatedJoint`, axial options `Free` and `Held`
+joint_frame   where the joint is, from the arguments; axial: the constraint of `Held`
 items         item numbers of a scene to carriers of a joint frame, input checks
 sides         who carries a marker frame: nodes of rigid bodies, ground, any other rigid marker
 kinematics    poses, rates and exact variations of the two frames, as kernels

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import importlib
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -12,22 +11,24 @@ import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling.axial import hold_axially
 from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.history import JointHistory, Quantity
-from exudyn_ehd.coupling.items import Item, body_of_node, resolve
+from exudyn_ehd.coupling.items import Item
+from exudyn_ehd.coupling.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.results import JointResults
 from exudyn_ehd.coupling.run import joints_of, require_system
 from exudyn_ehd.coupling.sensors import add_sensor
-from exudyn_ehd.coupling.sides import MarkerSide, Side
+from exudyn_ehd.coupling.sides import MarkerSide
 from exudyn_ehd.coupling.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_bool, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.liner import ElasticLiner
     from exudyn_ehd.joint.audit import Audit
-    from exudyn_ehd.joint.steady import EquilibriumResult
+    from exudyn_ehd.joint.equilibrium import EquilibriumResult
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -287,9 +288,9 @@ def CreateLubricatedJoint(
     if mbs.systemIsConsistent:
         raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
-    housing, journal = _resolve_pair(mbs, itemNumbers)
-    rotation = _joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
-    points = _joint_points(housing, journal, position, useGlobalFrame)
+    housing, journal = resolve_pair(mbs, itemNumbers)
+    rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
+    points = joint_points(housing, journal, position, useGlobalFrame)
     if housing.body is not None and getattr(bearing, "bush", None) is not None:
         # imported here: a rigid bearing needs no solid
         bearing, housing = importlib.import_module("exudyn_ehd.coupling.fe_bore").hold_fe_bore(
@@ -340,7 +341,7 @@ def attach(
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
     if not any(isinstance(side, MarkerSide) for side in sides):
-        _check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
+        check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
     # planar bodies can't move axially: the constraint would be empty, and singular
     flat = all(item.planar or item.kind == kinematics.GROUND for item in (housing, journal))
     held = isinstance(axial, Held) and not flat
@@ -363,159 +364,7 @@ def attach(
             **more,
         )
     )
-    constraint = _hold_axially(mbs, name, housing, journal, points, rotation) if held else None
+    constraint = hold_axially(mbs, name, housing, journal, points, rotation) if held else None
     joint = LubricatedJoint(mbs, name, element, (number, constraint))
     joints_of(mbs).append(joint)
     return joint
-
-
-def _resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
-    where = f"{_WHERE}.itemNumbers"
-    if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
-        raise InputError(f"{where} must be [housing, journal], got {itemNumbers!r}.")
-    housing = resolve(mbs, f"{where}[0]", itemNumbers[0])
-    journal = resolve(mbs, f"{where}[1]", itemNumbers[1])
-    if not housing.nodes and not journal.nodes:
-        raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
-    shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    # Exudyn adds up what an object hands to a node that it lists twice
-    if shared and not (housing.inner and journal.inner and int(housing.marker) != int(journal.marker)):
-        raise InputError(
-            f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
-        )
-    return housing, journal
-
-
-def _joint_rotation(housing: Item, axis: Any, matrix: Any, use_global: bool) -> np.ndarray:
-    """Joint frame (3, 3) in the reference configuration, columns x, y, z global."""
-    to_global = np.eye(3) if use_global else housing.rotation
-    given = np.size(axis) > 0
-    z = np.zeros(3)
-    if given:
-        z = require_vector(f"{_WHERE}.axis", axis, 3)
-        if not np.linalg.norm(z) > 0.0:
-            raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
-        z = to_global @ (z / np.linalg.norm(z))
-    if matrix is not None:
-        rotation = _checked_rotation(matrix)
-        rotation = to_global @ rotation
-        # 1e-9: an axis and a matrix typed or computed in double precision agree far better
-        if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
-            raise InputError(
-                f"{_WHERE}.axis and the third column of rotationMatrixAxes must agree, got {axis!r} and "
-                f"{np.asarray(matrix)[:, 2]}; leave axis=[]."
-            )
-        return rotation
-    if not given:
-        raise InputError(f"{_WHERE}.axis is missing; give the direction of the joint axis, e.g. axis=[0, 0, 1].")
-    for k in (0, 1):
-        x = housing.rotation[:, k] - z * (z @ housing.rotation[:, k])
-        # parallel to rounding only: anything else has a defined projection
-        if np.linalg.norm(x) > 1e-6:
-            break
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
-
-
-def _checked_rotation(matrix: Any) -> np.ndarray:
-    where = f"{_WHERE}.rotationMatrixAxes"
-    try:
-        rotation = np.array(matrix, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        rotation = np.zeros(0)
-    if rotation.shape != (3, 3) or not np.all(np.isfinite(rotation)):
-        raise InputError(f"{where} must be a rotation matrix (3, 3), got {matrix!r}.")
-    # 1e-8: a matrix computed in double precision is orthonormal to 1e-15, one typed with few digits is not meant
-    if np.abs(rotation.T @ rotation - np.eye(3)).max() > 1e-8 or np.linalg.det(rotation) < 0.0:
-        raise InputError(f"{where} must be orthonormal and right-handed, got {matrix!r}.")
-    return rotation
-
-
-def _joint_points(housing: Item, journal: Item, position: Any, use_global: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Joint point of either side in the reference configuration, global [m]."""
-    if housing.is_marker or journal.is_marker:
-        if np.size(position):
-            raise InputError(f"{_WHERE}.position must be [] if a marker is given, which sets it; got {position!r}.")
-        first = housing.position if housing.is_marker else journal.position
-        second = journal.position if journal.is_marker else housing.position
-        return first.copy(), second.copy()
-    point = require_vector(f"{_WHERE}.position", position, 3, "m")
-    if not use_global:
-        point = housing.position + housing.rotation @ point
-    return point, point.copy()
-
-
-def _check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
-    """Refuse an initial state in which the journal isn't inside the bore."""
-    for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
-        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
-            raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
-        side.update(None, item.initial_coordinates, item.initial_velocities, None)
-    motion = np.empty(10)
-    cosine = kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
-    clearance, length = bearing.radial_clearance, bearing.length
-    tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
-    if tilt * length >= 2.0 * clearance:
-        raise InputError(
-            f"{_WHERE}: the axes of the two bodies are not parallel within the clearance in the initial configuration: "
-            f"tilt {tilt:.6g} rad, at most {2.0 * clearance / length:.6g} rad fit (2 c / L); check "
-            "the initial rotations."
-        )
-    half = 0.5 * length
-    ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
-    if max(ends) >= clearance:
-        raise InputError(
-            f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
-            f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
-            f"{clearance:.6g} m; check the initial positions, and whether the clearance is radial."
-        )
-
-
-def _hold_axially(
-    mbs: Any, name: str, housing: Item, journal: Item, points: tuple[np.ndarray, np.ndarray], rotation: np.ndarray
-) -> Any:
-    """Constrain the relative displacement along the joint axis to its reference value."""
-    axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
-    markers = []
-    for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
-        if item.kind is None:
-            if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
-                raise InputError(
-                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none exists on spatial "
-                    "cables; use axial=Free(), with a constraint of your own if one is needed."
-                )
-            if abs(axial_offset) > 0.0:
-                raise InputError(
-                    f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "
-                    f"reference configuration, got an axial distance of {axial_offset:.6g} m."
-                )
-            markers.append(item.marker)
-            continue
-        if item is journal:
-            point = point - rotation[:, 2] * axial_offset
-        transform = np.eye(4)
-        transform[:3, :3] = item.node_rotation.T @ rotation
-        transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
-        markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform))
-    if housing.kind is None:
-        raise InputError(f"{_WHERE}: axial=Held() needs a rigid body, a rigid node or ground as housing.")
-    return mbs.AddObject(
-        eii.ObjectJointGeneric(
-            name=f"{name} axial",
-            markerNumbers=markers,
-            constrainedAxes=[0, 0, 1, 0, 0, 0],
-            visualization=eii.VObjectJointGeneric(show=False),
-        )
-    )
-
-
-def _rigid_marker(mbs: Any, name: str, item: Item, transform: np.ndarray) -> Any:
-    """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
-    if item.node is None:
-        # a ground object of our own at the origin holds the marker
-        body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
-    else:
-        body = body_of_node(mbs, item.node)
-        if body is None:
-            raise InputError(f"{_WHERE}: axial=Held() needs the rigid body of node {int(item.node)}, add it before.")
-    return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))

@@ -12,8 +12,8 @@ from exudyn_ehd.coupling import kinematics
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.sides import NodeSide, read_state
 from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.settle import settle
-from exudyn_ehd.joint.steady import EquilibriumResult, equilibrium
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 _INITIAL = exu.ConfigurationType.Initial

@@ -44,6 +44,7 @@ from exudyn_ehd.film.compliant_newton import (
     take_step,
     violation,
 )
+from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.liner import LINER_INSTANT, failed_film
@@ -63,7 +64,6 @@ from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
 
 MAX_NEWTON_STEPS = 60
-MAX_PSEUDO_STEPS = 60
 ERROR_TOLERANCE = 1e-13
 STEP_TOLERANCE = 1e-8
 
@@ -202,12 +202,12 @@ class CompliantFilmSolver(FilmSolver):
             return Status.NO_FILM, 0
         steps, ok = 0, False
         if self.work.warm:
-            ok, steps = self._target(P)
+            ok, steps = self.target(P)
         if not ok:
-            ok, more = self._cold(P)
+            ok, more = cold_start(self, P)
             steps += more
         if not ok:
-            ok, more = self._pseudo_transient(P)
+            ok, more = pseudo_transient(self, P)
             steps += more
         self.work.warm = ok
         if not ok:
@@ -247,45 +247,16 @@ class CompliantFilmSolver(FilmSolver):
             self.mass_old[:] = mass_old
         self.system.inverse_step = self.mass_inverse
 
-    def _target(self, P: np.ndarray) -> tuple[bool, int]:
+    def target(self, P: np.ndarray) -> tuple[bool, int]:
         """Newton for the film that is asked for, from P and the present sets."""
         if self.closure.conserves_mass:
             # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
             self.full |= self.grid.fixed
             self.film_fill[self.full] = 1.0
             P[~self.full] = self.system.cavity_pressure
-        return self._newton(P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
+        return self.newton(P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
 
-    def _cold(self, P: np.ndarray) -> tuple[bool, int]:
-        """From a dry guess; a film that keeps its mass from one that ruptures without."""
-        self.work.warm = False
-        self._dry_guess(P)
-        if not self.closure.conserves_mass:
-            return self._target(P)
-        ok, steps = self._newton(P, self.ones, False, 0.0, self.nothing)
-        if not ok:
-            return False, steps
-        self._all_full(np.logical_or(self.work.active, self.grid.fixed))
-        ok, more = self._target(P)
-        return ok, steps + more
-
-    def _all_full(self, full: np.ndarray) -> None:
-        self.full[:] = full
-        np.logical_and(full, ~self.grid.fixed, out=self.work.active)
-        self.film_fill[:] = 1.0
-
-    def _dry_guess(self, P: np.ndarray) -> None:
-        """Pressure that would keep a thin film open: half the gap's mean where the undeformed surfaces come closer than that."""
-        H0 = self.rigid[0]
-        film = 0.1
-        guess = np.zeros(H0.shape)
-        if self.contact is None and H0.min() < film:
-            guess = np.maximum((film - H0) / self.beta, 0.0)
-        free = ~self.grid.fixed
-        lowest = self.system.cavity_pressure if self.kind != FULL else 0.0
-        P[free] = np.maximum(guess, lowest)[free]
-
-    def _settle(self, P: np.ndarray) -> None:
+    def settle(self, P: np.ndarray) -> None:
         """Every column under the pressure P."""
         g, c, clips = self.grid, self.columns, self.kind == CLIPPED
         pc, contact, limiter = self.system.cavity_pressure, self.contact, self.limiter
@@ -332,7 +303,7 @@ class CompliantFilmSolver(FilmSolver):
     ) -> tuple[float, float]:
         """Residual at P and fill; returns (norm of what does not hold, smallest film gap)."""
         g, c = self.grid, self.columns
-        self._settle(P)
+        self.settle(P)
         set_storage(
             c, P, fill, self.area, self.mass_old, self.mass_inverse, self.with_rate, extra, extra_old, conserves, self.beta,
             self.storage,
@@ -343,7 +314,7 @@ class CompliantFilmSolver(FilmSolver):
         complementary = self.kind == COMPLEMENTARY and not conserves
         return violation(c, self.residual, P, g.fixed, self.system.cavity_pressure, complementary)
 
-    def _newton(
+    def newton(
         self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
     ) -> tuple[bool, int]:
         """Newton from P and fill, in place; ``extra`` is the rate of pseudo time, towards ``extra_old``."""
@@ -423,47 +394,6 @@ class CompliantFilmSolver(FilmSolver):
             return False
         np.maximum(fill, 0.0, out=fill)
         return True
-
-    def _pseudo_transient(self, P: np.ndarray) -> tuple[bool, int]:
-        """Implicit steps of a storage of its own towards the target, from short to long; the last one is the target itself."""
-        conserves, fill = self.closure.conserves_mass, self.film_fill
-        self.work.warm = False
-        self._dry_guess(P)
-        if conserves:
-            self._all_full(np.ones(self.grid.shape, dtype=np.bool_))
-        rate = (
-            abs(self.vx)
-            + abs(self.vz)
-            + float(np.max(np.abs(self.rigid[2])))
-            + self.inverse
-            + self.mass_inverse
-            + 1e-300
-        )
-        extra, total = 100.0 * rate, 0
-        start, start_fill, start_full = P.copy(), fill.copy(), self.full.copy()
-        self._settle(P)
-        for _ in range(MAX_PSEUDO_STEPS):
-            old = start_fill * self.columns.H if conserves else self.beta * start
-            ok, steps = self._newton(P, fill, conserves, extra, old)
-            total += steps
-            if not ok:
-                P[:], fill[:], self.full[:] = start, start_fill, start_full
-                self._settle(P)
-                extra *= 8.0
-                if extra > 1e6 * rate:
-                    return False, total
-                continue
-            self.work.warm = True
-            start[:], start_fill[:], start_full[:] = P, fill, self.full
-            extra *= 0.3
-            if extra < 1e-3 * rate:
-                ok, steps = self._target(P)
-                total += steps
-                if ok:
-                    return True, total
-                P[:], fill[:], self.full[:] = start, start_fill, start_full
-                self._settle(P)
-        return False, total
 
     def _finish(self, P: np.ndarray) -> None:
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""

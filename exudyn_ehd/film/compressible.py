@@ -24,22 +24,27 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.band_lu import solve_lu, solve_lu_transposed
-from exudyn_ehd.film.density import CompressibleLaw
+from exudyn_ehd.film.band_lu import solve_lu
+from exudyn_ehd.film.density import CompressibleLaw, pressure_near
 from exudyn_ehd.film.density_newton import (
+    AT,
     CLIPPED,
     COMPLEMENTARY,
     FILLED,
     FULL,
+    RHO,
     Balance,
     Buffers,
     carry_density,
     carry_density_plain,
     compressible_balance,
+    dense_band,
+    dense_link_derivatives,
     factor_compressible,
     link_factors,
     raise_to,
     solve_compressible,
+    solve_exact_transposed,
     solved_viscosity,
 )
 from exudyn_ehd.film.elrod import _lu_buffers
@@ -91,8 +96,9 @@ class CompressibleFilmSolver(FilmSolver):
         )
         lower, upper = _lu_buffers(w)
         self.buffers = Buffers(
-            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.ones((6, *shape)), np.zeros(shape)
+            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.ones((8, *shape)), np.zeros(shape)
         )
+        self.buffers.fields[AT] = np.nan
         self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
         self.sigma_known = False
         self.exact = False
@@ -107,7 +113,7 @@ class CompressibleFilmSolver(FilmSolver):
     @property
     def rho(self) -> np.ndarray:
         """Density ratio of the last solution (n, m)."""
-        return self.buffers.fields[4]
+        return self.buffers.fields[RHO]
 
     @property
     def content(self) -> np.ndarray:
@@ -259,6 +265,16 @@ class CompressibleFilmSolver(FilmSolver):
         np.divide(ratio_out, self.rho, out=p_P_out)
         return True
 
+    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure of the last solution (n, m) and its derivative to the transformed one; False where that has no pressure."""
+        s, c = self.system, self.buffers.fields
+        floor = -np.inf if self.kind == FULL else s.cavity_pressure
+        known = c[AT], c[AT + 1], c[AT + 2], c[AT + 3], c[AT + 4], c[AT + 5]
+        if pressure_near(s.pressure, self.pressure_scale, floor, self.law.kernel_table, *known, p_out, p_P_out):
+            return True
+        rest = np.empty((2, *p_out.shape))
+        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
+
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette mass flows of the links in theta and z, and the rate at which a full film's mass grows with its gap."""
         sigma_x, sigma_z = self._sigma()
@@ -272,30 +288,34 @@ class CompressibleFilmSolver(FilmSolver):
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
-        w, b = self.work, self.buffers
-        self._make_exact()
-        solve_lu_transposed(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs)
+        w = self.work
+        solve_exact_transposed(
+            self._fill, self.film, self.kind, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs
+        )
+        self.exact = True
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
         return fields
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
-        self._make_exact()
-        w, b = self.work, self.buffers
-        solve_in_tiles(b.upper, b.lower, b.inv_diag, False, w.count, w.width, rhs)
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve with Newton's matrix at the solution for rhs (count,), in place."""
-        self._make_exact()
-        w, b = self.work, self.buffers
-        solve_lu(b.lower, b.upper, b.inv_diag, w.count, w.width, rhs.reshape(1, -1))
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
 
-    def _make_exact(self) -> None:
-        """Factor Newton's matrix at the solution, if the last one was before."""
+    def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
+        """L and U of Newton's matrix at the solution, factored if the last one was before."""
+        w, b = self.work, self.buffers
         if not self.exact:
-            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), self.buffers)
+            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), b)
             self.exact = True
+        return dense_band(b.lower, w.count, w.width), dense_band(b.upper, w.count, w.width)
 
     def _unknown_pressure(self) -> np.ndarray:
         return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
@@ -316,6 +336,12 @@ class CompressibleFilmSolver(FilmSolver):
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
         g, s, d, f = self.grid, self.system, self.link_fields, self.flux
+        if f is None and self.kind != FILLED:
+            dense_link_derivatives(
+                s.linear_pressure, self.rho, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x,
+                g.link_z, d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            return d
         sigma_x, sigma_z = self._sigma()
         if f is None:
             plain_link_derivatives(

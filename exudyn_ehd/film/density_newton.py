@@ -7,13 +7,13 @@ full: P is the unknown of a vertex, else its fill.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.band_lu import add_flux, factor_lu, solve_lu
-from exudyn_ehd.film.density import density_of_transformed
+from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.density import density_near, density_of_transformed, near_value
 from exudyn_ehd.film.direct import PAD, number_cells
 from exudyn_ehd.film.elrod import _add_entry
 
@@ -29,7 +29,10 @@ TO_THE_END = 0.9
 MAX_CUT_STEPS = 16
 EXACT_RATIO = 1e-8
 FULL, CLIPPED, COMPLEMENTARY, FILLED = 0, 1, 2, 3
+AT, RHO, RHO_P = 0, 6, 7
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned: Any = np.uint64
+_0, _1 = _unsigned(0), _unsigned(1)
 
 
 class Balance(NamedTuple):
@@ -47,7 +50,11 @@ class Balance(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """Arrays that a solution works on: numbering, factor, right-hand side, four fields and the residual (n, m)."""
+    """Arrays that a solution works on: numbering, factor (`dense_band`), right-hand side, fields (8, n, m) and residual (n, m).
+
+    The fields are transformed pressures at which the law is known, p, s and its derivatives there (`density.density_of_transformed`), and rho and
+    rho_P at the pressures of the last balance.
+    """
 
     order: np.ndarray
     number: np.ndarray
@@ -83,6 +90,40 @@ def compressible_balance(P, fill, rho, film, out):
             q = kz[i, j] * (P[i, j] - P[i, j + 1]) + 0.5 * f * up * (rho[i, j] + rho[i, j + 1])
             out[i, j] += q
             out[i, j + 1] -= q
+
+
+@njit(cache=True, fastmath=_FAST)
+def _link_flows(kx, fx, P_a, P_b, rho_a, rho_b, out):
+    """Mass flows of a full film over links a -> b, flat."""
+    for c in range(out.size):
+        out[c] = kx[c] * (P_a[c] - P_b[c]) + 0.5 * fx[c] * (rho_a[c] + rho_b[c])
+
+
+@njit(cache=True, fastmath=_FAST)
+def _gather_flows(area, rho, grow, across, across_in, along, along_in, out):
+    """Flows that leave and the mass in store, less the flows that come in, flat."""
+    for c in range(out.size):
+        out[c] = area[c] * rho[c] * grow[c] + across[c] - across_in[c] + along[c] - along_in[c]
+
+
+@njit(cache=True)
+def full_balance(P, rho, film, out):
+    """As `compressible_balance` for a full film without a history, in loops that the compiler vectorises."""
+    n, m = P.shape
+    size = n * m
+    last = size - m
+    p, r, q = P.reshape(-1), rho.reshape(-1), out.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    area, grow = film.area.reshape(-1), film.grow.reshape(-1)
+    along = np.empty(size + m)
+    across = np.empty(size + 1)
+    _link_flows(kx[:last], fx[:last], p[:last], p[m:], r[:last], r[m:], along[m:size])
+    _link_flows(kx[last:], fx[last:], p[last:], p[:m], r[last:], r[:m], along[size:])
+    along[:m] = along[size:]
+    # nothing flows over the last row's links in z
+    _link_flows(kz[: size - 1], fz[: size - 1], p[: size - 1], p[1:], r[: size - 1], r[1:], across[1:size])
+    across[0] = across[size] = 0.0
+    _gather_flows(area, r, grow, across[1:], across[:size], along[m:], along[:size], q)
 
 
 @njit(cache=True)
@@ -159,32 +200,64 @@ def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, wi
 
 
 @njit(cache=True)
-def assemble_full(rho_P, film, number, count, width, lower, upper):
-    """As `assemble_compressible` where every unknown is a pressure and every film full."""
-    n, m = rho_P.shape
-    kx, kz, fx, fz, area, grow = film.kx, film.kz, film.fx, film.fz, film.area, film.grow
+def assemble_full(rho_P, film, number, order, count, lower, upper):
+    """As `assemble_compressible` where every unknown is a pressure and every film full, into dense bands (count, stride).
+
+    Row by row with flat unsigned indices, which need no check of their sign.
+    """
+    n, m = number.shape
+    size, rows = _unsigned(n * m), _unsigned(m)
+    last = size - rows
+    by, places = rho_P.reshape(-1), number.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    area, grow = film.area.reshape(-1), film.grow.reshape(-1)
+    low, up = lower.reshape(-1), upper.reshape(-1)
+    stride = _unsigned(lower.shape[1])
+    for q in range(low.size):
+        low[q] = 0.0
+    for q in range(up.size):
+        up[q] = 0.0
     for r in range(count):
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a = number[i, j]
-            b = number[nxt, j]
-            by_a = 0.5 * rho_P[i, j]
-            if a >= 0:
-                upper[a, 0] += area[i, j] * rho_P[i, j] * grow[i, j]
-            if (a >= 0 or b >= 0) and kx[i, j] != 0.0:
-                k = kx[i, j]
-                f = fx[i, j]
-                add_flux(a, b, k + f * by_a, 0.5 * f * rho_P[nxt, j] - k, lower, upper)
-            if j + 1 < m:
-                b = number[i, j + 1]
-                if a >= 0 or b >= 0:
-                    k = kz[i, j]
-                    f = fz[i, j]
-                    add_flux(a, b, k + f * by_a, 0.5 * f * rho_P[i, j + 1] - k, lower, upper)
+        row = _unsigned(r)
+        c = _unsigned(order[r])
+        nxt = c + rows if c < last else c - last
+        prv = c - rows if c >= rows else c + last
+        # links in theta, then in z, where those at the film's ends conduct nothing
+        k, f, b = kx[c], 0.5 * fx[c], places[nxt]
+        diagonal = k
+        carried = area[c] * grow[c] + f
+        if k != 0.0 and b >= 0:
+            if b > r:
+                up[row * stride + _unsigned(b - r)] += f * by[nxt] - k
+            else:
+                low[_unsigned(b) * stride + _unsigned(r - b)] += f * by[nxt] - k
+        k, f, b = kx[prv], 0.5 * fx[prv], places[prv]
+        diagonal += k
+        carried -= f
+        if k != 0.0 and b >= 0:
+            if b > r:
+                up[row * stride + _unsigned(b - r)] -= f * by[prv] + k
+            else:
+                low[_unsigned(b) * stride + _unsigned(r - b)] -= f * by[prv] + k
+        k, f = kz[c], 0.5 * fz[c]
+        diagonal += k
+        carried += f
+        if k != 0.0 and places[c + _1] >= 0:
+            up[row * stride + _1] += f * by[c + _1] - k
+        if c > _0:
+            k, f = kz[c - _1], 0.5 * fz[c - _1]
+            diagonal += k
+            carried -= f
+            if k != 0.0 and places[c - _1] >= 0:
+                low[(row - _1) * stride + _1] -= f * by[c - _1] + k
+        up[row * stride] = diagonal + carried * by[c]
+
+
+@njit(cache=True)
+def dense_band(buffer, count, width):
+    """The part of a contiguous buffer that holds a band, row after row."""
+    stride = width + 1 + PAD
+    return buffer.reshape(-1)[: count * stride].reshape(count, stride)
 
 
 @njit(cache=True)
@@ -194,13 +267,14 @@ def factor_compressible(fill, film, kind, full, b):
         count, width = number_cells(full, film.kx, b.order, b.number)
     else:
         count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
+    lower, upper = dense_band(b.lower, count, width), dense_band(b.upper, count, width)
     if kind == FILLED:
         assemble_compressible(
-            fill, b.fields[4], b.fields[5], film, full, b.number, b.order, count, width, b.lower, b.upper
+            fill, b.fields[RHO], b.fields[RHO_P], film, full, b.number, b.order, count, width, lower, upper
         )
     else:
-        assemble_full(b.fields[5], film, b.number, count, width, b.lower, b.upper)
-    return factor_lu(b.lower, b.upper, count, width, b.inv_diag), count, width
+        assemble_full(b.fields[RHO_P], film, b.number, b.order, count, lower, upper)
+    return factor_lu(lower, upper, count, width, b.inv_diag), count, width
 
 
 @njit(cache=True)
@@ -277,10 +351,21 @@ def _start(P, fill, film, full, pc, kind):
 
 
 @njit(cache=True)
-def _balance_at(P, fill, film, scale, floor, law, share, b):
+def _balance_at(P, fill, film, kind, scale, floor, law, share, b):
+    """Density and balance at P."""
     c = b.fields
-    density_of_transformed(P, scale, floor, law, share, c[1], c[2], c[3], c[4], c[5])
-    compressible_balance(P, fill, c[4], film, b.residual)
+    known = c[AT], c[AT + 1], c[AT + 2], c[AT + 3], c[AT + 4], c[AT + 5]
+    if not density_near(P, scale, floor, law, share, *known, c[RHO], c[RHO_P]):
+        density_of_transformed(P, scale, floor, law, share, *known, c[RHO], c[RHO_P])
+    _balance(P, fill, film, kind, b)
+
+
+@njit(cache=True)
+def _balance(P, fill, film, kind, b):
+    if kind == FILLED:
+        compressible_balance(P, fill, b.fields[RHO], film, b.residual)
+    else:
+        full_balance(P, b.fields[RHO], film, b.residual)
 
 
 @njit(cache=True)
@@ -295,7 +380,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     floor = -np.inf if kind == FULL else pc
     m = P.shape[1]
     _start(P, fill, film, full, pc, kind)
-    _balance_at(P, fill, film, scale, floor, law, share, b)
+    _balance_at(P, fill, film, kind, scale, floor, law, share, b)
     last = moved = 0.0
     fresh = not held
     end = law.highest / scale
@@ -309,20 +394,23 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
         for r in range(count):
             i = b.order[r] // m
             b.x[r] = -b.residual[i, b.order[r] - i * m]
-        solve_lu(b.lower, b.upper, b.inv_diag, count, width, b.x.reshape(1, b.x.size))
+        solve_lu(
+            dense_band(b.lower, count, width), dense_band(b.upper, count, width), b.inv_diag, count, width,
+            b.x.reshape(1, b.x.size),
+        )  # fmt: skip
         size, peak, cuts = _take(P, fill, full, b.order, count, b.x, pc, kind, end if step >= WHOLE_STEPS else np.inf)
         if not size < 1e300:
             return False, step + 1, False, count, width
         if size <= ERROR_TOLERANCE:
             return True, step + 1, not (held and step == 0) and moved <= LAST_STEP, count, width
         moved += size
-        _balance_at(P, fill, film, scale, floor, law, share, b)
+        _balance_at(P, fill, film, kind, scale, floor, law, share, b)
         changes = 0
         if kind >= COMPLEMENTARY:
             changes = _select(P, fill, b.residual, film.fixed, full, pc, kind, pc - SET_TOLERANCE * peak)
         if changes > 0:
             # those that left had the cavity's density already
-            compressible_balance(P, fill, b.fields[4], film, b.residual)
+            _balance(P, fill, film, kind, b)
         cut_steps = cut_steps + 1 if cuts > 0 else 0
         if cut_steps > MAX_CUT_STEPS:
             return False, step + 1, False, count, width
@@ -365,13 +453,28 @@ def solved_viscosity(P, scale, floor, law, fields, p_out, ratio_out, ratio_P_out
             q = P[i, j] * scale
             if not law.lowest < q < law.highest or P[i, j] < floor:
                 return False
-            s = fields[2, i, j]
-            rho = fields[4, i, j]
-            p_out[i, j] = fields[1, i, j] * per_scale
+            near, p, s, s_q = near_value(
+                q, fields[AT, i, j], fields[AT + 1, i, j], fields[AT + 2, i, j], fields[AT + 3, i, j], fields[AT + 4, i, j],
+                fields[AT + 5, i, j],
+            )  # fmt: skip
+            if not near:
+                return False
+            rho = fields[RHO, i, j]
+            p_out[i, j] = p * per_scale
             p_P_out[i, j] = s
             ratio_out[i, j] = s * rho
-            ratio_P_out[i, j] = fields[3, i, j] * rho * scale + fields[5, i, j] * s
+            ratio_P_out[i, j] = s_q * rho * scale + fields[RHO_P, i, j] * s
     return True
+
+
+@njit(cache=True)
+def solve_exact_transposed(fill, film, kind, full, count, width, b, exact, x):
+    """Solve the transposed system at the solution for every row of x (k, count), in place; ``exact``: its factor is there."""
+    if not exact:
+        factor_compressible(fill, film, kind, full, b)
+    solve_lu_transposed(
+        dense_band(b.lower, count, width), dense_band(b.upper, count, width), b.inv_diag, count, width, x
+    )
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -388,6 +491,27 @@ def carry_density(sigma_x, sigma_z, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z
             more = width_x[i] * (sigma_z[i, j] - 1.0)
             DZ[i, j] += more * vz * cz_h[i, j]
             SZ[i, j] += more * cz[i, j]
+
+
+@njit(cache=True, fastmath=_FAST)
+def dense_link_derivatives(P, rho, H, HF, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ):
+    """`sweep.plain_link_derivatives` of a film that is full everywhere, with the density's mean on the links."""
+    n, m = H.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        linked = 0.5 if link_x[i] != 0.0 else 0.0
+        lx = 3.0 * link_x[i] * flow_x
+        wx = width_x[i]
+        for j in range(m):
+            h = HF[i, j]
+            sigma = linked * (rho[i, j] + rho[nxt, j])
+            DX[i, j] = (sigma * vx - lx * h * h * (P[nxt, j] - P[i, j])) * width_z[j]
+            SX[i, j] = sigma * h * width_z[j]
+        for j in range(m - 1):
+            h = 0.5 * (H[i, j] + H[i, j + 1])
+            sigma = 0.5 * (rho[i, j] + rho[i, j + 1])
+            DZ[i, j] = (sigma * vz - 3.0 * h * h * link_z[j] * (P[i, j + 1] - P[i, j])) * wx
+            SZ[i, j] = sigma * h * wx
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -29,7 +29,7 @@ from numba import njit
 
 from exudyn_ehd.film.band_lu import factor_lu, solve_lu, solve_lu_transposed
 from exudyn_ehd.film.cavitation import FilmSystem, SwiftStieber
-from exudyn_ehd.film.direct import PAD, Workspace, number_cells, solve_many
+from exudyn_ehd.film.direct import PAD, Workspace, number_cells, solve_four_by_dots, solve_one
 from exudyn_ehd.film.tiles import solve_in_tiles
 from exudyn_ehd.film.transport import (
     FULL_COUNT,
@@ -38,9 +38,9 @@ from exudyn_ehd.film.transport import (
     factor_transport,
     flow_direction,
     solve_transport,
-    solve_transport_transposed,
     transport_buffers,
 )
+from exudyn_ehd.film.transport_transposed import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.status import Status, require_number
 
 MAX_NEWTON_STEPS = 60
@@ -138,12 +138,13 @@ class ElrodAdams:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         if work.carried:
             t = _transport(work)
-            if t.shape[FULL_COUNT] == work.count:
-                solve_many(t.band, t.diagonal, work.count, t.shape[WIDTH], rhs)
-                return
-            columns = np.ascontiguousarray(rhs.T)
-            solve_transport_transposed(t, work.count, columns)
-            rhs[:] = columns.T
+            if t.shape[FULL_COUNT] < work.count:
+                reduce_transposed(t, work.count, rhs)
+            fours = rhs.shape[0] - rhs.shape[0] % 4
+            for k in range(0, fours, 4):
+                solve_four_by_dots(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k : k + 4])
+            for k in range(fours, rhs.shape[0]):
+                solve_one(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k])
             return
         lower, upper = _lu_buffers(work)
         solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)

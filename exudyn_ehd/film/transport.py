@@ -12,7 +12,7 @@ in z have one sign each, the fills follow from each other along the flow, ``fill
     (I - G) w = R T (K (y - Pc) + c),    G = R T K V,    A y = b,    A V = E,    P = y + V w,
 
 is left: as many unknowns as the front has vertices, column diagonally dominant and non-negative in G (no pivoting), because no more oil
-comes round than the front has taken in. The transposed system goes the same way backwards.
+comes round than the front has taken in. `exudyn_ehd.film.transport_transposed` goes the same way backwards.
 
 Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs half a
 solution; then the cavitated ones along the flow, row by row. All of it depends on the sets alone.
@@ -27,7 +27,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.columns import solve_columns, solve_columns_from
+from exudyn_ehd.film.columns import solve_columns_from
 from exudyn_ehd.film.direct import assemble_band, factor_band, solve_one
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -330,27 +330,6 @@ def _carry_columns(t, placed, P, fill_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _carry_back(t, placed, mu):
-    """mu = T^T mu for every column of mu (cavitated vertices, sides), in place."""
-    sides = mu.shape[1]
-    for c in range(placed - 1, -1, -1):
-        target = mu[c]
-        inverse = t.inverse[c]
-        for q in range(sides):
-            target[q] *= inverse
-        if t.along[c] >= 0:
-            f = t.by_along[c]
-            up = mu[t.along[c]]
-            for q in range(sides):
-                up[q] += f * target[q]
-        if t.across[c] >= 0:
-            f = t.by_across[c]
-            up = mu[t.across[c]]
-            for q in range(sides):
-                up[q] += f * target[q]
-
-
-@njit(cache=True, fastmath=_FAST)
 def _factor_loop(t, placed):
     """I - G, factored; False if a pivot vanishes."""
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
@@ -451,56 +430,3 @@ def solve_transport(t, unknowns, x):
                 s += V[r, b] * w[b]
             P[r] += s
     _carry(t, placed, P, fill)
-
-
-@njit(cache=True, fastmath=_FAST)
-def solve_transport_transposed(t, unknowns, x):
-    """Solve the transposed system for every column of x (unknowns, sides), C-contiguous, in place."""
-    count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
-    placed = unknowns - count
-    sides = x.shape[1]
-    g, mu = x[:count], x[count:unknowns]
-    if fronts > 0:
-        back = mu.copy()
-        _carry_back(t, placed, back)
-        z = np.zeros((fronts, sides))
-        V = t.spread[: count * stride].reshape(count, stride)
-        trial = g.copy()
-        for e in range(t.shape[DRIVEN]):
-            target = trial[t.driven_from[e]]
-            k = t.driven_by[e]
-            known = back[t.driven_to[e]]
-            for q in range(sides):
-                target[q] += k * known[q]
-        for r in range(count):
-            for b in range(fronts):
-                v = V[r, b]
-                for q in range(sides):
-                    z[b, q] += v * trial[r, q]
-        for a in range(fronts):
-            for b in range(a):
-                f = t.loop[b, a]
-                for q in range(sides):
-                    z[a, q] -= f * z[b, q]
-            inverse = 1.0 / t.loop[a, a]
-            for q in range(sides):
-                z[a, q] *= inverse
-        for a in range(fronts - 1, -1, -1):
-            for b in range(a + 1, fronts):
-                f = t.loop[b, a]
-                for q in range(sides):
-                    z[a, q] -= f * z[b, q]
-        for e in range(t.shape[TAKEN]):
-            target = mu[t.taken_from[e]]
-            f = t.taken_by[e]
-            known = z[t.taken_to[e]]
-            for q in range(sides):
-                target[q] += f * known[q]
-    _carry_back(t, placed, mu)
-    for e in range(t.shape[DRIVEN]):
-        target = g[t.driven_from[e]]
-        k = t.driven_by[e]
-        known = mu[t.driven_to[e]]
-        for q in range(sides):
-            target[q] += k * known[q]
-    solve_columns(t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)

@@ -281,11 +281,19 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
 @njit(cache=True, inline="always")
 def hermite_at(x, alpha, q_table, table, bucket, bucket_scale):
     """p, dp/dq and d2p/dq2 of `hermite_inverse` at one x below the table's end."""
+    p, r, r_q, _, _ = hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale)
+    return p, r, r_q
+
+
+@njit(cache=True, inline="always")
+def hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale):
+    """As `hermite_at`, with the third and the fourth derivative."""
     if x == 0.0:
-        return 0.0, 1.0, alpha
+        return 0.0, 1.0, alpha, 2.0 * alpha**2, 6.0 * alpha**3
     if x < 0.0:
         r = 1.0 / (1.0 - alpha * x)
-        return -np.log1p(-alpha * x) / alpha, r, alpha * r * r
+        a = alpha * r
+        return -np.log1p(-alpha * x) / alpha, r, a * r, 2.0 * a**2 * r, 6.0 * a**3 * r
     at = min(int(x * bucket_scale), bucket.size - 2)
     low = bucket[at]
     high = bucket[at + 1] + 1
@@ -302,4 +310,6 @@ def hermite_at(x, alpha, q_table, table, bucket, bucket_scale):
         c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * (c[5] + t * c[6])))),
         w * (c[2] + t * (2.0 * c[3] + t * (3.0 * c[4] + t * (4.0 * c[5] + t * 5.0 * c[6])))),
         w * w * (2.0 * c[3] + t * (6.0 * c[4] + t * (12.0 * c[5] + t * 20.0 * c[6]))),
+        w * w * w * (6.0 * c[4] + t * (24.0 * c[5] + t * 60.0 * c[6])),
+        w * w * w * w * (24.0 * c[5] + t * 120.0 * c[6]),
     )

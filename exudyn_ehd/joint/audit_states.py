@@ -10,7 +10,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.effects import History
-from exudyn_ehd.joint.model import BearingModel, Evaluation
+from exudyn_ehd.joint.evaluation import Evaluation
+from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.status import Status
 
 # Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started.

@@ -8,8 +8,8 @@ from scipy.sparse.linalg import SuperLU, splu
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.bore import ModalBore, NodalBore
 from exudyn_ehd.joint.bore_settle import DenseElasticity, ModalElasticity
+from exudyn_ehd.joint.effects import Effects
 from exudyn_ehd.joint.elastic import ElasticBearingModel
-from exudyn_ehd.joint.model import Effects
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.mesh import BushMesh

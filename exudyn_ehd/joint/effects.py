@@ -11,13 +11,16 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
+from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.flux import FluxEffect
+from exudyn_ehd.film.liner import ElasticLiner
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.model import BearingModel
 
 __all__ = [
     "Contact",
+    "Effects",
     "FluxEffect",
     "GapLimiter",
     "GapTerm",
@@ -175,3 +178,38 @@ class ShearProduct:
         ratio_v_out *= other
         ratio_v_out += ratio_out * other_v
         ratio_out *= other
+
+
+@dataclass(frozen=True)
+class Effects:
+    """What takes part in a bearing model beside the plain film; empty by default.
+
+    Attributes
+    ----------
+    gap_terms : tuple of GapTerm
+    limiter : GapLimiter or None
+    contacts : tuple of Contact
+    flux : tuple of FluxEffect
+    pressure_law : PressureLaw or None
+    shear_factor : ShearFactor or None
+    thermal : ThermalEffect or None
+    density : CompressibleLaw or None
+        Of a compressible film; then also the ``pressure_law``.
+    wear : Wear or None
+        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
+    liner : ElasticLiner or None
+    uneven_drag : bool
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.drag`.
+    """
+
+    gap_terms: tuple[GapTerm, ...] = ()
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    pressure_law: PressureLaw | None = None
+    shear_factor: ShearFactor | None = None
+    thermal: ThermalEffect | None = None
+    density: CompressibleLaw | None = None
+    wear: Wear | None = None
+    liner: ElasticLiner | None = None
+    uneven_drag: bool = False

@@ -21,10 +21,11 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.stencil import add_gap
 from exudyn_ehd.joint.bore import Bore
 from exudyn_ehd.joint.bore_settle import Elasticity, condensed_tangent, settle
-from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.effects import Effects, History
 from exudyn_ehd.joint.elastic_product import TangentProduct
 from exudyn_ehd.joint.elastic_tangent import elastic_tangent
-from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel, Effects, Evaluation
+from exudyn_ehd.joint.evaluation import Evaluation
+from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel
 from exudyn_ehd.joint.nodal_tangent import NodalProduct, nodal_tangent
 from exudyn_ehd.joint.traction import BoreForces, traction
 from exudyn_ehd.status import Status

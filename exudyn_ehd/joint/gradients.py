@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
     from exudyn_ehd.film.liner import LinerFilmSolver
     from exudyn_ehd.film.solver import Sensitivities
-    from exudyn_ehd.joint.model import BearingModel, ContactFields
+    from exudyn_ehd.joint.buffers import ContactFields
+    from exudyn_ehd.joint.model import BearingModel
 
 SIZE = 10
 
@@ -146,9 +147,7 @@ def field_gradient(
 
 def shear_needs_adjoint(model: BearingModel) -> bool:
     """Whether fill or pressure enter the Couette shear."""
-    return (
-        model.solver.closure.conserves_mass or model.effects.pressure_law is not None or model.liner_solver is not None
-    )
+    return model.solver.closure.conserves_mass or model.ratio_q is not None or model.liner_solver is not None
 
 
 def has_extra_rows(model: BearingModel) -> bool:

@@ -14,7 +14,6 @@ at the start of the step and the time since, and ``evaluation.history()`` is the
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -23,144 +22,27 @@ from exudyn_ehd.film.choice import film_grid, film_solver, liner_film_solver
 from exudyn_ehd.film.compliant import CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.contact_loads import contact_wrench, couette_integral_law
-from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
-from exudyn_ehd.film.liner import ElasticLiner, LinerFilmSolver
+from exudyn_ehd.film.liner import LinerFilmSolver
 from exudyn_ehd.film.loads import (
     couette_integral,
     couette_integral_fill,
     couette_integral_ratio,
-    end_flows,
     pressure_integrals,
-    refined_peak,
     slope_integrals,
 )
 from exudyn_ehd.film.stencil import gap_slopes
 from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.joint.buffers import ContactFields, LimiterFields
 from exudyn_ehd.joint.drag import drag_integrals
-from exudyn_ehd.joint.effects import (
-    Contact,
-    FluxEffect,
-    GapLimiter,
-    GapTerm,
-    History,
-    PressureLaw,
-    ShearFactor,
-    ThermalEffect,
-    Wear,
-)
+from exudyn_ehd.joint.effects import Contact, Effects, History, Wear
+from exudyn_ehd.joint.evaluation import Evaluation
 from exudyn_ehd.joint.gradients import wrench_tangent
+from exudyn_ehd.joint.laws import apply_laws
+from exudyn_ehd.joint.quantities import power_loss, quantities, refined_peak, supply_flows
 from exudyn_ehd.status import Status
 
 MOTION_SIZE = 10
-
-
-@dataclass(frozen=True)
-class Effects:
-    """What takes part in a bearing model beside the plain film; empty by default.
-
-    Attributes
-    ----------
-    gap_terms : tuple of GapTerm
-    limiter : GapLimiter or None
-    contacts : tuple of Contact
-    flux : tuple of FluxEffect
-    pressure_law : PressureLaw or None
-    shear_factor : ShearFactor or None
-    thermal : ThermalEffect or None
-    density : CompressibleLaw or None
-        Of a compressible film; then also the ``pressure_law``.
-    wear : Wear or None
-        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
-    liner : ElasticLiner or None
-    uneven_drag : bool
-        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.drag`.
-    """
-
-    gap_terms: tuple[GapTerm, ...] = ()
-    limiter: GapLimiter | None = None
-    contacts: tuple[Contact, ...] = ()
-    flux: tuple[FluxEffect, ...] = ()
-    pressure_law: PressureLaw | None = None
-    shear_factor: ShearFactor | None = None
-    thermal: ThermalEffect | None = None
-    density: CompressibleLaw | None = None
-    wear: Wear | None = None
-    liner: ElasticLiner | None = None
-    uneven_drag: bool = False
-
-
-@dataclass(eq=False)
-class Evaluation:
-    """One film evaluation.
-
-    Attributes
-    ----------
-    status : Status
-    motion : (10,) array
-    wrench : (6,) array
-        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film.
-    iterations : int
-        Linear solves spent.
-    """
-
-    status: Status
-    motion: np.ndarray
-    wrench: np.ndarray
-    iterations: int
-    _model: BearingModel = field(repr=False)
-    _serial: int = field(repr=False)
-
-    def tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10), exact for the current active set, from the stored factor.
-
-        Raises
-        ------
-        RuntimeError
-            If the model has evaluated another state since.
-        """
-        self._require_current()
-        return self._model.tangent()
-
-    def quantities(self) -> dict[str, float]:
-        """Scalars of this state in SI units; see `BearingModel.quantities`."""
-        self._require_current()
-        return self._model.quantities()
-
-    def history(self) -> History | None:
-        """What the bearing remembers if this state is accepted; None without effects that remember."""
-        self._require_current()
-        return self._model.history()
-
-    def _require_current(self) -> None:
-        if self._model.serial != self._serial:
-            raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
-
-
-class ContactFields:
-    """Buffers of the contacts and of the gap limiter; allocated only if there are any."""
-
-    def __init__(self, shape: tuple[int, int], contacts: tuple[Contact, ...]) -> None:
-        self.P = [np.zeros(shape) for _ in contacts]
-        self.slope = [np.zeros(shape) for _ in contacts]
-        self.integrals = np.zeros((len(contacts), 5))
-        self.gradients = np.zeros((5, 4))
-        self.friction = [(float(c.friction_coefficient), float(c.transition_speed)) for c in contacts]
-        self.presses_below = max(c.presses_below for c in contacts)
-
-    def clear(self) -> None:
-        """No pressures."""
-        for known in (*self.P, *self.slope, self.integrals):
-            known[:] = 0.0
-
-
-class LimiterFields:
-    """Derivatives of the film's gap with respect to the true gap, at vertices and links, as `GapLimiter.limit` gives them."""
-
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.slope, self.bend = np.zeros(shape), np.zeros(shape)
-        self.face_slope = np.zeros(shape)
-        self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 
 class BearingModel:
@@ -417,7 +299,7 @@ class BearingModel:
             0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
         )
         if status is Status.CONVERGED and (law is not None or self.effects.shear_factor is not None):
-            status = self._apply_rheology()
+            status = apply_laws(self)
         elif status is Status.CONVERGED:
             self.P = self.solver.pressure
         if status is Status.CONVERGED and self.liner_solver is not None:
@@ -426,41 +308,6 @@ class BearingModel:
             if self.compliant is not None and self.contact_fields is not None:
                 self.pressing = self.contact_fields if smallest < self.contact_fields.presses_below else None
         return status
-
-    def _apply_rheology(self) -> Status:
-        """Pressure from the transformed one; viscosity ratio at the vertices with its derivatives to q, H and vx."""
-        s, shape = self.solver, self.grid.shape
-        self.P = s.pressure
-        if self.effects.pressure_law is None and self.effects.shear_factor is not None:
-            if self.ratio is None or self.ratio_h is None or self.ratio_v is None:
-                self.ratio, self.ratio_h, self.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-            self.effects.shear_factor.factor(s.H, s.vx, self.ratio, self.ratio_h, self.ratio_v)
-            return Status.CONVERGED
-        ratio, ratio_q = np.empty(shape), np.empty(shape)
-        ratio_h = ratio_v = s.nothing
-        self.P_q = None
-        if self.compressible is not None:
-            self.P, self.P_q = np.empty(shape), np.empty(shape)
-            if not self.compressible.viscosity(self.P, ratio, ratio_q, self.P_q):
-                return Status.NO_PRESSURE
-        elif self.effects.pressure_law is not None:
-            self.P = np.empty(shape)
-            if not self.effects.pressure_law.inverse(s.pressure * self.pressure_scale, self.P, ratio, ratio_q):
-                return Status.NO_PRESSURE
-            self.P /= self.pressure_scale
-            ratio_q *= self.pressure_scale
-            self.P_q = ratio.copy()
-        if self.effects.shear_factor is not None:
-            factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-            self.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
-            if self.P_q is not None:
-                ratio_h *= ratio
-                ratio_v *= ratio
-                ratio_q *= factor
-                factor *= ratio
-            ratio = factor
-        self.ratio, self.ratio_q, self.ratio_h, self.ratio_v = ratio, ratio_q, ratio_h, ratio_v
-        return Status.CONVERGED
 
     def share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""
@@ -565,130 +412,20 @@ class BearingModel:
         return self.tangent()
 
     def quantities(self) -> dict[str, float]:
-        """Scalars of the last evaluation.
-
-        The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it presses out,
-
-            power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
-
-        with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
-        equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
-        ends' cross section, which the journal's wrench carries. What bends an elastic bore is not in it: that is the bush's.
-
-        Returns
-        -------
-        dict
-            ``minimum_gap`` (m, over the whole bearing with its edges), ``minimum_gap_angle`` and ``minimum_gap_z`` (its place, rad and m),
-            ``eccentricity_ratio`` (at the mid-plane), ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from
-            parabolas through the largest vertex) at ``peak_angle`` (rad),
-            ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
-            ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
-            (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that stays in film and
-            contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-            by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
-            of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
-            ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K).
-        """
-        out = {
-            "minimum_gap": self.minimum_gap,
-            "eccentricity_ratio": math.hypot(self.pose[0], self.pose[1]),
-            "largest_eccentricity_ratio": float(largest_eccentricity(self.pose, self.half_length)),
-        }
-        if self.status is not Status.CONVERGED:
-            return out
-        out["minimum_gap_angle"], out["minimum_gap_z"] = self.minimum_place()
-        R = self.grid.reference_length
-        torque_scale = self.shear_scale * R**2
-        lower, upper = self._end_flows()
-        poiseuille = 6.0 * self.s_theta
-        load = self.pressing.integrals.sum(axis=0) * R**2 if self.pressing is not None else np.zeros(5)
-        peak, peak_angle, _ = self.refined_peak()
-        out |= {
-            "peak_pressure": peak,
-            "peak_angle": peak_angle % (2.0 * math.pi),
-            "friction_torque": self._friction_torque(),
-            "friction_torque_unbroken": -torque_scale * (self.omega * self.couette_unbroken - poiseuille),
-            "friction_torque_bush": -float(self.wrench[5]),
-            "power_loss": self.power_loss(),
-            "leakage": self.flow_scale * (lower + upper),
-            "leakage_lower": self.flow_scale * lower,
-            "leakage_upper": self.flow_scale * upper,
-            "contact_load": math.hypot(load[0], load[1]),
-            "contact_torque": self._contact_torque(),
-            "contact_power_loss": 0.0
-            - self._contact_torque() * self.omega
-            - float(self.contact_wrench[2]) * self.axial_speed,
-            "peak_contact_pressure": 0.0 if self.pressing is None else max(float(p.max()) for p in self.pressing.P),
-        }
-        if self.supply is not None:
-            out["supply_flow"] = float(self.supply_flows().sum())
-        if self.effects.thermal is not None:
-            out |= self.effects.thermal.quantities()
-        return out
+        """Scalars of the last evaluation by name, SI units; see `exudyn_ehd.joint.quantities.quantities`."""
+        return quantities(self)
 
     def power_loss(self) -> float:
-        """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
-        x_t, y_t, bx_t, by_t = self.motion[4:8].tolist()
-        bx, by = self.motion[2:4].tolist()
-        fx, fy, fz, mx, my, _ = self.wrench.tolist()
-        along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
-        power = fx * x_t + fy * y_t - mx * by_t + my * bx_t
-        power += self._friction_torque() * self.omega
-        power += along * self.axial_speed
-        if self.liner_solver is not None:
-            power += self.liner_solver.stored_power() * self.pressure_scale * self.flow_scale
-        return -power
-
-    def _friction_torque(self) -> float:
-        """Friction of film and contacts on the journal about its own axis, Nm."""
-        torque_scale = self.shear_scale * self.grid.reference_length**2
-        return -torque_scale * (self.omega * self.couette - 6.0 * self.s_theta) + self._contact_torque()
+        """Mechanical power that the last evaluation's film and contacts keep, W; see `exudyn_ehd.joint.quantities.quantities`."""
+        return power_loss(self)
 
     def supply_flows(self) -> np.ndarray:
         """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
-        if self.supply is None:
-            return np.zeros(0)
-        return self.supply.flows(self.solver.inflow()) * self.bearing.radial_clearance * self.grid.reference_length**2
-
-    def _contact_torque(self) -> float:
-        """Contact friction on the journal about its own axis."""
-        if self.pressing is None:
-            return 0.0
-        x, y, bx, by = self.motion[:4].tolist()
-        fx, fy, _, mx, my, mz = self.contact_wrench.tolist()
-        return mz - (x * fy - y * fx - bx * mx - by * my)
-
-    def _end_flows(self) -> tuple[float, float]:
-        s, g = self.solver, self.grid
-        if not g.link_z.any():
-            return 0.0, 0.0
-        if s.closure.conserves_mass:
-            inflow = s.inflow()
-            return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
-        fx, fz, rate = s.couette_flows()
-        full = s.work.active if self.supply is None else np.logical_or.reduce([s.work.active, *self.supply.masks])
-        return end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
-
-    def minimum_place(self) -> tuple[float, float]:
-        """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.
-
-        Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a profile, wear or
-        an elastic bore the vertex of the smallest gap.
-        """
-        R, half = self.grid.reference_length, self.half_length
-        if self.effects.gap_terms or self.liner_solver is not None:
-            i, j = divmod(int(np.argmin(self.solver.H)), self.grid.z.size)
-            return float(self.grid.x[i] % (2.0 * math.pi)), float(self.grid.z[j] * R)
-        x, y, bx, by = self.pose.tolist()
-        # |e|^2 at either end differs by 4 half (x bx + y by)
-        lean = x * bx + y * by
-        end = math.copysign(half, lean) if lean != 0.0 or bx != 0.0 or by != 0.0 else 0.0
-        return math.atan2(y + end * by, x + end * bx) % (2.0 * math.pi), end * R
+        return supply_flows(self)
 
     def refined_peak(self) -> tuple[float, float, float]:
         """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-        peak, theta, z = refined_peak(self.P, self.grid.x, self.grid.z, True)
-        return peak * self.pressure_scale, theta, z * self.grid.reference_length
+        return refined_peak(self)
 
 
 def _ring_integral(row: np.ndarray) -> float:

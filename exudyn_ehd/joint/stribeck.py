@@ -10,8 +10,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.build import build_study_model
+from exudyn_ehd.joint.equilibrium import LOAD_TOLERANCE, first_guess
 from exudyn_ehd.joint.model import BearingModel
-from exudyn_ehd.joint.steady import LOAD_TOLERANCE, _first_guess
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
 MAX_STEPS = 200
@@ -97,7 +97,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     model = build_study_model(bearing, 0.0)
     force = np.array([0.0, -size])
     order = np.argsort(-values)
-    position = _first_guess(bearing, float(values[order[0]]), force, np.zeros(2))
+    position = first_guess(bearing, float(values[order[0]]), force, np.zeros(2))
     last = float(values[order[0]])
     rows: list[dict[str, Any]] = [{}] * values.size
     for k in order:

@@ -12,6 +12,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.history import JointHistory
+from exudyn_ehd.coupling.run import SolveDynamic
 from exudyn_ehd.coupling.settings import ConfigureSolver
 from exudyn_ehd.status import InputError, require_integer, require_number
 from exudyn_ehd.studies.mechanisms import Built
@@ -77,7 +78,7 @@ class MovingScene:
         def run() -> Outcome:
             before = element.evaluations
             start = time.process_time()
-            mbs.SolveDynamic(settings, solverType=solver)
+            SolveDynamic(mbs, settings, solverType=solver)
             seconds = time.process_time() - start
             explicit = setting.integration.runge_kutta
             values = self.observe(joint.history, self.instants())

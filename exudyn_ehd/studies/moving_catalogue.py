@@ -17,7 +17,7 @@ from exudyn_ehd.film.elrod import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.joint.steady import equilibrium
+from exudyn_ehd.joint.equilibrium import equilibrium
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.studies import ladders, mechanisms

@@ -10,8 +10,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film import flux, solver, viscosity
 from exudyn_ehd.film.loads import couette_integral_ratio
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.effects import History
-from exudyn_ehd.joint.model import Effects
+from exudyn_ehd.joint.effects import Effects, History
 
 C = 25e-6
 WALTHER = ehd.WaltherTemperature(first=(313.15, 23e-6), second=(373.15, 5e-6))
@@ -150,9 +149,14 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
             monkeypatch.setattr(module, name, forbidden)
     for target in ("ShearThinning.apply", "ShearThinning.factor"):
         monkeypatch.setattr(f"exudyn_ehd.film.shear.{target}", forbidden)
-    for target in ("thermal.viscosity_ratio", "thermal.film_flows", "model.couette_integral_ratio", "settle._target"):
+    for target in (
+        "thermal.viscosity_ratio",
+        "thermal.film_flows",
+        "model.couette_integral_ratio",
+        "model.apply_laws",
+        "settle._target",
+    ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
-    monkeypatch.setattr(type(bare), "_apply_rheology", forbidden)
     for model in (expected, make(cavitation=cavitation)):
         history, other = bare.initial_history(MOTION), model.initial_history(MOTION)
         for _ in range(3):

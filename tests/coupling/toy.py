@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling import api
+from exudyn_ehd.coupling import api, joint_frame
 from exudyn_ehd.status import Status
 
 exu.config.printToConsole = False
@@ -95,7 +95,7 @@ class ToyFilm:
 
 def attach(mbs, items, model, position=(), axis=(0, 0, 1), rotation=None, use_global=True, **options):
     """CreateLubricatedJoint with a film model in place of a bearing."""
-    housing, journal = api._resolve_pair(mbs, items)
-    frame = api._joint_rotation(housing, axis, rotation, use_global)
-    points = api._joint_points(housing, journal, position, use_global)
+    housing, journal = joint_frame.resolve_pair(mbs, items)
+    frame = joint_frame.joint_rotation(housing, axis, rotation, use_global)
+    points = joint_frame.joint_points(housing, journal, position, use_global)
     return api.attach(mbs, model, housing, journal, points, frame, **options)

@@ -7,7 +7,14 @@ from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.density_newton import Balance, compressible_balance
+from exudyn_ehd.film.density_newton import (
+    Balance,
+    assemble_compressible,
+    assemble_full,
+    compressible_balance,
+    full_balance,
+)
+from exudyn_ehd.film.direct import number_cells
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
 DENSITY = ehd.DowsonHigginson()
@@ -109,6 +116,43 @@ def test_balance_equals_its_twin():
         q = k * (P - P_b) + f * np.where(f >= 0.0, fill, fill_b) * 0.5 * (rho + rho_b)
         expected += q - np.roll(q, 1, axis=axis)
     np.testing.assert_allclose(out, expected, atol=1e-14)
+
+
+def test_full_balance_equals_the_general_one():
+    rng = np.random.default_rng(4)
+    n, m = 5, 4
+    P, rho = rng.random((2, n, m))
+    fields = rng.normal(size=(8, n, m))
+    fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
+    fields[5:7] = 0.0  # no history
+    film = Balance(*fields, np.zeros((n, m), dtype=bool))
+    out, expected = np.empty((2, n, m))
+    full_balance(P, rho, film, out)
+    compressible_balance(P, np.ones((n, m)), rho, film, expected)
+    np.testing.assert_allclose(out, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("count", [None, 5, 7])
+def test_matrix_of_a_full_film_equals_the_general_one(count):
+    """All vertices of a folded ring, and films of some columns."""
+    rng = np.random.default_rng(5)
+    n, m = 9, 4
+    rho, rho_P = 1.0 + 0.1 * rng.random((2, n, m))
+    fields = rng.random(size=(8, n, m))
+    fields[1, :, -1] = fields[3, :, -1] = 0.0
+    fields[5:7] = 0.0
+    full = np.ones((n, m), dtype=bool)
+    full[:, 0] = False
+    if count is not None:
+        full[2 : n - count + 2] = False
+    film = Balance(*fields, ~full)
+    order, number = np.zeros(n * m, dtype=np.int64), np.zeros((n, m), dtype=np.int64)
+    unknowns, width = number_cells(full, film.kx, order, number)
+    found, expected = np.full((2, unknowns, width + 5), np.nan), np.zeros((2, n * m, 2 * m + 8))
+    assemble_full(rho_P, film, number, order, unknowns, *found)
+    assemble_compressible(np.ones((n, m)), rho, rho_P, film, full, number, order, unknowns, width, *expected)
+    for band, twin, first in zip(found, expected, (1, 0)):
+        np.testing.assert_allclose(band[:, first : width + 1], twin[:unknowns, first : width + 1], atol=1e-14)
 
 
 @pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.density import density_of_transformed
+from exudyn_ehd.film.density import NEAR, density_near, density_of_transformed, near_value
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
 VISCOSITIES = {
@@ -79,7 +79,7 @@ def test_density_kernel_equals_its_twin():
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
     scale, floor, share = 1e5, -1.0, 0.7
     P = law.transform(p) / scale
-    rho, rho_P, work = np.empty_like(P), np.empty_like(P), np.empty((3, *P.shape))
+    rho, rho_P, work = np.empty_like(P), np.empty_like(P), np.full((6, *P.shape), np.nan)
     density_of_transformed(P, scale, floor, law.kernel_table, share, *work, rho, rho_P)
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
     np.testing.assert_allclose(rho, 1.0 + share * (density.ratio(kept) - 1.0), rtol=1e-12)  # the spline's
@@ -87,10 +87,49 @@ def test_density_kernel_equals_its_twin():
     slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * share * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P, work = np.empty((1, 1)), np.empty((1, 1)), np.empty((3, 1, 1))
+    rho, rho_P, work = np.empty((1, 1)), np.empty((1, 1)), np.full((6, 1, 1), np.nan)
     density_of_transformed(beyond, scale, floor, law.kernel_table, 1.0, *work, rho, rho_P)
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("viscosity", [None, "barus", "roelands"])
+def test_what_is_known_near_by_serves_to_rounding(viscosity):
+    law = ehd.DowsonHigginson().bound(None if viscosity is None else VISCOSITIES[viscosity])
+    q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
+    rho, rho_P, fresh, fresh_P = np.empty((4, *q.shape))
+    known = np.full((6, *q.shape), np.nan)
+    density_of_transformed(q, 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    at = known[0].copy()
+    moved = q + 0.9 * NEAR * np.abs(known[2] / known[3])
+    density_of_transformed(moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    np.testing.assert_array_equal(known[0], at)
+    density_of_transformed(moved, 1.0, -np.inf, law.kernel_table, 1.0, *np.full((6, *q.shape), np.nan), fresh, fresh_P)
+    np.testing.assert_allclose(rho, fresh, rtol=1e-14)
+    np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
+    assert density_near(moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, fresh, fresh_P)
+    np.testing.assert_allclose(fresh, rho, rtol=1e-14)
+    np.testing.assert_allclose(fresh_P, rho_P, rtol=1e-13)
+    assert not density_near(2.0 * moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, fresh, fresh_P)
+    found = np.empty((3, *q.shape))
+    law.inverse(moved, *found)
+    for k in range(q.size):
+        near, p, s, _ = near_value(moved[0, k], *known[:, 0, k])
+        assert near
+        assert p == pytest.approx(found[0, 0, k], rel=3e-13)
+        assert s == pytest.approx(found[1, 0, k] / float(law.density.ratio(found[0, 0, k])), rel=1e-10)
+    density_of_transformed(moved + 2.0 * (moved - q), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    assert np.all(known[0] != at)
+
+
+def test_nothing_is_known_across_ambient_pressure():
+    """The law's higher derivatives jump there."""
+    law = ehd.DowsonHigginson().bound(None)
+    rho, rho_P = np.empty((2, 1, 1))
+    for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
+        known = np.full((6, 1, 1), np.nan)
+        density_of_transformed(np.full((1, 1), start), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+        assert not density_near(np.full((1, 1), end), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
 
 
 @pytest.mark.parametrize("name", ["coefficient", "saturation"])

@@ -8,7 +8,15 @@ import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
 from exudyn_ehd.film.cavitation import gather_rhs, solve_on_active
-from exudyn_ehd.film.direct import Workspace, assemble_band, factor_band, number_cells, solve_many, solve_one
+from exudyn_ehd.film.direct import (
+    Workspace,
+    assemble_band,
+    factor_band,
+    number_cells,
+    solve_four_by_dots,
+    solve_many,
+    solve_one,
+)
 
 
 def _active_sets(n, m, seed):
@@ -153,6 +161,10 @@ def test_many_right_hand_sides(make_film, dense_matrix, count_rhs):
         one = b[k].copy()
         solve_one(w.band, w.inv_diag, count, width, one)
         np.testing.assert_allclose(many[k], one, rtol=1e-11, atol=1e-13)
+    if count_rhs >= 4:
+        four = b[:4].copy()
+        solve_four_by_dots(w.band, w.inv_diag, count, width, four)
+        np.testing.assert_allclose(four, many[:4], rtol=1e-11, atol=1e-13)
 
 
 def test_a_singular_film_is_refused(make_film):

@@ -4,16 +4,18 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.band_lu import PAD
-from exudyn_ehd.film.direct import number_cells
+from exudyn_ehd.film.direct import number_cells, solve_many
 from exudyn_ehd.film.elrod import assemble_elrod
 from exudyn_ehd.film.transport import (
     FRONT,
+    FULL_COUNT,
+    WIDTH,
     factor_transport,
     flow_direction,
     solve_transport,
-    solve_transport_transposed,
     transport_buffers,
 )
+from exudyn_ehd.film.transport_transposed import reduce_transposed, solve_transport_transposed
 
 N, M, PC = 14, 6, -0.3
 CASES = {
@@ -98,6 +100,12 @@ def test_against_dense(name):
     known = sides.copy()
     solve_transport_transposed(t, count, sides)
     np.testing.assert_allclose(sides, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
+    rows = np.ascontiguousarray(known.T)
+    rows[0, t.shape[FULL_COUNT] :] = 0.0
+    known[t.shape[FULL_COUNT] :, 0] = 0.0
+    reduce_transposed(t, count, rows)
+    solve_many(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
+    np.testing.assert_allclose(rows.T, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
     assert (t.shape[FRONT] > 0) == (arguments[11].sum() < count and along * arguments[2].max() != 0.0)
 
 
