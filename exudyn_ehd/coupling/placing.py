@@ -91,4 +91,6 @@ def _memory(model: Any, motion: np.ndarray, result: EquilibriumResult) -> Histor
         return first
     last = model.history()
     temperature = first.temperature if settled is None else settled.temperature
-    return dataclasses.replace(first, mass=last.mass, deflection=last.deflection, temperature=temperature)
+    return dataclasses.replace(
+        first, mass=last.mass, deflection=last.deflection, temperature=temperature, density=last.density
+    )

@@ -280,6 +280,10 @@ class CompressibleFilmSolver(FilmSolver):
         sigma_x, sigma_z = self._sigma()
         return self.system.fx * sigma_x, self.system.fz * sigma_z, self.rho * self.H_t
 
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled true pressures P; see `DowsonHigginson.flow_work`."""
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
+
     def inflow(self) -> np.ndarray:
         """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
         balance = np.empty(self.grid.shape)

@@ -88,6 +88,16 @@ class DowsonHigginson:
         dense = self.coefficient / (1.0 + self.saturation * np.maximum(p, 0.0)) ** 2
         return np.where(p >= 0.0, dense, self.coefficient * np.exp(self.coefficient * np.minimum(p, 0.0)))
 
+    def flow_work(self, p: np.ndarray) -> np.ndarray:
+        """Integral of dp / (rho / rho_0) from ambient pressure, Pa.
+
+        The work on oil that enters at p, per volume at ambient density: p dV that pushes it in and the elastic energy that it holds.
+        """
+        p, a, b = np.asarray(p, dtype=float), self.coefficient, self.saturation
+        above, g = np.maximum(p, 0.0), a + b
+        dense = (b * above + a / g * np.log1p(g * above)) / g
+        return np.where(p >= 0.0, dense, -np.expm1(-a * np.minimum(p, 0.0)) / a)
+
     def bound(self, viscosity: BoundPressureLaw | None) -> CompressibleLaw:
         """The transform for this density and a viscosity's pressure law, None: constant."""
         return CompressibleLaw(self, viscosity)

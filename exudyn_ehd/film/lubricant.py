@@ -43,7 +43,7 @@ class Lubricant:
     temperature_law : ReynoldsTemperature, VogelTemperature, WaltherTemperature or None
     shear_law : CarreauShear or None
     density_law : DowsonHigginson or None
-        Density under pressure, for isothermal films; None: incompressible. Flows are then mass flows over ``density``.
+        Density under pressure, at any temperature; None: incompressible. Flows are then mass flows over ``density``.
 
     Raises
     ------

@@ -47,12 +47,15 @@ class History:
         Film temperature, K.
     deflection : (n, m) array or None
         Scaled deflection of an elastic liner.
+    density : (n, m) array or None
+        Density ratio of a compressible film (mass-conserving closures with a heat balance).
     """
 
     mass: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
     deflection: np.ndarray | None = None
+    density: np.ndarray | None = None
 
 
 class GapTerm(Protocol):

@@ -114,6 +114,9 @@ class BearingModel:
             )
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
+        self.remembers_density = (
+            self.remembers_mass and self.compressible is not None and self.effects.thermal is not None
+        )
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
@@ -154,7 +157,8 @@ class BearingModel:
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
         mass = self.solver.H.copy() if self.remembers_mass else None
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+        density = self.solver.ones if self.remembers_density else None
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
         """Scaled deflection of the steady film at this motion; None if there is no such film."""
@@ -183,7 +187,10 @@ class BearingModel:
             deflection = self.liner_solver.deflection
         thermal = self.effects.thermal
         temperature = None if thermal is None else thermal.advance(self)
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature)
+        density = None
+        if self.remembers_density and self.compressible is not None:
+            density = self.compressible.rho.copy()
+        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
 
     def worn(self, wear: Wear) -> np.ndarray:
         """Scaled wear depth after the last evaluation."""

@@ -24,7 +24,9 @@ def quantities(model: BearingModel) -> dict[str, float]:
 
     with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
     equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
-    ends' cross section, which the journal's wrench carries. What bends an elastic bore is not in it: that is the bush's.
+    ends' cross section, which the journal's wrench carries. Compressible oil takes its elastic energy along: p - pc becomes the integral
+    of dp / (rho / rho_0), the outflow the mass flow over rho_0, and the rate of the energy that the film holds is added. What bends an
+    elastic bore is not in it: that is the bush's.
 
     Returns
     -------

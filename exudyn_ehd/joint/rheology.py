@@ -63,7 +63,7 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     Raises
     ------
     InputError
-        For a thermal effect whose lubricant has no temperature law, and for options that a density law does not go with.
+        For a thermal effect whose lubricant has no temperature law.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
     if oil.pressure_law is None and oil.shear_law is None and oil.density_law is None and thermal is None:
@@ -71,7 +71,6 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     law: PressureLaw | None = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
     density = compressible_law(oil)
     if density is not None:
-        _check_density(bearing)
         law = density
     flux: tuple[FluxEffect, ...] = ()
     factor: ShearFactor | None = None
@@ -86,10 +85,10 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
             'got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
         )
     if isinstance(thermal, LumpedThermal):
-        return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing))
+        return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing), density)
     field = ViscosityField()
     product = field if factor is None else ProductFactor(field, factor)
-    return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field))
+    return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field), density)
 
 
 def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
@@ -98,14 +97,6 @@ def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
         return None
     viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
     return lubricant.density_law.bound(viscosity)
-
-
-def _check_density(bearing: JournalBearing) -> None:
-    if bearing.thermal is not None:
-        raise InputError(
-            f"JournalBearing.thermal must be None with Lubricant.density_law={bearing.lubricant.density_law!r}, got "
-            f"{bearing.thermal!r}; its heat balance takes oil as incompressible, leave one of the two out."
-        )
 
 
 def _transform_law(lubricant: Lubricant) -> PressureLaw | None:

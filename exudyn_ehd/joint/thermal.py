@@ -10,19 +10,12 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.band_lu import PAD, factor_lu, solve_lu
 from exudyn_ehd.film.direct import number_cells
-from exudyn_ehd.film.energy import (
-    assemble_energy,
-    content_rate,
-    end_section,
-    exchange_sums,
-    film_flows,
-    film_heat,
-    outside_flows,
-)
+from exudyn_ehd.film.energy import assemble_energy, film_heat
 from exudyn_ehd.film.flux import FluxEffect, LinkFlux
 from exudyn_ehd.film.lubricant import Lubricant
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
 from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.oil_flows import OilFlows, heat_and_leakage
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.model import BearingModel
@@ -39,77 +32,6 @@ def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float) -> np
     assert law is not None
     T = np.asarray(temperature, dtype=float)
     return law.viscosity(T, lubricant.density) / law.viscosity(np.asarray(lubricant.temperature), lubricant.density)
-
-
-class Exchange:
-    """Oil that enters the film evaluated last from outside, and the rate of its content.
-
-    Attributes
-    ----------
-    fill, rate, outside : (n, m) arrays
-        Film fraction; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in units of c R^2.
-    """
-
-    def __init__(self, model: BearingModel) -> None:
-        s, y, shape = model.solver, model.solver.system, model.grid.shape
-        conserves, fixed = s.closure.conserves_mass, model.grid.fixed
-        self.fill = s.fill if conserves else s.ones
-        self.rate, self.outside = np.empty(shape), np.empty(shape)
-        self.stepped = conserves and y.inverse_step > 0.0 and not s.instant
-        old = y.mass_old if self.stepped else s.H
-        content_rate(s.H, s.H_t, self.fill, old, y.inverse_step if self.stepped else 0.0, s.squeeze, self.rate)
-        unbroken = np.ones(shape, dtype=np.bool_) if conserves else s.work.active | fixed
-        outside_flows(
-            s.pressure, self.fill, y.kx, y.kz, y.fx, y.fz, s.area, self.rate, fixed, unbroken, self.outside
-        )  # fmt: skip
-
-    @property
-    def leaving(self) -> float:
-        """Sum of what leaves."""
-        return -float(np.minimum(self.outside, 0.0).sum())
-
-
-class OilFlows(Exchange):
-    """All flows of the film evaluated last, in units of c R^2.
-
-    Attributes
-    ----------
-    x, z : (n, m) arrays
-        Over the links i -> i+1 and j -> j+1.
-    found : (n, m) array
-        Entering in addition, where a cavitation model does not conserve mass; negative where it loses oil.
-    content : (n, m) array
-        Content of the storage term (scaled gap).
-    """
-
-    def __init__(self, model: BearingModel) -> None:
-        super().__init__(model)
-        s, y, shape = model.solver, model.solver.system, model.grid.shape
-        self.content = y.mass_old if self.stepped else self.fill * s.H
-        self.x, self.z, self.found = np.empty(shape), np.empty(shape), np.empty(shape)
-        film_flows(s.pressure, self.fill, y.kx, y.kz, y.fx, y.fz, s.area, self.rate, self.x, self.z, self.found)
-        self.found -= self.outside
-        if s.closure.conserves_mass:
-            self.found[:] = 0.0
-
-
-def heat_and_leakage(model: BearingModel) -> tuple[float, float]:
-    """Power that film and contacts of the last evaluation turn into heat, W, and the flow that leaves, in units of c R^2.
-
-    The heat is `BearingModel.power_loss` less the work on the oil; the flow is that of `Exchange`.
-    """
-    s, y, g, b = model.solver, model.solver.system, model.grid, model.bearing
-    conserves = s.closure.conserves_mass
-    cavity = b.cavitation.cavity_pressure / model.pressure_scale
-    stepped = conserves and y.inverse_step > 0.0 and not s.instant
-    leaving, work = exchange_sums(
-        model.P, s.pressure, s.H, s.H_t, s.fill if conserves else s.ones, y.mass_old if stepped else s.H,
-        y.inverse_step if stepped else 0.0, s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, s.work.active, conserves,
-        cavity if math.isfinite(cavity) else 0.0,
-    )  # fmt: skip
-    if model.axial_speed != 0.0:
-        work += model.axial_speed / g.reference_length * end_section(model.P, s.H, g.width_x)
-    return model.power_loss() + model.pressure_scale * model.flow_scale * work, leaving
 
 
 class LumpedTemperature:
@@ -318,7 +240,9 @@ class FilmTemperature:
                 couette = couette + work * contact.P[k] * area
         flow_power = model.flow_scale * model.pressure_scale
         heat = np.empty(model.grid.shape)
-        film_heat(model.P, s.pressure, s.system.kx, s.system.kz, couette / flow_power, heat)
+        # The links' flows of a compressible film are mass flows, which dissipate the drop of the flow work.
+        drop = model.P if model.compressible is None else model.compressible.flow_work(model.P)
+        film_heat(drop, s.pressure, s.system.kx, s.system.kz, couette / flow_power, heat)
         return heat * flow_power
 
     def _solve(

@@ -221,8 +221,6 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
         ),
         ({"film": ehd.ImpedanceMap()}, "ImpedanceMap"),
         ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10)}, "density_law"),
-        ({"thermal": ehd.LumpedThermal(supply_temperature=320.0)}, "thermal"),
-        ({"thermal": ehd.FilmEnergy(supply_temperature=320.0)}, "thermal"),
     ],
     ids=lambda o: o if isinstance(o, str) else "",
 )

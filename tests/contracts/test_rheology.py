@@ -151,7 +151,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         monkeypatch.setattr(f"exudyn_ehd.film.shear.{target}", forbidden)
     for target in (
         "thermal.viscosity_ratio",
-        "thermal.film_flows",
+        "oil_flows.film_flows",
         "model.couette_integral_ratio",
         "model.apply_laws",
         "settle._target",

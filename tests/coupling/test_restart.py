@@ -22,6 +22,12 @@ BEARINGS = {
     "oil content": dataclasses.replace(PLAIN, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5)),
     "temperature": dataclasses.replace(PLAIN, thermal=ehd.LumpedThermal(supply_temperature=313.15, capacity=5.0)),
     "temperature field": dataclasses.replace(PLAIN, thermal=ehd.FilmEnergy(supply_temperature=313.15)),
+    "compressed oil": dataclasses.replace(
+        PLAIN,
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+        thermal=ehd.LumpedThermal(supply_temperature=313.15),
+        lubricant=dataclasses.replace(PLAIN.lubricant, density_law=ehd.DowsonHigginson()),
+    ),
     "wear": dataclasses.replace(PLAIN, asperity=ROUGH, wear=ehd.ArchardWear(wear_rate=1e-14, acceleration=1e3)),
     "liner": dataclasses.replace(PLAIN, bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)),
 }

@@ -32,6 +32,15 @@ def test_density_is_smooth_at_ambient_pressure_and_positive_in_tension():
         assert law.ratio_slope(at) == pytest.approx(slope, rel=1e-7)  # rounding of the difference
 
 
+def test_flow_work_is_the_integral():
+    law = ehd.DowsonHigginson()
+    p = np.array([-1e8, 0.0, 1e5, 7e7, 4e8, 3e9])
+    exact = [quad(lambda x: 1.0 / float(law.ratio(x)), 0.0, end, epsabs=0.0, epsrel=1e-13)[0] for end in p]
+    np.testing.assert_allclose(law.flow_work(p), exact, rtol=1e-12)  # quad's own
+    # of oil that hardly gives way: p, without cancellation
+    np.testing.assert_allclose(ehd.DowsonHigginson(coefficient=1e-18).flow_work(p), p, rtol=1e-8)
+
+
 @pytest.mark.parametrize("name", list(VISCOSITIES))
 def test_transform_is_the_integral(name):
     density, viscosity = ehd.DowsonHigginson(), VISCOSITIES[name]

@@ -9,7 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.film.roughness import nominal_gap, shear_flow_factor
 from exudyn_ehd.joint import drag
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.thermal import heat_and_leakage
+from exudyn_ehd.joint.oil_flows import heat_and_leakage
 
 R, L, C, SPEED, MU = 0.02, 0.03, 20e-6, 200.0, 0.03
 SIGMA = 1.2e-6

@@ -9,7 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.thermal import Exchange, heat_and_leakage
+from exudyn_ehd.joint.oil_flows import Exchange, heat_and_leakage
 
 R, C, SPEED, MU = 0.03, 30e-6, 314.0, 9e-3
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)

@@ -89,6 +89,18 @@ def test_heat_thins_the_oil(compare, thermal):
     assert np.all(np.isnan(off.film_temperature))
 
 
+@pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-5e4)], ids=["swift", "elrod"])
+@pytest.mark.parametrize(
+    "thermal", [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)], ids=["lumped", "field"]
+)  # fmt: skip
+def test_heat_thins_compressible_oil(compare, thermal, closure):
+    options = {"thermal": thermal, "end_pressures": ENDS, "cavitation": closure}
+    on, off = compare(bearing({"density_law": ehd.DowsonHigginson()}, **options), bearing(**options))
+    # some 10 MPa compress oil by half a per cent: the film warms up as one of incompressible oil, but not to the same temperature
+    rise, plain = on.film_temperature[-1] - 323.15, off.film_temperature[-1] - 323.15
+    assert plain > 0.5 and 1e-6 < abs(rise / plain - 1.0) < 0.02
+
+
 def test_elrod_adams_conserves_oil(compare):
     closure = ehd.ElrodAdams(cavity_pressure=-5e4)
     on, _ = compare(
