@@ -50,7 +50,7 @@ from exudyn_ehd.joint.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.fields import FilmFields
 from exudyn_ehd.joint.steady import SteadyResult, steady
 from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, RunError, Status
+from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, Status
 
 __version__ = "0.1.0"
 
@@ -176,6 +176,7 @@ __all__ = [
     "RegularisedWall",
     "Revolutions",
     "ReynoldsTemperature",
+    "RingingWarning",
     "RoelandsPressure",
     "RunError",
     "SaintVenantKirchhoff",

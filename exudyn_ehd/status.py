@@ -56,6 +56,10 @@ class RunError(EHDError, RuntimeError):
     """A solver of Exudyn ended without success although every film could be evaluated; names the joints and their state."""
 
 
+class RingingWarning(UserWarning):
+    """The forces of a joint alternate from step to step: not the film, but steps that are too large for the time integration."""
+
+
 def require_number(
     where: str,
     value: float,

@@ -24,6 +24,7 @@ from exudyn_ehd.coupling.film_record import FilmRecorder
 from exudyn_ehd.coupling.history import Record, eccentricity_ratios, make_row
 from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
 from exudyn_ehd.coupling.step_control import GapWatch
+from exudyn_ehd.joint import ringing
 from exudyn_ehd.joint.fields import FilmFields, film_fields
 from exudyn_ehd.status import FilmError, Status
 
@@ -81,6 +82,7 @@ class FilmElement:
         self.display = FilmDisplay(self)
         self.watch: GapWatch | None = None
         self._chatter: ChatterWatch | None = None
+        self._ringing: ringing.RingingWatch | None = None
         self._record = Record(model.bearing)
         self._trial: Trial | None = None
         self._start = np.nan
@@ -284,6 +286,7 @@ class FilmElement:
             self._solver = solvers.running_solver(self._run, run)
             self._run = run
             self._chatter = ChatterWatch(self.model.bearing) if solvers.is_explicit(self._solver) else None
+            self._ringing = self._ringing_watch()
             # the time of a static solve is a load parameter: the film is the steady one
             self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
             # a run that starts behind the record goes on with it, any other begins anew
@@ -318,8 +321,19 @@ class FilmElement:
         last, self._start = self._start, start
         if row is not None and self._is_pressed_through(trial):
             raise FilmError(self._through_message(start, trial))
+        if self._ringing is not None and row is not None:
+            assert trial.evaluation is not None
+            if self._ringing.take(start, float(trial.evaluation.wrench[0]), float(trial.evaluation.wrench[1])):
+                watch, self._ringing = self._ringing, None
+                ringing.warn(self.name, watch)
         if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
             raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
+
+    def _ringing_watch(self) -> ringing.RingingWatch | None:
+        if solvers.is_explicit(self._solver) or solvers.is_static(self._solver):
+            return None
+        bearing = self.model.bearing
+        return ringing.RingingWatch(2.0 * bearing.journal_radius * bearing.length)
 
     def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""

@@ -188,6 +188,14 @@ def _story(mbs: Any, *, static: bool) -> str:
     return "".join(parts)
 
 
+def start_guess(mbs: Any, before: Any = None) -> StartGuess:
+    """The start of Newton's method for the joints of a system, ahead of the run; ``before`` is the user's own function."""
+    elements = [joint.element for joint in joints_of(mbs)]
+    bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
+    bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
+    return StartGuess(mbs, before, bushes)
+
+
 @contextmanager
 def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
@@ -198,10 +206,7 @@ def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
     before = mbs.GetPreNewtonResidualUserFunction()
     before = before["function"] if isinstance(before, dict) else before
     own = before if callable(before) else None
-    elements = [joint.element for joint in joints_of(mbs)]
-    bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
-    bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
-    mbs.SetPreNewtonResidualUserFunction(StartGuess(mbs, own, bushes))
+    mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own))
     try:
         yield
     finally:

@@ -33,7 +33,8 @@ from scipy.sparse import coo_matrix, csc_matrix, issparse
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
-from exudyn_ehd.coupling.run import own_errors
+from exudyn_ehd.coupling.run import own_errors, start_guess
+from exudyn_ehd.coupling.start_guess import StartGuess
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # the index types exist at run time, but not in the type stubs
@@ -115,6 +116,8 @@ def SolveDynamicSparse(
 ) -> SparseRun:
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
+    Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`.
+
     Parameters
     ----------
     mbs : exudyn.MainSystem
@@ -136,7 +139,9 @@ def SolveDynamicSparse(
     """
     settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
     run = SparseRun()
-    loop = _Newton(matrix=SystemMatrix.of(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run)
+    loop = _Newton(
+        matrix=SystemMatrix.of(mbs), guess=start_guess(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run
+    )
     solver = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
@@ -161,6 +166,7 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
+    guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
     factor: SuperLU | None = None
@@ -171,6 +177,7 @@ class _Newton:
     def __call__(self, solver: Any, mbs: Any, settings) -> bool:
         newton = settings.timeIntegration.newton
         solver.ComputeNewtonUpdate(mbs, settings, True)
+        self.guess(mbs, mbs.systemData.GetTime(), 0, 0)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
         if solver.it.currentStepSize != self.step_size:
             self.factor = None

@@ -30,6 +30,7 @@ from exudyn_ehd.film.impedance import ImpedanceMap
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.joint.audit_states import RecordedSteps, Sample
+from exudyn_ehd.joint.ringing import LIMIT, REMEDY, WINDOW, watched
 
 # Mineral oils, where a bearing names nothing: pressure and temperature coefficients of the viscosity, onset of shear thinning.
 TYPICAL_PRESSURE_COEFFICIENT = 2e-8  # 1/Pa
@@ -379,6 +380,25 @@ def time_step(case: Case) -> Finding | None:
     )  # fmt: skip
 
 
+def ringing(case: Case) -> Finding | None:
+    """Forces that alternate from step to step."""
+    record, b = case.record, case.bearing
+    if record is None:
+        return None
+    watch = watched(record.time, record.force, 2.0 * b.journal_radius * b.length)
+    when = (
+        ""
+        if watch.most == 0
+        else f", at {watch.first:.4g} s"
+        if watch.first == watch.last
+        else f", {watch.first:.4g} to {watch.last:.4g} s"
+    )
+    return _finding(
+        "ringing", f"times within {WINDOW} steps that the force is thrown into alternation{when}", float(watch.most), LIMIT - 1.0, None,
+        mattering="forces and pressures jump from step to step: " + REMEDY,
+    )  # fmt: skip
+
+
 def _without_law(**law: Any) -> Callable[[JournalBearing], JournalBearing]:
     def without(bearing: JournalBearing) -> JournalBearing:
         return replace(bearing, lubricant=replace(bearing.lubricant, **law))
@@ -413,4 +433,5 @@ INDICATORS = (
     Indicator(grid_columns),
     Indicator(grid_rows),
     Indicator(time_step),
+    Indicator(ringing),
 )

@@ -30,12 +30,15 @@ class RecordedSteps:
         s.
     motion : (n, 10) array
         As in `exudyn_ehd.joint.model`.
+    force : (n, 3) array
+        N, on the journal.
     minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature : (n,) arrays
         m, Pa, W, m3/s, N, K.
     """
 
     time: np.ndarray
     motion: np.ndarray
+    force: np.ndarray
     minimum_gap: np.ndarray
     peak_pressure: np.ndarray
     power_loss: np.ndarray

@@ -193,7 +193,10 @@ def test_wall_carries_where_the_film_ends(compare):
 
 def test_squeeze_is_the_damping(run):
     wall = ehd.RegularisedWall(onset=2e-6)
-    (with_it, _), (without, _) = (run(bearing(contact=wall, squeeze=s), 200.0) for s in (True, False))
+    with_it, _ = run(bearing(contact=wall), 200.0)
+    # a spring alone, so stiff that the integrator rings
+    with pytest.warns(ehd.RingingWarning):
+        without, _ = run(bearing(contact=wall, squeeze=False), 200.0)
     # without the film's damping the journal passes its equilibrium, as far as the wall
     assert with_it.contact_load.max() == 0.0 < without.contact_load.max()
 

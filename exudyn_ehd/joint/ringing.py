@@ -1,0 +1,148 @@
+"""Forces that alternate from step to step: a time integration that rings, recognised from the accepted steps of a joint.
+
+With d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces before and behind, an alternation F = F_0 + (-1)^k A has
+d_k = 2 (-1)^k A, and an oscillation with n steps per period d_k = (1 - cos(2 pi / n)) times its value: d changes its sign from step to step below
+some three steps per period only, which no step resolves. A force *zigzags* at a step if d there points against the d before and behind, and is
+more than a tenth of the force.
+
+That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps. A run that rings is thrown again and
+again: by steps that were halved, by Newton's method that accepts forces beside the solution, by impacts within a single step. So *bursts* are
+counted: zigzags stronger than the five steps before, and alternations that do not fade, once in so many steps.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections import deque
+
+import numpy as np
+
+from exudyn_ehd.status import RingingWarning
+
+# Size of a zigzag, share of the force there and of the largest one before, which fades by so much per step.
+LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
+# Cosine between the d of steps in succession, and the smaller ones' share of the middle one.
+OPPOSITE, EVEN = -0.5, 0.3
+# Mean pressure on the projected area below which a force is none: rounding beside an ideal joint, Pa.
+NEGLIGIBLE = 100.0
+# A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps between two bursts.
+STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
+# Bursts within so many steps are counted together; a run rings from so many on.
+WINDOW, LIMIT = 100, 4
+REMEDY = "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, more steps until none is halved, or a smaller spectral radius."
+
+
+class RingingWatch:
+    """Counts the bursts of one joint's force; some microseconds per step.
+
+    Parameters
+    ----------
+    area : float
+        Projected area of the bearing, 2 R L, m2.
+
+    Attributes
+    ----------
+    most : int
+        Most bursts within `WINDOW` steps.
+    first, last : float
+        Times of the first and the last burst, s; nan without one.
+    """
+
+    def __init__(self, area: float) -> None:
+        self.smallest = NEGLIGIBLE * area
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        """Forget all steps."""
+        self.most = 0
+        self.first = self.last = math.nan
+        # time and force of the last steps; d with its size; sizes before those
+        self._states: deque[tuple[float, float, float]] = deque(maxlen=4)
+        self._bends: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)] * 3, maxlen=3)
+        self._earlier: deque[float] = deque([0.0] * 5, maxlen=5)
+        self._bursts: deque[int] = deque()
+        self._step = self._zigzags = 0
+        self._largest = self._strength = 0.0
+
+    def take(self, time: float, x: float, y: float) -> bool:
+        """Take an accepted step.
+
+        Parameters
+        ----------
+        time : float
+            s; not after the last one begins anew.
+        x, y : float
+            Force, N.
+
+        Returns
+        -------
+        bool
+            Whether the run rings, that is, whether this step is a burst and `LIMIT` or more lie in the window.
+        """
+        states = self._states
+        if states and not time > states[-1][0]:
+            self.begin_anew()
+            states = self._states
+        states.append((time, x, y))
+        self._step += 1
+        self._largest = max(math.hypot(x, y), FADING * self._largest)
+        if len(states) < 3:
+            return False
+        (t_2, x_2, y_2), (t_1, x_1, y_1) = states[-3], states[-2]
+        share = (t_1 - t_2) / (time - t_2)
+        dx, dy = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2)
+        self._earlier.append(self._bends[0][2])
+        self._bends.append((dx, dy, math.hypot(dx, dy)))
+        if not self._zigzag():
+            return False
+        self._zigzags += 1
+        return self._is_burst() and self._count(t_1)
+
+    def _zigzag(self) -> bool:
+        (ax, ay, a), (bx, by, b), (cx, cy, c) = self._bends
+        if not (b > max(self.smallest, LARGEST_SHARE * self._largest) and a > EVEN * b and c > EVEN * b):
+            return False
+        if ax * bx + ay * by > OPPOSITE * a * b or bx * cx + by * cy > OPPOSITE * b * c:
+            return False
+        force = sum(math.hypot(x, y) for _, x, y in list(self._states)[:3]) / 3.0
+        return b > LOCAL_SHARE * force
+
+    def _is_burst(self) -> bool:
+        if self._bursts and self._step - self._bursts[-1] < APART:
+            return False
+        strength = max(bend[2] for bend in self._bends)
+        lasting = self._zigzags >= LASTING and strength > KEPT * self._strength
+        if not (lasting or strength > STRONGER * max(self._earlier)):
+            return False
+        self._strength = strength
+        return True
+
+    def _count(self, time: float) -> bool:
+        bursts = self._bursts
+        self._zigzags = 0
+        bursts.append(self._step)
+        while bursts[0] <= self._step - WINDOW:
+            bursts.popleft()
+        self.most = max(self.most, len(bursts))
+        self.first = time if math.isnan(self.first) else self.first
+        self.last = time
+        return len(bursts) >= LIMIT
+
+
+def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
+    """A watch that has seen a record: times (n,) in s and forces (n, >= 2) in N on an area in m2."""
+    watch = RingingWatch(area)
+    for t, (x, y) in zip(time.tolist(), force[:, :2].tolist(), strict=True):
+        watch.take(t, x, y)
+    return watch
+
+
+def warn(name: str, watch: RingingWatch) -> None:
+    """Warn that the run of the joint ``name`` rings."""
+    warnings.warn(
+        f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates from step to step, thrown "
+        f"anew {watch.most} times within {WINDOW} steps: forces and pressures there are the time integration's; {REMEDY}",
+        RingingWarning,
+        stacklevel=2,
+    )
