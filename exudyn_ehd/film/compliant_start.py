@@ -15,7 +15,7 @@ from exudyn_ehd.film.liner_newton import FULL
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
 
-MAX_PSEUDO_STEPS = 60
+MAX_PSEUDO_STEPS = 200
 
 
 def cold_start(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, int]:
