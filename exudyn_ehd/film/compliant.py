@@ -28,44 +28,34 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
-from exudyn_ehd.film.compliant_newton import (
+from exudyn_ehd.film.compliant_columns import (
     Columns,
+    Load,
     Storage,
     answer_columns,
+    drive_columns,
+    move_columns,
+    press_columns,
+    set_storage,
+)
+from exudyn_ehd.film.compliant_iteration import factor, newton
+from exudyn_ehd.film.compliant_links import (
     compliant_coefficients,
     compliant_residual,
     compliant_sensitivities,
-    longest_step,
-    move_columns,
-    newton_step,
-    press_columns,
-    set_storage,
-    step_size,
-    take_step,
-    violation,
+    links_of,
 )
+from exudyn_ehd.film.compliant_newton import violation
 from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
-from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
+from exudyn_ehd.film.elrod import _lu_buffers
+from exudyn_ehd.film.flux import FluxEffect, link_flux
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.liner import LINER_INSTANT, failed_film
-from exudyn_ehd.film.liner_newton import (
-    CLIPPED,
-    COMPLEMENTARY,
-    EXACT_STEP,
-    FULL,
-    LEAST_DEFLECTION,
-    ends_open,
-    flow_rounding,
-    select,
-)
+from exudyn_ehd.film.liner_newton import CLIPPED, COMPLEMENTARY, FULL, ends_open
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds import add_squeeze
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
-
-MAX_NEWTON_STEPS = 60
-ERROR_TOLERANCE = 1e-13
-STEP_TOLERANCE = 1e-8
 
 
 class ColumnContact(Protocol):
@@ -91,8 +81,19 @@ class ColumnLimiter(Protocol):
     ) -> None: ...  # fmt: skip
 
 
+class ColumnOil(Protocol):
+    """How pressure follows from the film's unknown; as `exudyn_ehd.joint.effects.PressureLaw`."""
+
+    @property
+    def largest_pressure(self) -> float: ...
+
+    def transform(self, p: np.ndarray) -> np.ndarray: ...
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
+
+
 class CompliantFilmSolver(FilmSolver):
-    """`FilmSolver` on an elastic liner with contact, mass-conserving cavitation, or both.
+    """`FilmSolver` on an elastic liner with contact, mass-conserving cavitation, laws of the oil, flow factors, or any of them.
 
     The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves those that the film sees in ``H``, ``HF`` and ``H_t``.
 
@@ -103,7 +104,11 @@ class CompliantFilmSolver(FilmSolver):
     contact : ColumnContact, optional
         What presses on the liner beside the film.
     limiter : ColumnLimiter, optional
-        Of the gap that the film sees; goes with the contact.
+        Of the gap that the film sees; goes with the contact or with flow factors.
+    flux_effects : tuple of FluxEffect
+        As for `FilmSolver`.
+    oil : ColumnOil, optional
+        Of a viscosity that follows the pressure.
 
     Attributes
     ----------
@@ -122,10 +127,11 @@ class CompliantFilmSolver(FilmSolver):
     def __init__(
         self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True,
         contact: ColumnContact | None = None, limiter: ColumnLimiter | None = None,
+        flux_effects: tuple[FluxEffect, ...] = (), oil: ColumnOil | None = None,
     ) -> None:  # fmt: skip
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None
-        self.contact, self.limiter = contact, limiter
+        self.contact, self.limiter, self.oil = contact, limiter, oil
         self.beta, self.pressure_scale = 0.0, 1.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -138,6 +144,13 @@ class CompliantFilmSolver(FilmSolver):
         # whether contact_pressure, contact_G, bend and the slopes in columns are those of surfaces apart
         self.apart = True
         self.columns = Columns(*(np.ones(shape) for _ in Columns._fields))
+        self.load = Load(*(np.zeros(shape) for _ in Load._fields))
+        self.load.slope[:] = 1.0
+        # the cavity's pressure on the columns, and whether an iterate has left the oil's range
+        self.cavity_load, self.solid = 0.0, False
+        self.flux_effects = flux_effects
+        self.flux = link_flux(self.columns.HF, flux_effects) if flux_effects else None
+        self.link_flux = links_of(self.flux)
         self.storage = Storage(*(np.zeros(shape) for _ in Storage._fields))
         self.residual = np.zeros(shape)
         self.full, self.trial_full = np.ones(shape, dtype=np.bool_), np.ones(shape, dtype=np.bool_)
@@ -146,7 +159,7 @@ class CompliantFilmSolver(FilmSolver):
         self.mass_old, self.deflection_old = np.zeros(shape), np.zeros(shape)
         self.inverse = self.mass_inverse = self.deflection_inverse = 0.0
         self.with_rate = False
-        self.exact = False
+        self.exact = self.held = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -181,7 +194,7 @@ class CompliantFilmSolver(FilmSolver):
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
         if self.deflection_inverse == 0.0:
             return 0.0
-        pressure = self.system.pressure + self.contact_pressure / self.pressure_scale
+        pressure = self.load.p + self.contact_pressure / self.pressure_scale
         rate = (self.columns.D - self.deflection_old) * self.deflection_inverse
         return float(np.sum(pressure * rate * self.grid.weight))
 
@@ -197,11 +210,14 @@ class CompliantFilmSolver(FilmSolver):
         P = s.linear_pressure
         if self.kind == CLIPPED:
             P[g.fixed] = s.pressure[g.fixed]
-        if self.contact is None and not ends_open(self.rigid, P, self.beta, g.fixed):
+        self.solid = False
+        if not self._set_loads(P):
+            return Status.NO_PRESSURE, 0
+        if self.contact is None and not ends_open(self.rigid, self.load.p, self.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
         steps, ok = 0, False
-        if self.work.warm:
+        if self.work.warm and self.press(P):
             ok, steps = self.target(P)
         if not ok:
             ok, more = cold_start(self, P)
@@ -211,11 +227,56 @@ class CompliantFilmSolver(FilmSolver):
             steps += more
         self.work.warm = ok
         if not ok:
-            if self.contact is not None:
-                return Status.NOT_CONVERGED, steps
-            return failed_film(self.kind, self.rigid[0], self.beta, cavity_pressure), steps
+            return self._failure(), steps
         self._finish(P)
+        if self.oil is not None and float(self.load.p.max()) * self.pressure_scale > self.oil.largest_pressure:
+            return Status.NO_PRESSURE, steps
+        if self.limiter is not None and self.contact is None and not self.true_gap.min() > 0.0:
+            # the film between rough surfaces stays open where nothing holds them apart
+            return Status.NO_FILM, steps
         return Status.CONVERGED, steps
+
+    def _failure(self) -> Status:
+        """Status of a film that was not found."""
+        if self.solid:
+            return Status.NO_PRESSURE
+        if self.contact is not None:
+            return Status.NOT_CONVERGED
+        return failed_film(self.kind, self.rigid[0], self.beta, self.cavity_load)
+
+    def _set_loads(self, P: np.ndarray) -> bool:
+        """Pressures on the columns at prescribed vertices and in the cavity; False where the oil has none."""
+        fixed, pc = self.grid.fixed, self.system.cavity_pressure
+        self.cavity_load = pc if np.isfinite(pc) else 0.0
+        if self.oil is None:
+            self.load.p[fixed] = P[fixed]
+            return True
+        known = np.append(P[fixed], self.cavity_load)[None] * self.pressure_scale
+        p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
+        if not self.oil.inverse(known, p, slope, bend):
+            return False
+        p /= self.pressure_scale
+        self.load.p[fixed] = p[0, :-1]
+        self.cavity_load = float(p[0, -1])
+        return True
+
+    def press(self, P: np.ndarray) -> bool:
+        """Pressure on every column for the film's unknown P; False where the oil has none."""
+        load = self.load
+        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load.drive)
+        if self.oil is None:
+            load.p[:] = load.drive
+            return True
+        if not self.oil.inverse(load.drive * self.pressure_scale, load.p, load.slope, load.bend):
+            self.solid = True
+            return False
+        np.multiply(load.p, 1.0 / self.pressure_scale, out=load.p)
+        np.multiply(load.bend, self.pressure_scale, out=load.bend)
+        return True
+
+    def push(self, P: np.ndarray) -> np.ndarray:
+        """Deflection (n, m) that pseudo time counts, of settled columns: what is cut off counts as it stands."""
+        return self.beta * (self.load.p + (P - self.load.drive))
 
     def _take_rigid(self) -> None:
         """Keep the undeformed gaps, and what the film would see of them."""
@@ -254,14 +315,15 @@ class CompliantFilmSolver(FilmSolver):
             self.full |= self.grid.fixed
             self.film_fill[self.full] = 1.0
             P[~self.full] = self.system.cavity_pressure
-        return self.newton(P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
+        return newton(self, P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
 
-    def settle(self, P: np.ndarray) -> None:
-        """Every column under the pressure P."""
-        g, c, clips = self.grid, self.columns, self.kind == CLIPPED
-        pc, contact, limiter = self.system.cavity_pressure, self.contact, self.limiter
+    def settle(self, P: np.ndarray) -> bool:
+        """Every column under the film of the unknown P; False where the oil has no pressure."""
+        c, contact, limiter = self.columns, self.contact, self.limiter
+        if not self.press(P):
+            return False
         x = self.true_gap if contact is None else self.scratch[0]
-        press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, x)
+        press_columns(self.rigid, self.load.p, self.beta, x)
         if contact is not None:
             if x.min() < contact.presses_below:
                 contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
@@ -277,18 +339,9 @@ class CompliantFilmSolver(FilmSolver):
             limiter.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
             self.apart = False
         answer_columns(
-            self.rigid_film,
-            self.rigid_slope,
-            P,
-            self.contact_G,
-            self.bend,
-            g.fixed,
-            pc,
-            clips,
-            self.beta,
-            self.inverse,
-            c,
+            self.rigid_film, self.rigid_slope, P, self.load, self.contact_G, self.bend, self.beta, self.inverse, c
         )
+        return True
 
     def _part(self) -> None:
         """Surfaces out of each other's reach: no contact, and the film sees the gap itself."""
@@ -298,102 +351,39 @@ class CompliantFilmSolver(FilmSolver):
             self.columns.rate_t[:] = self.columns.link[:] = 1.0
             self.apart = True
 
-    def _balance(
+    def balance(
         self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
     ) -> tuple[float, float]:
-        """Residual at P and fill; returns (norm of what does not hold, smallest film gap)."""
+        """Residual at P and fill; returns (norm of what does not hold, smallest film gap), (inf, -1) where there is no film."""
         g, c = self.grid, self.columns
-        self.settle(P)
+        if not self.settle(P) or (self.flux is not None and not self._set_flux()):
+            return np.inf, -1.0
         set_storage(
-            c, P, fill, self.area, self.mass_old, self.mass_inverse, self.with_rate, extra, extra_old, conserves, self.beta,
-            self.storage,
+            c, P, self.load, fill, self.area, self.mass_old, self.mass_inverse, self.with_rate, extra, extra_old, conserves,
+            self.beta, self.storage,
         )  # fmt: skip
         compliant_residual(
-            c, P, fill, self.storage.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.residual
-        )
+            c, self.link_flux, P, fill, self.storage.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
+            self.residual,
+        )  # fmt: skip
         complementary = self.kind == COMPLEMENTARY and not conserves
         return violation(c, self.residual, P, g.fixed, self.system.cavity_pressure, complementary)
 
-    def newton(
-        self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
-    ) -> tuple[bool, int]:
-        """Newton from P and fill, in place; ``extra`` is the rate of pseudo time, towards ``extra_old``."""
-        g, w, pc = self.grid, self.work, self.system.cavity_pressure
-        kind = FULL if conserves else self.kind
-        complementary = kind == COMPLEMENTARY
-        if complementary:
-            np.copyto(P, np.maximum(P, pc), where=~g.fixed)
-        norm, smallest = self._balance(P, fill, conserves, extra, extra_old)
-        if not smallest > 0.0:
-            return False, 0
-        if conserves:
-            active = ~g.fixed
-        else:
-            active = w.active
-            self.full[:] = True
-            if w.warm:
-                select(P, self.residual, g.fixed, pc, kind, active)
-            else:
-                np.logical_not(g.fixed, out=active)
-        x, reference = w.unknowns, (pc if np.isfinite(pc) else 0.0)
-        noise = flow_rounding(
-            self.columns.H, self.columns.HF, self.rigid[2], self.vx, self.vz, g.width_x, g.width_z, g.link_x
-        )
-        for step in range(1, MAX_NEWTON_STEPS + 1):
-            if not self._step(P, fill, active, x):
-                return False, step
-            if w.count == 0 or norm == 0.0:
-                self.exact = True
-                return True, step
-            opening = smallest / self.beta
-            error, square, peak = step_size(
-                P, self.full, w.order, w.count, x, reference, kind == CLIPPED, LEAST_DEFLECTION * opening, opening
-            )
-            if not error < 1e300:
-                return False, step
-            share = 1.0 if kind == CLIPPED else longest_step(self.columns, self.full, w.order, w.count, x)
-            before = norm
-            for _ in range(12):
-                changes = take_step(
-                    P, fill, self.full, w.order, w.count, x, share, reference, complementary, conserves,
-                    1e-12 * peak, self.trial, self.trial_fill, self.trial_full,
-                )  # fmt: skip
-                norm, smallest = self._balance(self.trial, self.trial_fill, conserves, extra, extra_old)
-                if smallest > 0.0 and (norm < before or error <= STEP_TOLERANCE or (conserves and changes > 0)):
-                    break
-                share *= 0.5
-            if not (smallest > 0.0 and norm < 1e300):
-                return False, step
-            P[:], self.full[:] = self.trial, self.trial_full
-            if conserves:
-                fill[:] = self.trial_fill
-            else:
-                changes = select(P, self.residual, g.fixed, pc, kind, active)
-            if norm <= noise and not conserves:
-                self.exact = self._step(P, fill, active, x)
-                return self.exact, step
-            if changes == 0 and share == 1.0 and (error <= ERROR_TOLERANCE or 10.0 * square <= ERROR_TOLERANCE):
-                self.exact = error <= EXACT_STEP and extra == 0.0
-                return not conserves or self._sound(fill), step
-        return False, MAX_NEWTON_STEPS
-
-    def _step(self, P: np.ndarray, fill: np.ndarray, active: np.ndarray, x: np.ndarray) -> bool:
-        """Factor at P and fill, and solve for Newton's step x."""
-        g, w = self.grid, self.work
-        lower, upper = _lu_buffers(w)
-        ok, w.count, w.width = newton_step(
-            self.columns, P, fill, self.full, self.storage, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
-            self.links, active, w.order, w.number, lower, upper, w.inv_diag, self.residual, x,
-        )  # fmt: skip
-        return ok
-
-    def _sound(self, fill: np.ndarray) -> bool:
-        """Whether no vertex holds less than nothing, but for rounding, which is cut off; sets the full vertices."""
-        np.logical_and(self.full, ~self.grid.fixed, out=self.work.active)
-        if not fill.min() > -LARGEST_DEFICIT:
+    def _set_flux(self) -> bool:
+        """Conductances and carriers in the present gaps; False where these are not open."""
+        c, f = self.columns, self.flux
+        assert f is not None
+        if not min(c.H.min(), c.HF.min()) > 0.0:
             return False
-        np.maximum(fill, 0.0, out=fill)
+        first, *others = self.flux_effects
+        first.start(f, c.H, self.vx, self.vz)
+        for effect in others:
+            effect.apply(f, c.HF, f.gap_z, self.vx, self.vz)
         return True
+
+    def refresh_fixed(self) -> None:
+        """Another set of prescribed vertices: the last factor serves no more."""
+        self.held = False
 
     def _finish(self, P: np.ndarray) -> None:
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
@@ -401,12 +391,14 @@ class CompliantFilmSolver(FilmSolver):
         if self.kind == CLIPPED:
             np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
+        elif self.kind == FULL:
+            np.logical_not(g.fixed, out=self.work.active)
         self.H[:], self.HF[:], self.H_t[:] = c.H, c.HF, c.rate
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
         np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
         compliant_coefficients(
-            c, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
+            c, self.link_flux, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
         )
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -421,7 +413,7 @@ class CompliantFilmSolver(FilmSolver):
         if not self.exact:
             conserves = self.closure.conserves_mass
             active = ~g.fixed if conserves or self.kind == CLIPPED else w.active
-            self._step(self.system.linear_pressure, self.film_fill, active, w.unknowns)
+            factor(self, self.system.linear_pressure, self.film_fill, active)
             self.exact = True
         lower, upper = _lu_buffers(w)
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
@@ -442,7 +434,7 @@ class CompliantFilmSolver(FilmSolver):
         cell, face, rate = np.empty_like(lam), np.empty_like(lam), np.empty_like(lam)
         speed = np.empty((lam.shape[0], 2))
         compliant_sensitivities(
-            lam, c, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
+            lam, c, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
             g.link_x, g.link_z, cell, face, rate, speed,
         )  # fmt: skip
         return Sensitivities(cell, face, rate if self.squeeze else None, speed)

@@ -159,7 +159,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
         s.full[:] = rng.random(SMALL.shape) < 0.6
         fill[~s.full] = rng.random(SMALL.shape)[~s.full]
         fill[SMALL.fixed] = 1.0
-    s._balance(P, fill, conserves, 0.5, s.nothing)
+    s.balance(P, fill, conserves, 0.5, s.nothing)
     free = ~SMALL.fixed
     from exudyn_ehd.film.compliant_newton import assemble_compliant
     from exudyn_ehd.film.direct import number_cells
@@ -168,7 +168,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
     lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
     count, width = number_cells(free, s.links, w.order, w.number)
     assemble_compliant(
-        s.columns, P, fill, s.full, s.storage, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, w.number, count, width,
+        s.columns, s.link_flux, P, fill, s.full, s.storage, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, w.number, count, width,
         lower, upper,
     )  # fmt: skip
     A, B = np.zeros((count, count)), np.zeros((count, count))
@@ -183,7 +183,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
         for sign in (1.0, -1.0):
             moved = [P.copy(), fill.copy()]
             moved[0 if s.full.ravel()[at[k]] else 1].ravel()[at[k]] += sign * h
-            s._balance(*moved, conserves, 0.5, s.nothing)
+            s.balance(*moved, conserves, 0.5, s.nothing)
             sides.append(s.residual.ravel()[at].copy())
         B[:, k] = (sides[0] - sides[1]) / (2.0 * h)
     # differences of smooth functions; the wall's curvature over its onset of a tenth makes them good to 1e-7
