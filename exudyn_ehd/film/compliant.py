@@ -29,14 +29,16 @@ import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
 from exudyn_ehd.film.compliant_columns import (
+    BEND,
+    DRIVE,
+    LOAD_P,
+    SLOPE,
     Columns,
-    Load,
-    Storage,
     answer_columns,
     drive_columns,
+    gain_of_columns,
     move_columns,
     press_columns,
-    set_storage,
 )
 from exudyn_ehd.film.compliant_iteration import factor, newton
 from exudyn_ehd.film.compliant_links import (
@@ -45,7 +47,6 @@ from exudyn_ehd.film.compliant_links import (
     compliant_sensitivities,
     links_of,
 )
-from exudyn_ehd.film.compliant_newton import violation
 from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
 from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import FluxEffect, link_flux
@@ -143,15 +144,16 @@ class CompliantFilmSolver(FilmSolver):
         self.scratch = [np.zeros(shape) for _ in range(4)]
         # whether contact_pressure, contact_G, bend and the slopes in columns are those of surfaces apart
         self.apart = True
-        self.columns = Columns(*(np.ones(shape) for _ in Columns._fields))
-        self.load = Load(*(np.zeros(shape) for _ in Load._fields))
-        self.load.slope[:] = 1.0
+        self.fields = np.ones((len(Columns._fields), *shape))
+        self.columns = Columns(*self.fields)
+        self.load = np.zeros((4, *shape))
+        self.load[SLOPE] = 1.0
         # the cavity's pressure on the columns, and whether an iterate has left the oil's range
         self.cavity_load, self.solid = 0.0, False
         self.flux_effects = flux_effects
         self.flux = link_flux(self.columns.HF, flux_effects) if flux_effects else None
         self.link_flux = links_of(self.flux)
-        self.storage = Storage(*(np.zeros(shape) for _ in Storage._fields))
+        self.gain, self.gain_P, self.gain_fill = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         self.residual = np.zeros(shape)
         self.full, self.trial_full = np.ones(shape, dtype=np.bool_), np.ones(shape, dtype=np.bool_)
         self.trial, self.trial_fill = np.zeros(shape), np.ones(shape)
@@ -194,7 +196,7 @@ class CompliantFilmSolver(FilmSolver):
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
         if self.deflection_inverse == 0.0:
             return 0.0
-        pressure = self.load.p + self.contact_pressure / self.pressure_scale
+        pressure = self.load[LOAD_P] + self.contact_pressure / self.pressure_scale
         rate = (self.columns.D - self.deflection_old) * self.deflection_inverse
         return float(np.sum(pressure * rate * self.grid.weight))
 
@@ -213,7 +215,7 @@ class CompliantFilmSolver(FilmSolver):
         self.solid = False
         if not self._set_loads(P):
             return Status.NO_PRESSURE, 0
-        if self.contact is None and not ends_open(self.rigid, self.load.p, self.beta, g.fixed):
+        if self.contact is None and not ends_open(self.rigid, self.load[LOAD_P], self.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
         steps, ok = 0, False
@@ -229,7 +231,7 @@ class CompliantFilmSolver(FilmSolver):
         if not ok:
             return self._failure(), steps
         self._finish(P)
-        if self.oil is not None and float(self.load.p.max()) * self.pressure_scale > self.oil.largest_pressure:
+        if self.oil is not None and float(self.load[LOAD_P].max()) * self.pressure_scale > self.oil.largest_pressure:
             return Status.NO_PRESSURE, steps
         if self.limiter is not None and self.contact is None and not self.true_gap.min() > 0.0:
             # the film between rough surfaces stays open where nothing holds them apart
@@ -249,34 +251,34 @@ class CompliantFilmSolver(FilmSolver):
         fixed, pc = self.grid.fixed, self.system.cavity_pressure
         self.cavity_load = pc if np.isfinite(pc) else 0.0
         if self.oil is None:
-            self.load.p[fixed] = P[fixed]
+            self.load[LOAD_P][fixed] = P[fixed]
             return True
         known = np.append(P[fixed], self.cavity_load)[None] * self.pressure_scale
         p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
         if not self.oil.inverse(known, p, slope, bend):
             return False
         p /= self.pressure_scale
-        self.load.p[fixed] = p[0, :-1]
+        self.load[LOAD_P][fixed] = p[0, :-1]
         self.cavity_load = float(p[0, -1])
         return True
 
     def press(self, P: np.ndarray) -> bool:
         """Pressure on every column for the film's unknown P; False where the oil has none."""
-        load = self.load
-        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load.drive)
+        load, scale = self.load, self.pressure_scale
+        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load[DRIVE])
         if self.oil is None:
-            load.p[:] = load.drive
+            load[LOAD_P] = load[DRIVE]
             return True
-        if not self.oil.inverse(load.drive * self.pressure_scale, load.p, load.slope, load.bend):
+        if not self.oil.inverse(load[DRIVE] * scale, load[LOAD_P], load[SLOPE], load[BEND]):
             self.solid = True
             return False
-        np.multiply(load.p, 1.0 / self.pressure_scale, out=load.p)
-        np.multiply(load.bend, self.pressure_scale, out=load.bend)
+        load[LOAD_P] *= 1.0 / scale
+        load[BEND] *= scale
         return True
 
     def push(self, P: np.ndarray) -> np.ndarray:
         """Deflection (n, m) that pseudo time counts, of settled columns: what is cut off counts as it stands."""
-        return self.beta * (self.load.p + (P - self.load.drive))
+        return self.beta * (self.load[LOAD_P] + (P - self.load[DRIVE]))
 
     def _take_rigid(self) -> None:
         """Keep the undeformed gaps, and what the film would see of them."""
@@ -318,29 +320,25 @@ class CompliantFilmSolver(FilmSolver):
         return newton(self, P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
 
     def settle(self, P: np.ndarray) -> bool:
-        """Every column under the film of the unknown P; False where the oil has no pressure."""
+        """Every column under the film of the unknown P, with the gaps that the film sees; False where the oil has no pressure."""
         c, contact, limiter = self.columns, self.contact, self.limiter
         if not self.press(P):
             return False
         x = self.true_gap if contact is None else self.scratch[0]
-        press_columns(self.rigid, self.load.p, self.beta, x)
+        smallest = press_columns(self.rigid, self.load[LOAD_P], self.beta, x)
         if contact is not None:
-            if x.min() < contact.presses_below:
+            if smallest < contact.presses_below:
                 contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
                 contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
-                self.contact_G /= self.pressure_scale
+                self.contact_G *= 1.0 / self.pressure_scale
                 self.apart = False
             else:
                 self.true_gap[:] = x
                 self._part()
-        move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, c)
-        self.true_link[:] = c.HF
-        if limiter is not None and (not self.apart or min(x.min(), c.HF.min()) < limiter.limits_below):
+        on_links = move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, self.fields)
+        if limiter is not None and (not self.apart or min(smallest, on_links) < limiter.limits_below):
             limiter.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
             self.apart = False
-        answer_columns(
-            self.rigid_film, self.rigid_slope, P, self.load, self.contact_G, self.bend, self.beta, self.inverse, c
-        )
         return True
 
     def _part(self) -> None:
@@ -355,31 +353,43 @@ class CompliantFilmSolver(FilmSolver):
         self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
     ) -> tuple[float, float]:
         """Residual at P and fill; returns (norm of what does not hold, smallest film gap), (inf, -1) where there is no film."""
-        g, c = self.grid, self.columns
-        if not self.settle(P) or (self.flux is not None and not self._set_flux()):
+        g, pc = self.grid, self.system.cavity_pressure
+        if not self.settle(P):
             return np.inf, -1.0
-        set_storage(
-            c, P, self.load, fill, self.area, self.mass_old, self.mass_inverse, self.with_rate, extra, extra_old, conserves,
-            self.beta, self.storage,
+        smallest = gain_of_columns(
+            self.fields, P, self.load, fill, self.rigid_film, self.area, self._times(extra), self.mass_old, extra_old,
+            conserves, self.beta, self.gain,
         )  # fmt: skip
-        compliant_residual(
-            c, self.link_flux, P, fill, self.storage.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
-            self.residual,
-        )  # fmt: skip
+        if not smallest > 0.0:
+            return np.inf, smallest
+        self._set_flux()
         complementary = self.kind == COMPLEMENTARY and not conserves
-        return violation(c, self.residual, P, g.fixed, self.system.cavity_pressure, complementary)
+        norm = compliant_residual(
+            self.fields, self.link_flux, P, fill, self.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
+            g.fixed, pc, complementary, self.residual,
+        )  # fmt: skip
+        return norm, smallest
 
-    def _set_flux(self) -> bool:
-        """Conductances and carriers in the present gaps; False where these are not open."""
+    def _times(self, extra: float) -> tuple[float, float, float]:
+        """Rates of the storage as `gain_of_columns` takes them."""
+        return self.mass_inverse, float(self.with_rate), float(extra)
+
+    def answer(self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float) -> None:
+        """What settled columns and their storage answer to unknown and undeformed gap."""
+        answer_columns(
+            self.fields, P, self.load, fill, self.rigid_slope, self.contact_G, self.bend, self.area, self._times(extra),
+            conserves, self.beta, self.inverse, self.gain_P, self.gain_fill,
+        )  # fmt: skip
+
+    def _set_flux(self) -> None:
+        """Conductances and carriers in the present gaps, which are open."""
         c, f = self.columns, self.flux
-        assert f is not None
-        if not min(c.H.min(), c.HF.min()) > 0.0:
-            return False
+        if f is None:
+            return
         first, *others = self.flux_effects
         first.start(f, c.H, self.vx, self.vz)
         for effect in others:
             effect.apply(f, c.HF, f.gap_z, self.vx, self.vz)
-        return True
 
     def refresh_fixed(self) -> None:
         """Another set of prescribed vertices: the last factor serves no more."""
@@ -393,12 +403,14 @@ class CompliantFilmSolver(FilmSolver):
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
         elif self.kind == FULL:
             np.logical_not(g.fixed, out=self.work.active)
+        self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
+        self.true_link[:] = self.rigid[1] + 0.5 * (c.D + np.roll(c.D, -1, axis=0))
         self.H[:], self.HF[:], self.H_t[:] = c.H, c.HF, c.rate
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
         np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
         compliant_coefficients(
-            c, self.link_flux, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
+            self.fields, self.link_flux, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
         )
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -413,7 +425,7 @@ class CompliantFilmSolver(FilmSolver):
         if not self.exact:
             conserves = self.closure.conserves_mass
             active = ~g.fixed if conserves or self.kind == CLIPPED else w.active
-            factor(self, self.system.linear_pressure, self.film_fill, active)
+            factor(self, self.system.linear_pressure, self.film_fill, active, conserves, 0.0)
             self.exact = True
         lower, upper = _lu_buffers(w)
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
@@ -434,7 +446,7 @@ class CompliantFilmSolver(FilmSolver):
         cell, face, rate = np.empty_like(lam), np.empty_like(lam), np.empty_like(lam)
         speed = np.empty((lam.shape[0], 2))
         compliant_sensitivities(
-            lam, c, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
+            lam, self.fields, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
             g.link_x, g.link_z, cell, face, rate, speed,
         )  # fmt: skip
         return Sensitivities(cell, face, rate if self.squeeze else None, speed)

@@ -47,29 +47,16 @@ class Columns(NamedTuple):
     rate_t: np.ndarray
 
 
-class Load(NamedTuple):
-    """The film's pressure on the columns, (n, m) arrays.
-
-    Attributes
-    ----------
-    drive : (n, m) array
-        The unknown; no less than pc where a film clips.
-    p, slope, bend : (n, m) arrays
-        Pressure at ``drive`` with its two derivatives to it: 1 and 0 for an oil of constant viscosity.
-    """
-
-    drive: np.ndarray
-    p: np.ndarray
-    slope: np.ndarray
-    bend: np.ndarray
+# Rows of the pressure on the columns (4, n, m): the unknown, no less than pc where a film clips; pressure there, with its two derivatives to
+# the unknown, which are 1 and 0 for an oil of constant viscosity.
+DRIVE, LOAD_P, SLOPE, BEND = 0, 1, 2, 3
 
 
-class Storage(NamedTuple):
-    """What a control volume's content gains per time, with its derivatives to unknown and fill, (n, m) arrays."""
-
-    gain: np.ndarray
-    gain_P: np.ndarray
-    gain_fill: np.ndarray
+@njit(cache=True)
+def columns_of(fields):
+    """`Columns` of their fields (14, n, m)."""
+    f = fields
+    return Columns(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], f[10], f[11], f[12], f[13])
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -84,16 +71,21 @@ def drive_columns(P, fixed, pc, clips, drive_out):
 
 @njit(cache=True, fastmath=_FAST)
 def press_columns(rigid, p, beta, G_out):
-    """Gap under the film's pressure alone."""
+    """Gap under the film's pressure alone; returns the smallest."""
     n, m = p.shape
+    smallest = np.inf
     for i in range(n):
         for j in range(m):
-            G_out[i, j] = rigid[0, i, j] + beta * p[i, j]
+            g = rigid[0, i, j] + beta * p[i, j]
+            G_out[i, j] = g
+            smallest = min(smallest, g)
+    return smallest
 
 
 @njit(cache=True, fastmath=_FAST)
-def move_columns(rigid, G, delta_old, inverse, c):
-    """Deflections, and gaps and rate of the deformed surfaces, into ``c`` (Columns), where a limiter may change them."""
+def move_columns(rigid, G, delta_old, inverse, columns):
+    """Deflections, and gaps and rate of the deformed surfaces, where a limiter may change them; returns the smallest gap of a link."""
+    c = columns_of(columns)
     n, m = G.shape
     for i in range(n):
         for j in range(m):
@@ -101,58 +93,79 @@ def move_columns(rigid, G, delta_old, inverse, c):
             c.D[i, j] = d
             c.H[i, j] = G[i, j]
             c.rate[i, j] = rigid[2, i, j] + (d - delta_old[i, j]) * inverse
+    smallest = np.inf
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            c.HF[i, j] = rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j])
+            h = rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j])
+            c.HF[i, j] = h
+            smallest = min(smallest, h)
+    return smallest
 
 
 @njit(cache=True, fastmath=_FAST)
-def answer_columns(rigid_film, rigid_slope, P, load, contact_G, bend, beta, inverse, c):
-    """What the columns answer to unknown and undeformed gap, for film gaps, rate and their slope (``c.rate_t``) in ``c`` (Columns).
+def gain_of_columns(columns, P, load, fill, rigid_film, area, times, mass_old, extra_old, conserves, beta, gain_out):
+    """E of the columns, and what every vertex gains per time; returns the smallest film gap.
+
+    ``times`` holds the rates (1/s) of mass_inverse, of whether the gap's own rate takes part (1 or 0), and of pseudo time.
+    """
+    c = columns_of(columns)
+    n, m = P.shape
+    mass_inverse, with_rate, extra = times[0], times[1], times[2]
+    smallest = np.inf
+    for i in range(n):
+        for j in range(m):
+            h = c.H[i, j]
+            smallest = min(smallest, min(h, c.HF[i, j]))
+            c.E[i, j] = h - rigid_film[i, j]
+    if conserves:
+        pull = mass_inverse + extra
+        for i in range(n):
+            for j in range(m):
+                f = fill[i, j]
+                gain = f * (c.H[i, j] * pull + c.rate[i, j] * with_rate)
+                gain_out[i, j] = area[i, j] * (gain - mass_old[i, j] * mass_inverse - extra_old[i, j] * extra)
+        return smallest
+    for i in range(n):
+        for j in range(m):
+            gain_out[i, j] = area[i, j] * c.rate[i, j]
+    if extra != 0.0:
+        for i in range(n):
+            for j in range(m):
+                push = load[LOAD_P, i, j] + (P[i, j] - load[DRIVE, i, j])
+                gain_out[i, j] += area[i, j] * extra * (beta * push - extra_old[i, j])
+    return smallest
+
+
+@njit(cache=True, fastmath=_FAST)
+def answer_columns(
+    columns, P, load, fill, rigid_slope, contact_G, bend, area, times, conserves, beta, inverse, gain_P, gain_fill
+):  # fmt: skip
+    """What columns and storage answer to unknown and undeformed gap, for film gaps, rate and their slope (``rate_t``) in ``columns``.
 
     ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the film gap's second derivative times the gap's rate.
     """
+    c = columns_of(columns)
     n, m = P.shape
+    mass_inverse, with_rate, extra = times[0], times[1], times[2]
     for i in range(n):
         for j in range(m):
             follow = 1.0 / (1.0 - beta * contact_G[i, j])
             s = c.rate_t[i, j]
-            c.E[i, j] = c.H[i, j] - rigid_film[i, j]
-            c.D_P[i, j] = beta * follow * load.slope[i, j] if P[i, j] == load.drive[i, j] else 0.0
-            c.H_P[i, j] = s * c.D_P[i, j]
+            cut = P[i, j] != load[DRIVE, i, j]
+            d = 0.0 if cut else beta * follow * load[SLOPE, i, j]
+            turn = bend[i, j] + s * inverse
+            c.D_P[i, j] = d
+            c.H_P[i, j] = s * d
             c.D_r[i, j] = follow - 1.0
             c.H_r[i, j] = s * follow
-            c.E_r[i, j] = c.H_r[i, j] - rigid_slope[i, j]
-            c.rate_P[i, j] = (bend[i, j] + s * inverse) * c.D_P[i, j]
-            c.rate_r[i, j] = bend[i, j] * follow + s * inverse * c.D_r[i, j]
-
-
-@njit(cache=True, fastmath=_FAST)
-def set_storage(c, P, load, fill, area, mass_old, mass_inverse, with_rate, extra, extra_old, conserves, beta, out):
-    """Storage ``out`` of every vertex: of the mass fill H over a step, of the gap's rate, and of pseudo time (``extra``)."""
-    n, m = P.shape
-    for i in range(n):
-        for j in range(m):
+            c.E_r[i, j] = s * follow - rigid_slope[i, j]
+            c.rate_P[i, j] = turn * d
+            c.rate_r[i, j] = bend[i, j] * follow + s * inverse * (follow - 1.0)
             w = area[i, j]
-            f = fill[i, j]
             if conserves:
                 pull = mass_inverse + extra
-                mass = f * c.H[i, j]
-                gain = mass * pull - mass_old[i, j] * mass_inverse - extra_old[i, j] * extra
-                by_p = f * c.H_P[i, j] * pull
-                by_fill = c.H[i, j] * pull
-                if with_rate:
-                    gain += f * c.rate[i, j]
-                    by_p += f * c.rate_P[i, j]
-                    by_fill += c.rate[i, j]
-                out.gain[i, j], out.gain_P[i, j], out.gain_fill[i, j] = w * gain, w * by_p, w * by_fill
-            elif extra == 0.0:
-                out.gain[i, j] = w * c.rate[i, j]
-                out.gain_P[i, j] = w * c.rate_P[i, j]
+                gain_P[i, j] = w * fill[i, j] * (s * d * pull + turn * d * with_rate)
+                gain_fill[i, j] = w * (c.H[i, j] * pull + c.rate[i, j] * with_rate)
             else:
-                # what is cut off counts as it stands
-                cut = P[i, j] - load.drive[i, j]
-                slope = load.slope[i, j] if cut == 0.0 else 1.0
-                out.gain[i, j] = w * (c.rate[i, j] + extra * (beta * (load.p[i, j] + cut) - extra_old[i, j]))
-                out.gain_P[i, j] = w * (c.rate_P[i, j] + extra * beta * slope)
+                gain_P[i, j] = w * (turn * d + extra * beta * (1.0 if cut else load[SLOPE, i, j]))

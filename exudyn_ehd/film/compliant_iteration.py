@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.compliant_newton import factor_compliant, longest_step, newton_step, step_size, take_step
+from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, step_size, take_step
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.liner_newton import (
     CLIPPED,
@@ -62,7 +62,7 @@ def newton(
     for step in range(1, MAX_NEWTON_STEPS + 1):
         fresh = not factored
         if fresh:
-            if not factor(s, P, fill, active):
+            if not factor(s, P, fill, active, conserves, extra):
                 return False, step
             moved = 0.0
             if w.count == 0 or norm == 0.0:
@@ -70,9 +70,10 @@ def newton(
                 return True, step
         newton_step(s.residual, w.order, w.count, w.width, lower, upper, w.inv_diag, x)
         opening = smallest / s.beta
-        error, size, peak = step_size(
-            P, s.load, s.full, w.order, w.count, x, s.cavity_load, kind == CLIPPED, LEAST_DEFLECTION * opening, opening
-        )
+        error, size, peak, share = step_size(
+            P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, x, s.cavity_load, kind == CLIPPED,
+            LEAST_DEFLECTION * opening, opening,
+        )  # fmt: skip
         if not error < 1e300:
             return False, step
         borrowed = held and step == 1
@@ -80,7 +81,6 @@ def newton(
         if not fresh and not borrowed and not standing and error > CONTRACTION * last:
             factored = False
             continue
-        share = 1.0 if kind == CLIPPED else longest_step(s.columns, s.full, w.order, w.count, x)
         before = norm
         for k in range(1 if borrowed else 12):
             if k > 0:
@@ -109,7 +109,7 @@ def newton(
             changes = select(P, s.residual, g.fixed, pc, kind, active) if complementary else 0
         moved += share * error
         if norm <= noise and not conserves:
-            s.exact = s.held = factor(s, P, fill, active)
+            s.exact = s.held = factor(s, P, fill, active, conserves, extra)
             return s.exact, step
         factored = changes == 0 and share == 1.0
         if factored:
@@ -123,13 +123,16 @@ def newton(
     return False, MAX_NEWTON_STEPS
 
 
-def factor(solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, active: np.ndarray) -> bool:
-    """Factor Newton's matrix at P and fill, where the columns stand."""
+def factor(
+    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, active: np.ndarray, conserves: bool, extra: float
+) -> bool:
+    """Factor Newton's matrix at P and fill, where the columns stand; arguments as for `newton`."""
     g, w = solver.grid, solver.work
+    solver.answer(P, fill, conserves, extra)
     lower, upper = _lu_buffers(w)
     ok, w.count, w.width = factor_compliant(
-        solver.columns, solver.link_flux, P, fill, solver.full, solver.storage, solver.vx, solver.vz, g.width_x, g.width_z,
-        g.link_x, g.link_z, solver.links, active, w.order, w.number, lower, upper, w.inv_diag,
+        solver.fields, solver.link_flux, P, fill, solver.full, solver.gain_P, solver.gain_fill, solver.vx, solver.vz,
+        g.width_x, g.width_z, g.link_x, g.link_z, solver.links, active, w.order, w.number, lower, upper, w.inv_diag,
     )  # fmt: skip
     return ok
 

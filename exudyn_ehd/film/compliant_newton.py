@@ -9,7 +9,8 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.band_lu import PAD, add_flux, factor_lu, solve_lu
-from exudyn_ehd.film.compliant_links import across, along
+from exudyn_ehd.film.compliant_columns import BEND, DRIVE, LOAD_P, SLOPE, columns_of
+from exudyn_ehd.film.compliant_links import across, across_slopes, along, along_slopes
 from exudyn_ehd.film.direct import number_cells
 
 # Largest growth of an oil's viscosity in one step, as a logarithm.
@@ -17,27 +18,12 @@ LARGEST_THICKENING = 4.0
 
 
 @njit(cache=True)
-def violation(c, r, P, fixed, pc, complementary):
-    """(norm of the balances that do not hold, smallest film gap); at pc oil may be drawn away if ``complementary``."""
-    n, m = P.shape
-    total = 0.0
-    smallest = 1e300
-    for i in range(n):
-        for j in range(m):
-            smallest = min(smallest, min(c.H[i, j], c.HF[i, j]))
-            if not fixed[i, j]:
-                s = r[i, j]
-                if complementary and P[i, j] <= pc:
-                    s = min(s, 0.0)
-                total += s * s
-    return np.sqrt(total), smallest
-
-
-@njit(cache=True)
 def assemble_compliant(
-    c, links, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, number, count, width, lower, upper
+    columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, number, count, width,
+    lower, upper,
 ):  # fmt: skip
     """d(balance)/d(unknown) of the numbered vertices into the two bands; the unknown is P where ``full``, else the fill."""
+    c = columns_of(columns)
     n, m = P.shape
     for r in range(count):
         for d in range(width + 1 + PAD):
@@ -51,12 +37,14 @@ def assemble_compliant(
             a = number[i, j]
             b = number[nxt, j]
             if a >= 0:
-                upper[a, 0] += storage.gain_P[i, j] if full[i, j] else storage.gain_fill[i, j]
+                upper[a, 0] += gain_P[i, j] if full[i, j] else gain_fill[i, j]
             if (a >= 0 or b >= 0) and lx != 0.0:
                 d = 0.5 * (c.E[nxt, j] - c.E[i, j])
                 f = fill[i, j] if v >= 0.0 else fill[nxt, j]
                 drop = lx * (P[nxt, j] - P[i, j])
-                k, k_h, k_d, carrier, carrier_h = along(links, i, j, c.HF[i, j], d)
+                h = c.HF[i, j]
+                k, carrier = along(links, i, j, h, d)
+                k_h, k_d, _, carrier_h = along_slopes(links, i, j, h, d)
                 k *= width_z[j] * lx
                 by_h = 0.5 * width_z[j] * c.link[i, j] * (v * f * carrier_h - k_h * drop)
                 by_d = 0.5 * width_z[j] * k_d * drop
@@ -77,7 +65,9 @@ def assemble_compliant(
                 d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
                 f = fill[i, j] if vz >= 0.0 else fill[i, j + 1]
                 drop = link_z[j] * (P[i, j + 1] - P[i, j])
-                k, k_h, k_d, carrier, carrier_h = across(links, i, j, 0.5 * (c.H[i, j] + c.H[i, j + 1]), d)
+                h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
+                k, carrier = across(links, i, j, h, d)
+                k_h, k_d, _, carrier_h = across_slopes(links, i, j, h, d)
                 k *= width_x[i] * link_z[j]
                 by_h = 0.5 * width_x[i] * (vz * f * carrier_h - k_h * drop)
                 by_d = 0.5 * width_x[i] * k_d * drop
@@ -95,14 +85,15 @@ def assemble_compliant(
 
 @njit(cache=True)
 def factor_compliant(
-    c, links, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, metric, active, order, number, lower,
-    upper, inv_diag,
+    columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, metric, active, order,
+    number, lower, upper, inv_diag,
 ):  # fmt: skip
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width)."""
     count, width = number_cells(active, metric, order, number)
     assemble_compliant(
-        c, links, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, number, count, width, lower, upper
-    )
+        columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, number, count, width,
+        lower, upper,
+    )  # fmt: skip
     return factor_lu(lower, upper, count, width, inv_diag), count, width
 
 
@@ -118,47 +109,42 @@ def newton_step(r, order, count, width, lower, upper, inv_diag, x):
 
 
 @njit(cache=True)
-def longest_step(c, full, order, count, x):
-    """Share of the step x that uses up at most 80 % of any vertex's film gap."""
-    m = c.H.shape[1]
-    share = 1.0
-    for k in range(count):
-        i = order[k] // m
-        j = order[k] - i * m
-        if full[i, j]:
-            change = c.H_P[i, j] * x[k]
-            if change < -0.8 * c.H[i, j]:
-                share = min(share, -0.8 * c.H[i, j] / change)
-    return share
+def step_size(
+    P, load, columns, contact_G, beta, full, order, count, x, cavity_load, clips, least, opening
+):  # fmt: skip
+    """(largest step over the peak pressure, or of a fill; over what counts as much after it; the peak; share of the step to take).
 
-
-@njit(cache=True)
-def step_size(P, load, full, order, count, x, cavity_load, clips, least, opening):
-    """Largest step over the peak pressure (at least ``least``), or of a fill; over what counts as much after it; the peak.
-
-    All in pressures on the columns, pc being ``cavity_load`` among them. What a film that clips cuts off may lie far below pc and drops over
-    the bent gaps, so that its steps are small by what presses and by ``opening``, the pressure that opens the smallest gap. Infinite for
-    steps that are not finite.
+    All in pressures on the columns, pc being ``cavity_load`` among them, the peak at least ``least``. What a film that clips cuts off may
+    lie far below pc and drops over the bent gaps, so that its steps are small by what presses and by ``opening``, the pressure that opens the
+    smallest gap. Infinite for steps that are not finite. The share uses up at most 80 % of any vertex's film gap.
     """
+    c = columns_of(columns)
     m = P.shape[1]
     peak = least
     pressing = least
     largest = 0.0
     filled = 0.0
+    share = 1.0
     for k in range(count):
         i = order[k] // m
         j = order[k] - i * m
         if not abs(x[k]) < 1e300:
-            return np.inf, np.inf, peak
+            return np.inf, np.inf, peak, 1.0
         if full[i, j]:
-            over = load.p[i, j] + (P[i, j] - load.drive[i, j]) - cavity_load
+            cut = P[i, j] - load[DRIVE, i, j]
+            over = load[LOAD_P, i, j] + cut - cavity_load
             peak = max(peak, abs(over))
             pressing = max(pressing, over)
-            largest = max(largest, abs(x[k]) * load.slope[i, j])
+            change = x[k] * load[SLOPE, i, j]
+            largest = max(largest, abs(change))
+            if change < 0.0 and cut == 0.0:
+                change *= c.rate_t[i, j] * beta / (1.0 - beta * contact_G[i, j])
+                if change < -0.8 * c.H[i, j]:
+                    share = min(share, -0.8 * c.H[i, j] / change)
         else:
             filled = max(filled, abs(x[k]))
     unit = min(pressing, opening) if clips else peak
-    return max(largest / peak, filled), max(largest / unit, filled), peak
+    return max(largest / peak, filled), max(largest / unit, filled), peak, 1.0 if clips else share
 
 
 @njit(cache=True, inline="always")
@@ -189,7 +175,7 @@ def take_step(
         i = order[k] // m
         j = order[k] - i * m
         if full[i, j]:
-            p = _moved(P[i, j], share * x[k], load.drive[i, j], load.slope[i, j], load.bend[i, j])
+            p = _moved(P[i, j], share * x[k], load[DRIVE, i, j], load[SLOPE, i, j], load[BEND, i, j])
             if complementary and p < pc:
                 p = pc
             if conserves and p < pc:

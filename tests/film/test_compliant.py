@@ -160,6 +160,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
         fill[~s.full] = rng.random(SMALL.shape)[~s.full]
         fill[SMALL.fixed] = 1.0
     s.balance(P, fill, conserves, 0.5, s.nothing)
+    s.answer(P, fill, conserves, 0.5)
     free = ~SMALL.fixed
     from exudyn_ehd.film.compliant_newton import assemble_compliant
     from exudyn_ehd.film.direct import number_cells
@@ -168,8 +169,8 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
     lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
     count, width = number_cells(free, s.links, w.order, w.number)
     assemble_compliant(
-        s.columns, s.link_flux, P, fill, s.full, s.storage, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, w.number, count, width,
-        lower, upper,
+        s.fields, s.link_flux, P, fill, s.full, s.gain_P, s.gain_fill, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z,
+        w.number, count, width, lower, upper,
     )  # fmt: skip
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
