@@ -59,6 +59,10 @@ from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
 
 
+# Share of an oil's largest pressure at which a film that was not found is on its way beyond.
+NEARLY_SOLID = 0.9
+
+
 class ColumnContact(Protocol):
     """What presses on a column beside the film; as `exudyn_ehd.joint.effects.Contact`."""
 
@@ -148,8 +152,8 @@ class CompliantFilmSolver(FilmSolver):
         self.columns = Columns(*self.fields)
         self.load = np.zeros((4, *shape))
         self.load[SLOPE] = 1.0
-        # the cavity's pressure on the columns, and whether an iterate has left the oil's range
-        self.cavity_load, self.solid = 0.0, False
+        # the cavity's pressure on the columns
+        self.cavity_load = 0.0
         self.flux_effects = flux_effects
         self.flux = link_flux(self.columns.HF, flux_effects) if flux_effects else None
         self.link_flux = links_of(self.flux)
@@ -212,7 +216,6 @@ class CompliantFilmSolver(FilmSolver):
         P = s.linear_pressure
         if self.kind == CLIPPED:
             P[g.fixed] = s.pressure[g.fixed]
-        self.solid = False
         if not self._set_loads(P):
             return Status.NO_PRESSURE, 0
         if self.contact is None and not ends_open(self.rigid, self.load[LOAD_P], self.beta, g.fixed):
@@ -231,8 +234,6 @@ class CompliantFilmSolver(FilmSolver):
         if not ok:
             return self._failure(), steps
         self._finish(P)
-        if self.oil is not None and float(self.load[LOAD_P].max()) * self.pressure_scale > self.oil.largest_pressure:
-            return Status.NO_PRESSURE, steps
         if self.limiter is not None and self.contact is None and not self.true_gap.min() > 0.0:
             # the film between rough surfaces stays open where nothing holds them apart
             return Status.NO_FILM, steps
@@ -240,8 +241,10 @@ class CompliantFilmSolver(FilmSolver):
 
     def _failure(self) -> Status:
         """Status of a film that was not found."""
-        if self.solid:
-            return Status.NO_PRESSURE
+        if self.oil is not None:
+            highest = float(self.load[LOAD_P].max()) * self.pressure_scale
+            if highest > NEARLY_SOLID * self.oil.largest_pressure:
+                return Status.NO_PRESSURE
         if self.contact is not None:
             return Status.NOT_CONVERGED
         return failed_film(self.kind, self.rigid[0], self.beta, self.cavity_load)
@@ -263,14 +266,15 @@ class CompliantFilmSolver(FilmSolver):
         return True
 
     def press(self, P: np.ndarray) -> bool:
-        """Pressure on every column for the film's unknown P; False where the oil has none."""
+        """Pressure on every column for the film's unknown P; False where the oil would be solid."""
         load, scale = self.load, self.pressure_scale
         drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load[DRIVE])
         if self.oil is None:
             load[LOAD_P] = load[DRIVE]
             return True
         if not self.oil.inverse(load[DRIVE] * scale, load[LOAD_P], load[SLOPE], load[BEND]):
-            self.solid = True
+            return False
+        if not float(load[LOAD_P].max()) <= self.oil.largest_pressure:
             return False
         load[LOAD_P] *= 1.0 / scale
         load[BEND] *= scale
@@ -410,7 +414,19 @@ class CompliantFilmSolver(FilmSolver):
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
         np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
         compliant_coefficients(
-            self.fields, self.link_flux, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
+            self.fields,
+            self.link_flux,
+            self.vx,
+            self.vz,
+            g.width_x,
+            g.width_z,
+            g.link_x,
+            g.link_z,
+            s.kx,
+            s.kz,
+            s.fx,
+            s.fz,
+            s.b,
         )
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)

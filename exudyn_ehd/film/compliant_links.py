@@ -84,7 +84,9 @@ def across_slopes(links, i, j, h, d):
 
 
 @njit(cache=True, fastmath=_FAST)
-def compliant_residual(columns, links, P, fill, gain, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, complementary, r_out):
+def compliant_residual(
+    columns, links, P, fill, gain, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, complementary, r_out
+):
     """Balance of every vertex, outflow - inflow + storage; returns the norm of those that do not hold.
 
     At pc oil may be drawn away if ``complementary``.
@@ -180,7 +182,9 @@ def compliant_sensitivities(
 
 
 @njit(cache=True, fastmath=_FAST)
-def compliant_coefficients(columns, links, vx, vz, width_x, width_z, link_x, link_z, kx_out, kz_out, fx_out, fz_out, b_out):
+def compliant_coefficients(
+    columns, links, vx, vz, width_x, width_z, link_x, link_z, kx_out, kz_out, fx_out, fz_out, b_out
+):
     """Conductances and Couette fluxes of a full film in the deformed gap; ``b_out`` without storage."""
     c = columns_of(columns)
     n, m = c.H.shape

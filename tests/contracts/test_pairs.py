@@ -45,7 +45,11 @@ LINER_TRIPLES = [
     ("liner", "groove", "profile"),
     ("liner", "wear", "profile"),
     *(("liner", *pair) for pair in itertools.combinations(("barus", "carreau", "roughness", "energy"), 2)),
-    *(("liner", law, contact) for law in ("barus", "carreau", "roughness", "energy") for contact in ("wall", "asperity")),
+    *(
+        ("liner", law, contact)
+        for law in ("barus", "carreau", "roughness", "energy")
+        for contact in ("wall", "asperity")
+    ),
 ]
 
 
