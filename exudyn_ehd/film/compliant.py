@@ -1,24 +1,32 @@
-"""Film on an elastic liner that touches the journal, or that keeps its oil: contact and mass-conserving cavitation on columns.
+"""Film on an elastic liner with contact, mass-conserving cavitation, laws of the oil or flow factors.
 
 As in `exudyn_ehd.film.liner` a column gives way in proportion to the pressure on it, here that of the film and of the contact:
 
-    G = G_rigid + D,    D = beta (P + P_c(G)),
+    G = G_rigid + D,    D = beta (p + P_c(G)),
 
-with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(P), which rises with P:
+with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(p), which rises with p:
 
-    dG/dP = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
+    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
 
 so that the effective compliance beta T is bounded by the liner's, and nearly none where the contact is stiff against it. However deep the
 undeformed surfaces overlap, the liner takes it up; at the ends and in grooves, whose pressure is prescribed, by the contact alone.
-The film sees ``H = lim(G)``, the gap limiter of wall or asperities, on links ``lim`` of the true gap with the mean deflection of both ends.
-Conductances are ``g = H (H^2 + d^2)`` as without contact, d half the difference of ``E = lim(G) - lim(G_rigid)`` between the ends:
-what the liner adds to the film's gap. The film's rate is ``lim'(G) (rate of the undeformed gap + dD/dt)``.
+The film sees ``H = lim(G)``, the gap limiter of wall or rough surfaces, on links ``lim`` of the true gap with the mean deflection of both
+ends. Conductances are ``g = H (H^2 + d^2)`` as without contact, d half the difference of ``E = lim(G) - lim(G_rigid)`` between the ends:
+what the liner adds to the film's gap; flow factors multiply them (`exudyn_ehd.film.compliant_links`). The film's rate is
+``lim'(G) (rate of the undeformed gap + dD/dt)``.
+
+A viscosity that follows the pressure. The film's unknown is the transformed pressure P of `exudyn_ehd.film.viscosity`, in which its flow is
+that of a constant viscosity; the columns feel the pressure itself, p(P) with ``dp/dP = mu(p) / mu_0``. Since p grows exponentially with P,
+a Newton step that raises the pressure goes where the tangent of p(P) leads the pressure, which is less far than its P would take it; one that
+lowers it goes where P leads: in either case the shorter way, and to second order the same. Thick oil lifts the liner: where a rigid bore
+has no film any more the gap opens. What would need an oil that is solid ends with NO_PRESSURE.
 
 `ElrodAdams` has the balance of `exudyn_ehd.film.elrod` with the content ``fill H(P)``: at full vertices the unknown pressure takes part in
 the storage through the liner, at cavitated ones the unknown is the fill and the column rests under the cavity's pressure.
 
-Newton's method is the one of the plain liner: vertices without pressure (or full ones) are told from the iterate, a step is shortened where it
-would use up more than 80 % of a gap, and pseudo time leads to the steady state of a film that does not settle.
+Newton's method is the one of the plain liner (`exudyn_ehd.film.compliant_iteration`): vertices without pressure (or full ones) are told from
+the iterate, a step is shortened where it would use up more than 80 % of a gap, and pseudo time leads to the steady state of a film that
+does not settle (`exudyn_ehd.film.compliant_start`).
 """
 
 from __future__ import annotations
@@ -57,7 +65,6 @@ from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds import add_squeeze
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
-
 
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
 NEARLY_SOLID = 0.9
