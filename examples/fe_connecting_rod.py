@@ -27,6 +27,7 @@ from matplotlib.figure import Figure
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.hex20 import NODES
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
@@ -232,6 +233,26 @@ def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
     return whole.reshape(-1, 3), modal.reshape(-1, 3)
 
 
+@styled(10.0)
+def draw(cases: dict, rods: dict, path: Path) -> None:
+    """Pressure, film and force of the three rods, and how the elastic ones deform."""
+    figure = Figure(figsize=(11, 8), layout="constrained")
+    axes = figure.subplot_mosaic("pg;pg;fn;fw")
+    for name, case in cases.items():
+        h, angle = case["history"], case["angle_deg"]
+        axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
+        axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
+        axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
+    for a, label in zip("pgf", ("peak pressure in MPa", "smallest film in µm", "pin force in kN")):
+        axes[a].set(xlabel="crank angle in °", ylabel=label)
+    axes["g"].set_ylim(0, 15)
+    axes["p"].legend()
+    for a, (name, (fem, _)) in zip("nw", rods.items()):
+        draw_rod(axes[a], fem)
+        axes[a].set_title(f"{name}: small end held, 25 kN, 300 times")
+    figure.savefig(path, dpi=110)
+
+
 def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     """Run all rods over the turn of a firing; with ``results`` write the picture there."""
     turns, steps = (0.27, 240) if quick else (1.0, 360)
@@ -246,21 +267,7 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        figure = Figure(figsize=(11, 8), layout="constrained")
-        axes = figure.subplot_mosaic("pg;pg;fn;fw")
-        for name, case in cases.items():
-            h, angle = case["history"], case["angle_deg"]
-            axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
-            axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
-            axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
-        for a, label in zip("pgf", ("peak pressure in MPa", "smallest film in µm", "pin force in kN")):
-            axes[a].set(xlabel="crank angle in °", ylabel=label)
-        axes["g"].set_ylim(0, 15)
-        axes["p"].legend()
-        for a, (name, (fem, _)) in zip("nw", rods.items()):
-            draw_rod(axes[a], fem)
-            axes[a].set_title(f"{name}: small end held, 25 kN, 300 times", fontsize="medium")
-        figure.savefig(folder / "fe_connecting_rod.png", dpi=110)
+        draw(cases, rods, folder / "fe_connecting_rod.png")
         outcome["picture"] = folder / "fe_connecting_rod.png"
     return outcome
 

@@ -25,10 +25,11 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.coupling.bush_object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
 from exudyn_ehd.coupling.sparse_newton import SolveDynamicSparse
+from exudyn_ehd.pictures.bush import Frame, contour_figure
+from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.picture import Frame, contour_figure
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
@@ -109,6 +110,18 @@ def settings(step: float, end: float) -> exu.SimulationSettings:
     return result
 
 
+@styled(10.0)
+def draw(cases: list[dict], folder: Path) -> list[Path]:
+    """Write the pictures and return their paths."""
+    figures = {
+        "hollow_cylinder_histories.png": history_figure(cases),
+        "hollow_cylinder_shapes.png": shapes_figure(cases[-1]),
+    }
+    for file, figure in figures.items():
+        figure.savefig(folder / file, dpi=130)
+    return [folder / file for file in figures]
+
+
 def history_figure(cases: list[dict]) -> Figure:
     """Displacement of the top point for all meshes, von Mises stress of the finest."""
     figure = Figure(figsize=(10, 4.2), layout="constrained")
@@ -162,12 +175,7 @@ def main(*, quick: bool = False, results: str | Path | None = "results") -> dict
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        for name, figure in (
-            ("hollow_cylinder_histories.png", history_figure(cases)),
-            ("hollow_cylinder_shapes.png", shapes_figure(cases[-1])),
-        ):
-            figure.savefig(folder / name, dpi=130)
-            files.append(folder / name)
+        files = draw(cases, folder)
     return {
         "cases": [
             {

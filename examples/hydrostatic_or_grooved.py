@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 SPEED = 100.0 * math.pi
 LOAD, TURNING_LOAD, LOAD_SPEED = 3000.0, 2000.0, 0.1 * SPEED
@@ -172,6 +173,7 @@ def figures(films, sweeps, runs) -> dict[str, float]:
     return rows
 
 
+@styled(10.0)
 def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
     """Maps of pressure and fill, and the two sweeps."""
     fig, axes = plt.subplots(2, 2, figsize=(12, 8.5), layout="constrained")

@@ -22,6 +22,7 @@ from matplotlib.figure import Figure
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.pictures.style import styled
 
 SPEED = 3000 * 2 * np.pi / 60
 CLEARANCE, ECCENTRICITY = 30e-6, 24e-6
@@ -107,15 +108,21 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        files = {
-            "rotating_journal.png": summary_figure(cases, moduli),
-            "rotating_journal_pressure.png": pressure_figure(cases, moduli),
-            "rotating_journal_bore.png": bore_figure(cases, moduli),
-        }
-        for file, figure in files.items():
-            figure.savefig(folder / file, dpi=110)
-        cases["pictures"] = [folder / file for file in files]
+        cases["pictures"] = draw(cases, moduli, folder)
     return cases
+
+
+@styled(10.0)
+def draw(cases: dict, moduli: dict, folder: Path) -> list[Path]:
+    """Write the pictures and return their paths."""
+    figures = {
+        "rotating_journal.png": summary_figure(cases, moduli),
+        "rotating_journal_pressure.png": pressure_figure(cases, moduli),
+        "rotating_journal_bore.png": bore_figure(cases, moduli),
+    }
+    for file, figure in figures.items():
+        figure.savefig(folder / file, dpi=110)
+    return [folder / file for file in figures]
 
 
 def pressure_figure(cases: dict, moduli: dict) -> Figure:

@@ -30,6 +30,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 CRANK, ROD = 0.05, 0.12
 CRANK_MASS, CRANK_INERTIA = 0.30, 1e-4
@@ -220,6 +221,7 @@ def print_table(rows: dict[str, dict[str, float]], ideal: Run, start_up: float) 
         print(f"{key:32s}{first}" + "".join(f"{row[key]:14.4g}" for row in rows.values()))
 
 
+@styled(10.0)
 def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path) -> None:
     """Mechanism figures over the crank angle, and the bearing's orbit, film and pressure."""
     end = round(math.degrees(ideal.angle[-1]) - 360.0 * start_up)
@@ -280,7 +282,7 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
         aspect="equal",
         title="orbit of the pin in the rod's eye",
     )
-    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=9, frameon=False)
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
     axes[1].set(ylabel="minimum gap / clearance [-]", title="minimum film")
     axes[2].set(ylabel="peak pressure [MPa]", title="peak pressure")
     for ax in axes[1:]:

@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 MASS, INERTIA = 5.0, 0.0015625  # a solid cylinder of 50 mm
 LOAD = 2000.0
@@ -161,6 +162,7 @@ def figures(run: Run, curve: ehd.StribeckResult) -> dict[str, float]:
     }
 
 
+@styled(10.0)
 def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     """Speed and contact, films, Stribeck curve and wear."""
     h = run.history

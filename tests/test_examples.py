@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures("tidy_pictures")
+
 
 def test_slider_crank(example, tmp_path):
     rows = example("slider_crank").main(quick=True, output=tmp_path)
