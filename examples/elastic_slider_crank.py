@@ -346,7 +346,7 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     axes[1, 2].set(ylabel="minimum film [µm]", ylim=(0, None))
     for ax in (*axes[0], axes[1, 0], axes[1, 2]):
         ax.set(
-            xlabel="crank angle [deg]",
+            xlabel="crank angle [°]",
             xlim=(begin, end),
             xticks=range(begin, end + 1, 90 if end == begin + 360 else 180),
         )

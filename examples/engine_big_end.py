@@ -208,10 +208,10 @@ def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None
     axes[0, 1].plot(angles, 1e-3 * forces, "o-", ms=3, color="black")
     axes[0, 1].axhline(0.0, color="grey", lw=0.8)
     axes[0, 1].set(ylabel="load along the rod [kN]", title="load of the four-stroke cycle")
-    axes[1, 0].set(ylabel="smallest film [um]", title="smallest film", ylim=(0, None))
+    axes[1, 0].set(ylabel="smallest film [µm]", title="smallest film", ylim=(0, None))
     axes[1, 1].set(ylabel="peak pressure [MPa]", title="peak pressure", ylim=(0, None))
     for ax in (axes[0, 1], axes[1, 0], axes[1, 1]):
-        ax.set(xlabel="crank angle [deg]", xlim=(0, 720), xticks=range(0, 721, 90))
+        ax.set(xlabel="crank angle [°]", xlim=(0, 720), xticks=range(0, 721, 90))
         ax.grid(alpha=0.3)
     fig.savefig(path, dpi=100)
     plt.close(fig)

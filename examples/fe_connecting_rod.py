@@ -2,10 +2,11 @@
 
 The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the piston, with the whole rod as a reduced finite-element body:
 two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and the modes that its bore needs under an
-oil film. The mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
+oil film. At the firing the mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
 narrow one carries the firing load in the middle of a thin eye that gives way beside it, so that the pressure gathers over the shank
 and the film gets less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the pressure
-is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart.
+is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide shank is the heavier one: between
+firings its inertia asks for more force than that of the narrow one, whose mass the rigid rod has.)
 
 Run ``python examples/fe_connecting_rod.py``; the picture is written to ``results``.
 """
@@ -211,7 +212,7 @@ def draw_rod(axes, fem: FEMinterface) -> None:
     for u, style in ((np.zeros_like(nodes), {"color": "0.75", "lw": 0.6}), (shape, {"color": "C1", "lw": 0.8})):
         x = 1e3 * (nodes + u)[top][:, ring]
         axes.plot(x[..., 0].T, x[..., 1].T, **style)
-    axes.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
+    axes.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
 
 
 def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
@@ -243,8 +244,10 @@ def draw(cases: dict, rods: dict, path: Path) -> None:
         axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
         axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
         axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
-    for a, label in zip("pgf", ("peak pressure in MPa", "smallest film in µm", "pin force in kN")):
-        axes[a].set(xlabel="crank angle in °", ylabel=label)
+    for a, label in zip("pgf", ("peak pressure [MPa]", "smallest film [µm]", "pin force [kN]")):
+        axes[a].set(
+            xlabel="crank angle [°]", ylabel=label, xlim=(0, angle[-1]), xticks=np.arange(0.0, angle[-1] + 1.0, 60.0)
+        )
     axes["g"].set_ylim(0, 15)
     axes["p"].legend()
     for a, (name, (fem, _)) in zip("nw", rods.items()):

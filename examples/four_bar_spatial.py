@@ -367,7 +367,7 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     )
     for ax, label in zip(axes.flat, labels, strict=True):
         ax.set(
-            xlabel="crank angle from the rocker's dead centre [deg]",
+            xlabel="crank angle from the rocker's dead centre [°]",
             ylabel=label,
             xlim=(first, end),
             xticks=range(first, end + 1, 90 if end == first + 360 else 180),

@@ -129,12 +129,12 @@ def history_figure(cases: list[dict]) -> Figure:
     for case, style in zip(cases, ("-", "--", "-.", ":")):
         label = " x ".join(map(str, case["counts"]))
         left.plot(case["time"], 1e3 * case["top_displacement"], style, label=label, linewidth=2)
-    left.set(xlabel="time in s", ylabel="displacement of the top point in mm", title="Mesh: axial x radial x around")
+    left.set(xlabel="time [s]", ylabel="displacement of the top point [mm]", title="Mesh: axial x radial x around")
     fine = cases[-1]
     right.plot(fine["stress_time"], 1e-3 * fine["von_mises_under_load"], label="bore, under the load")
     right.plot(fine["stress_time"], 1e-3 * fine["von_mises_side"], label="bore, side")
     name = " x ".join(map(str, fine["counts"]))
-    right.set(xlabel="time in s", ylabel="von Mises stress in kPa", title=f"Mid-plane, mesh {name}")
+    right.set(xlabel="time [s]", ylabel="von Mises stress [kPa]", title=f"Mid-plane, mesh {name}")
     for axes in (left, right):
         axes.grid(alpha=0.3)
         axes.legend()
@@ -148,7 +148,7 @@ def shapes_figure(case: dict) -> Figure:
         Frame(title=f"t = {t:g} s", displacements=u, values=1e-3 * bush.stress.von_mises_at_nodes(u))
         for t, u in case["shapes"].items()
     ]
-    return contour_figure(bush.mesh, frames, label="von Mises stress in kPa, displacement at true scale")
+    return contour_figure(bush.mesh, frames, label="von Mises stress [kPa], displacement at true scale")
 
 
 def main(*, quick: bool = False, results: str | Path | None = "results") -> dict:

@@ -444,7 +444,7 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     growth.axhline(0.0, color="grey", lw=0.8)
     growth.axvline(threshold, color="tab:green", ls="--", label="threshold")
     growth.set(xlabel="spin [Hz]", ylabel="growth rate [1/s]", xlim=(0.87 * threshold, 1.3 * threshold), ylim=(-19, 27))
-    growth.legend(loc="upper left")
+    growth.legend(loc="lower right")
     orbits, disc = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2])
     around = np.exp(1j * np.linspace(0.0, HZ, 200))
     orbits.plot(around.real, around.imag, color="grey", lw=1)

@@ -156,7 +156,7 @@ def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     axes[1, 0].set(
         ylabel="largest eccentricity ratio [-]", title="pins in their clearance (at the worse end)", ylim=(0, 1)
     )
-    axes[1, 1].set(ylabel="smallest film [um]", title="smallest film")
+    axes[1, 1].set(ylabel="smallest film [µm]", title="smallest film")
     axes[1, 1].axhline(2.0, color="grey", lw=0.8, ls="--", label="the wall acts below")
     axes[1, 1].legend(frameon=False, loc="upper center", ncols=3)
     axes[1, 1].set_ylim(0.5, 150)
