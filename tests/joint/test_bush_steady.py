@@ -99,8 +99,8 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
     reduced, full = (solve(b, tilt=tilt, film=FINE_FILM, cavitation=cavitation) for b in bushes)
-    # what the default tolerance promises for steel; a bush three times as soft shares three times the error, less what the film evens
-    error = 0.01 if modulus > 1e11 else 0.015
+    # what the default tolerance promises for steel; a bush three times as soft misses its peak by 1.1 % when aligned
+    error = 0.01 if modulus > 1e11 else 0.012
     assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=error)
     assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=error)
     assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=error)
