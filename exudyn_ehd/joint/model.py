@@ -112,6 +112,7 @@ class BearingModel:
             self.known = self.effects.pressure_law.transform(
                 np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
             )
+        self.known_ends = np.array(bearing.end_pressures)
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
         self.remembers_density = (
@@ -133,7 +134,7 @@ class BearingModel:
         self.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale = self.pressure_scale * R**2
         self.shear_scale = mu * R**2 / c
-        self.end_pressures = np.array(b.end_pressures) / self.pressure_scale
+        self.end_pressures = self.known_ends / self.pressure_scale
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
         if self.liner_solver is not None and self.effects.liner is not None:
             self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
