@@ -74,6 +74,8 @@ class BearingModel:
                 squeeze=bearing.squeeze,
                 contact=next(iter(self.effects.contacts), None),
                 limiter=self.effects.limiter,
+                flux_effects=self.effects.flux,
+                oil=self.effects.pressure_law,
             )
         self.solver = self.liner_solver or film_solver(
             bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,

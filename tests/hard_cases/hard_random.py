@@ -27,6 +27,7 @@ from collections.abc import Callable
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.compliant_columns import LOAD_P
 from exudyn_ehd.film.reynolds import vertex_balance
 from exudyn_ehd.film.solver import fill_balance
 from exudyn_ehd.film.viscosity import LARGEST_PRESSURE
@@ -234,6 +235,10 @@ def beyond_law(model):
         )
         twin = build_model(bearing)
         return twin.evaluate(model.motion, *model.start).quantities()["peak_pressure"] > LARGEST_PRESSURE
+    if model.compliant is not None:
+        # the last film that pseudo time reached on its way
+        highest = float(model.compliant.load[LOAD_P].max()) * model.pressure_scale
+        return highest > 0.9 * law.largest_pressure
     highest = float(law.transform(np.array([law.largest_pressure]))[0])
     return float(model.solver.pressure.max()) * model.pressure_scale > highest * (1.0 - 1e-9)
 
