@@ -297,6 +297,9 @@ def CreateLubricatedJoint(
         bearing, housing = importlib.import_module("exudyn_ehd.coupling.fe_bore").hold_fe_bore(
             mbs, bearing, housing, points[0], rotation
         )
+    if not housing.nodes and getattr(getattr(bearing, "bush", None), "body_forces", False):
+        # what stands still needs no modes for its acceleration
+        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bearing.bush, body_forces=False))
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)

@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
 from exudyn_ehd.coupling.items import Item
 from exudyn_ehd.coupling.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
-from exudyn_ehd.coupling.sides import MarkerSide, Side
+from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.film.cavitation import SwiftStieber
 from exudyn_ehd.joint.bore import ModalBore
 from exudyn_ehd.joint.build import collect_effects
@@ -50,7 +50,7 @@ def attach_bush(
     mbs : exudyn.MainSystem
     model : ElasticBearingModel
     items, sides : pairs
-        Housing and journal; the sides in the initial configuration if both know it.
+        Housing and journal; the sides are brought to the initial configuration.
     place : ndarray (3,), ndarray (3, 3)
         Joint point and joint frame in the reference configuration, global.
     name : str
@@ -65,14 +65,15 @@ def attach_bush(
     arguments : dict
         What the element's ObjectGenericODE2 needs beside nodes and functions.
     """
+    for item, side in zip(items, sides, strict=True):
+        side.frame[:] = initial_frame(mbs, item, side)
     if not isinstance(model.bore, ModalBore):
-        return _attach_nodes(mbs, model, items, sides, place, name, show), {}
+        return _attach_nodes(mbs, model, sides, place, name, show), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         _settle_modes(mbs, model, sides)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore.stiffness), {}
-    # a marker alone does not know the initial configuration
-    start = None if any(isinstance(side, MarkerSide) for side in sides) else initial_coordinates(model, sides)
+    start = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
         eii.NodeGenericODE2(
@@ -91,7 +92,11 @@ def attach_bush(
         return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:
         mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
-    return element, {} if mass is None else {"massMatrix": _mass_matrix(element, mass)}
+    if mass is None:
+        return element, {}
+    # the sides of markers find their size after Assemble only
+    rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
+    return element, {"massMatrix": _mass_matrix(rigid, mass)}
 
 
 def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
@@ -99,8 +104,6 @@ def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
     bush: ReducedBore = model.bearing.bush
     node = sides[0].nodes[-1]
     if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
-        return
-    if isinstance(sides[1], MarkerSide):
         return
     held = bush.held()
     start = initial_coordinates(model, sides, ModalBore(held, model.grid))
@@ -111,14 +114,11 @@ def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
 def _attach_nodes(
     mbs: Any,
     model: Any,
-    items: tuple[Item, Item],
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
     name: str,
     show: bool,
 ) -> NodalFilmElement:
-    for item, side in zip(items, sides, strict=True):
-        side.frame[:] = initial_frame(mbs, item, side)
     mount = Mount(sides[0], sides[0].frame.copy(), place[0]) if sides[0].nodes else None
     bush = add_bush(mbs, f"{name} bush", model.bearing.bush, mount, place, fixed=mount is None, show=show)
     start = initial_coordinates(model, sides)
@@ -133,14 +133,13 @@ def _attach_nodes(
     return NodalFilmElement(model, *sides, nodes, name, bush)
 
 
-def _mass_matrix(element: ModalFilmElement, mass: np.ndarray) -> np.ndarray:
-    """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the sides.
+def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
+    """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
 
     A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be felt;
     only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
     """
-    n, k = element.rigid_size, element.stiffness.size
-    whole = np.zeros((n + k, n + k))
+    whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass
     return whole
 

@@ -85,8 +85,7 @@ def quantities(model: BearingModel) -> dict[str, float]:
 
 def power_loss(model: BearingModel) -> float:
     """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
-    x_t, y_t, bx_t, by_t = model.motion[4:8].tolist()
-    bx, by = model.motion[2:4].tolist()
+    bx, by, x_t, y_t, bx_t, by_t = model.motion[2:8].tolist()
     fx, fy, fz, mx, my, _ = model.wrench.tolist()
     along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
     power = fx * x_t + fy * y_t - mx * by_t + my * bx_t

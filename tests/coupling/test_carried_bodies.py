@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
@@ -228,8 +230,26 @@ def test_energy_of_a_planar_model_closes_to_the_order_of_the_integrator(measured
     measured("40 steps", fine, coarse / 3.0)
 
 
-def held_by(kind, bush, steps=10):
-    """Gain of momentum, history and Newton iterations of a short run with a body as housing, Exudyn's own full Newton."""
+MODAL = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False)
+
+
+@pytest.mark.parametrize("dynamics", [False, True])
+def test_modal_bushes_on_a_link_of_a_tree_start_and_run_as_on_a_planar_body(dynamics, measured):
+    """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by differences."""
+    records = []
+    for housing in ("planar", "tree"):
+        mbs, joint = rod(housing, dataclasses.replace(MODAL, dynamics=dynamics))
+        mbs.SolveDynamic(scenes.settings(1e-3, 20, tolerance=1e-9))
+        records.append(joint.history)
+    expected, found = records
+    assert len(expected.time) == len(found.time) == 21
+    for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss"):
+        a, b = getattr(found, name), getattr(expected, name)
+        measured(name, np.abs(a - b).max() / np.abs(b).max(), 1e-6)
+
+
+def held(kind, bush):
+    """System with a body as housing, and the joint."""
     mbs = scenes.new_system()
     body = JACOBIANS[kind](mbs)
     item = resolve(mbs, "item", body.item)
@@ -245,6 +265,27 @@ def held_by(kind, bush, steps=10):
         bearing=bearing(bush, n_theta=32, n_z=6, length=0.05),
     )  # fmt: skip
     mbs.Assemble()
+    return mbs, joint
+
+
+@pytest.mark.parametrize("dynamics", [False, True])
+@pytest.mark.parametrize("kind", JACOBIANS)
+def test_modal_bushes_start_in_equilibrium_on_every_body(kind, dynamics, measured):
+    mbs, joint = held(kind, dataclasses.replace(MODAL, mesh=RING, dynamics=dynamics))
+    element = joint.element
+    q = np.array(mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
+    evaluation = element.look_at_accepted(mbs)[1].evaluation
+    assert np.abs(q).max() > 1e-8
+    load, spring = evaluation.bore_load, element.stiffness * q
+    # velocities of markers come from differences of positions
+    measured("force on the modes", np.abs(load - spring).max() / np.abs(spring).max(), 1e-6)
+    mbs.SolveDynamic(scenes.settings(2e-5, 2, tolerance=1e-8))
+    assert len(joint.history.time) == 3
+
+
+def held_by(kind, bush, steps=10):
+    """Gain of momentum, history and Newton iterations of a short run with a body as housing, Exudyn's own full Newton."""
+    mbs, joint = held(kind, bush)
     before, _ = total(mbs)
     mbs.SolveDynamic(scenes.settings(steps * 2e-5, steps, tolerance=1e-8))
     return total(mbs)[0] - before, joint.history, mbs.sys["dynamicSolver"].it.newtonStepsCount

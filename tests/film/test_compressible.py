@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.density_newton import (
+from exudyn_ehd.film.density_matrix import (
     Balance,
     assemble_compressible,
     assemble_full,

@@ -192,6 +192,30 @@ def test_liner_spreads_a_contact(compare, contact):
     assert on.force[-1, 1] == pytest.approx(HEAVY, rel=1e-3)
 
 
+# Hard elastohydrodynamics: pressures that thicken the oil and open the liner
+BEDDED = ehd.ElasticLiner(thickness=0.002, youngs_modulus=5e9)
+LAWS_ON_LINERS = {
+    "barus": {"laws": {"pressure_law": ehd.BarusPressure(coefficient=3e-8)}},
+    "roelands": {"laws": {"pressure_law": ehd.RoelandsPressure(coefficient=3e-8)}},
+    "carreau": {"laws": {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)}},
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=0.8e-6)},
+    "mixed": {"roughness": ehd.PatirCheng(composite_roughness=0.8e-6), "asperity": ASPERITY},
+    "energy": {"thermal": ehd.FilmEnergy(supply_temperature=323.15)},
+}
+
+
+@pytest.mark.parametrize("name", LAWS_ON_LINERS)
+def test_laws_on_a_liner(compare, name):
+    # hot oil carries less before the ends touch, which do not give way
+    load = (4 if name == "energy" else 10) * LOAD
+    on, off = compare(bearing(bush=BEDDED, **LAWS_ON_LINERS[name]), bearing(), load)
+    assert on.force[-1, 1] == pytest.approx(off.force[-1, 1], rel=0.05)
+    plain, _ = compare(bearing(bush=BEDDED), bearing(), load)
+    # thick oil lifts the journal, hot, thin and rough films let it sink
+    sunk = on.eccentricity_ratio[-1] - plain.eccentricity_ratio[-1]
+    assert sunk < 0.0 if name in ("barus", "roelands", "rough", "mixed") else sunk > 0.0
+
+
 def test_soft_liner_conserves_oil(compare):
     closure = ehd.ElrodAdams(cavity_pressure=-5e4)
     made = bearing(bush=SOFT, cavitation=closure, end_pressures=ENDS)

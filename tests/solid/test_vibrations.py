@@ -18,7 +18,7 @@ from exudyn_ehd.status import InputError
 
 STEEL = SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 CYLINDER = HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=2, circumferential=16)
-BUSH = ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.1, dynamics=True)
+BUSH = ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.1, dynamics=True, body_forces=False)
 
 
 @pytest.fixture(scope="module")
