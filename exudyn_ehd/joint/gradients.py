@@ -23,7 +23,7 @@ from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
-from exudyn_ehd.joint.drag import add_drag_rows, drag_by_deflection, drag_by_gap
+from exudyn_ehd.joint.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
@@ -83,10 +83,7 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
     if has_extra_rows(model):
         extra = gradient[at : at + 2]
     if model.effects.uneven_drag:
-        face, cell = drag_by_gap(model)
-        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:1, :4])
-        contract_pose(cell[1:], model.cos_x, model.sin_x, model.grid.z, extra[1:, :4])
-        contract_pose(cell[:1], model.cos_x, model.sin_x, model.grid.z, extra[:1, :4])
+        add_drag_by_pose(model, extra)
     return gradient[:4], dc, extra
 
 
