@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.gap import contract_pose, largest_eccentricity, rigid_gap
+from exudyn_ehd.film.gap import add_to_gap, contract_pose, largest_eccentricity, rigid_gap
 
 
 def _gap(pose, theta, z, base):
@@ -30,6 +30,16 @@ def test_largest_eccentricity_is_one_minus_the_smallest_gap():
     for pose in rng.uniform(-0.5, 0.5, (20, 4)):
         # 20000 angles miss the minimum by at most (pi / 20000)^2 / 2 = 1e-8.
         assert largest_eccentricity(pose, 0.7) == pytest.approx(1.0 - _gap(pose, theta, z, 1.0).min(), abs=2e-8)
+
+
+@pytest.mark.parametrize("where", ["vertex", "link"])
+def test_add_to_gap_finds_the_smallest(where):
+    rng = np.random.default_rng(4)
+    H, HF, extra, extra_link = rng.uniform(0.5, 1.0, (4, 6, 5))
+    (extra if where == "vertex" else extra_link)[5, 4] = -1.5
+    expected = H + extra, HF + extra_link
+    assert add_to_gap(extra, extra_link, H, HF) == min(expected[0].min(), expected[1].min()) < 0.0
+    np.testing.assert_array_equal((H, HF), expected)
 
 
 def test_contract_pose_is_the_chain_rule_and_adds():
