@@ -143,7 +143,8 @@ class LubricatedJoint(JointResults):
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
 
         The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,
-        on a model of their own: the joint is not touched.
+        on a model of their own: the joint is not touched. What the record holds counts as recorded; what it takes a field for (cavitated
+        share, grid, heat of a field) is that of a flexible bore settled under the film.
 
         Parameters
         ----------

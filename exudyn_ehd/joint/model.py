@@ -407,9 +407,11 @@ class BearingModel:
             return np.full((6, MOTION_SIZE), np.nan)
         return wrench_tangent(self, slow_motion)
 
-    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> Evaluation:
-        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
-        return self.evaluate(motion, history)
+    def evaluate_steady(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> Evaluation:
+        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it. The rest as for `evaluate`."""
+        return self.evaluate(motion, history, step, spin)
 
     def shape(self) -> np.ndarray | None:
         """Scaled height of profile and wear (n, m), of undeformed surfaces, at the last evaluation; None for cylinders."""

@@ -6,10 +6,14 @@ and asperities 1.1, both 1.15, liner 2, laws of the oil 1.5; limits are these pl
 laws and heat the target plus 15 %.
 """
 
+import math
+import time
+
 import numpy as np
 import pytest
 
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.effects import Effects
 from exudyn_ehd.studies import effect_costs
 from exudyn_ehd.studies.costs import format_costs
 from exudyn_ehd.studies.growth import plain_bearing
@@ -65,3 +69,28 @@ def test_reduced_films(benchmark, name, tangent):
                 evaluation.tangent()
 
     benchmark.pedantic(run, rounds=8, warmup_rounds=1)
+
+
+def test_impedance_map_in_microseconds():
+    """Target 5 us per evaluation, with its tangent."""
+    model = build_model(plain_bearing(**effect_costs.CASES["`ImpedanceMap`"].options))
+    states = effect_costs.orbit()
+    best = math.inf
+    for _ in range(8):
+        start = time.process_time()
+        for state in states:
+            model.evaluate(state).tangent()
+        best = min(best, (time.process_time() - start) / len(states))
+    print(f"{1e6 * best:.2f} us per evaluation with tangent")
+    assert best < 5e-6
+
+
+def test_off_costs_nothing():
+    """A bearing that spells every option out as None against a model without effects: noise of a few per cent at most."""
+    off = dict.fromkeys(("contact", "asperity", "roughness", "wear", "profile", "thermal", "bush"))
+    described = build_model(plain_bearing(**off, supply=()))
+    models = {"described": described, "bare": type(described)(described.bearing, effects=Effects())}
+    times = effect_costs.block(models, effect_costs.orbit(), 40)
+    ratio = times["described"][0] / times["bare"][0]
+    print(f"{ratio:.3f}")
+    assert abs(ratio - 1.0) < 0.03
