@@ -1,9 +1,8 @@
 """Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table of factors.
 
 Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
-Targets: roughness
-and asperities 1.1, both 1.15, liner 2, laws of the oil 1.5; limits are these plus a tenth, others what was measured plus a fifth, those of
-laws and heat the target plus 15 %.
+Targets: roughness and asperities 1.1, both 1.15, liner 2, laws of pressure and shear at one state 1.25, of density 1.5; limits are these plus
+a tenth, others what was measured plus a fifth, those of laws and heat the target plus 15 %.
 """
 
 import math
@@ -21,12 +20,13 @@ from exudyn_ehd.studies.growth import plain_bearing
 pytestmark = pytest.mark.benchmark
 
 EVALUATION_LIMITS = {
-    "`VogelTemperature`": 1.1, "`PatirCheng`": 1.2, "`GreenwoodTripp`": 1.2, "`PatirCheng`, `GreenwoodTripp`": 1.25, "`Crown`": 1.5,
-    "`GreenwoodTripp`, `ArchardWear`": 1.65, "`ElasticLiner`": 2.1, "`RegularisedWall`": 1.45, "`squeeze=False`": 1.1,
+    "`VogelTemperature`": 1.1, "`PatirCheng`": 1.2, "`GreenwoodTripp`": 1.2, "`PatirCheng`, `GreenwoodTripp`": 1.25, "`Crown`": 1.3,
+    "`GreenwoodTripp`, `ArchardWear`": 1.45, "`ElasticLiner`": 2.1, "`RegularisedWall`": 1.3, "`squeeze=False`": 1.1,
+    "`PatirCheng`, unequally rough": 1.55, "`BarusPressure`": 1.35, "`RoelandsPressure`": 1.35, "`CarreauShear`": 1.4,
 }  # fmt: skip
 # Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
 STEP_LIMITS = {
-    "`BarusPressure`": 1.5, "`RoelandsPressure`": 1.5, "`CarreauShear`": 1.5, "`DowsonHigginson`": 1.5,
+    "`BarusPressure`": 1.25, "`RoelandsPressure`": 1.25, "`CarreauShear`": 1.25, "`DowsonHigginson`": 1.5,
     "`DowsonHigginson`, `BarusPressure`": 1.5, "`LumpedThermal`": 1.05, "`FilmEnergy`": 2.5,
 }  # fmt: skip
 MARGIN = 1.15
