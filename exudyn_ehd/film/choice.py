@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from exudyn_ehd.film.cavitation import Gumbel
 from exudyn_ehd.film.classic import ClassicSolver, ClassicSOR
-from exudyn_ehd.film.compliant import ColumnContact, ColumnLimiter, CompliantFilmSolver
+from exudyn_ehd.film.compliant import ColumnContact, ColumnLimiter, ColumnOil, CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.flux import FluxEffect
@@ -87,9 +87,21 @@ def film_solver(
 
 
 def liner_film_solver(
-    grid: FilmGrid, closure: Closure, *, squeeze: bool, contact: ColumnContact | None, limiter: ColumnLimiter | None
+    grid: FilmGrid,
+    closure: Closure,
+    *,
+    squeeze: bool,
+    contact: ColumnContact | None,
+    limiter: ColumnLimiter | None,
+    flux_effects: tuple[FluxEffect, ...],
+    oil: ColumnOil | None,
 ) -> LinerFilmSolver | CompliantFilmSolver:
-    """Solver of a film on an elastic liner; ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open."""
-    if contact is None and not closure.conserves_mass:
+    """Solver of a film on an elastic liner.
+
+    ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open; ``oil``: of a viscosity that follows the pressure.
+    """
+    if contact is None and limiter is None and oil is None and not flux_effects and not closure.conserves_mass:
         return LinerFilmSolver(grid, closure, squeeze=squeeze)
-    return CompliantFilmSolver(grid, closure, squeeze=squeeze, contact=contact, limiter=limiter)
+    return CompliantFilmSolver(
+        grid, closure, squeeze=squeeze, contact=contact, limiter=limiter, flux_effects=flux_effects, oil=oil
+    )

@@ -1,24 +1,32 @@
-"""Film on an elastic liner that touches the journal, or that keeps its oil: contact and mass-conserving cavitation on columns.
+"""Film on an elastic liner with contact, mass-conserving cavitation, laws of the oil or flow factors.
 
 As in `exudyn_ehd.film.liner` a column gives way in proportion to the pressure on it, here that of the film and of the contact:
 
-    G = G_rigid + D,    D = beta (P + P_c(G)),
+    G = G_rigid + D,    D = beta (p + P_c(G)),
 
-with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(P), which rises with P:
+with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(p), which rises with p:
 
-    dG/dP = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
+    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
 
 so that the effective compliance beta T is bounded by the liner's, and nearly none where the contact is stiff against it. However deep the
 undeformed surfaces overlap, the liner takes it up; at the ends and in grooves, whose pressure is prescribed, by the contact alone.
-The film sees ``H = lim(G)``, the gap limiter of wall or asperities, on links ``lim`` of the true gap with the mean deflection of both ends.
-Conductances are ``g = H (H^2 + d^2)`` as without contact, d half the difference of ``E = lim(G) - lim(G_rigid)`` between the ends:
-what the liner adds to the film's gap. The film's rate is ``lim'(G) (rate of the undeformed gap + dD/dt)``.
+The film sees ``H = lim(G)``, the gap limiter of wall or rough surfaces, on links ``lim`` of the true gap with the mean deflection of both
+ends. Conductances are ``g = H (H^2 + d^2)`` as without contact, d half the difference of ``E = lim(G) - lim(G_rigid)`` between the ends:
+what the liner adds to the film's gap; flow factors multiply them (`exudyn_ehd.film.compliant_links`). The film's rate is
+``lim'(G) (rate of the undeformed gap + dD/dt)``.
+
+A viscosity that follows the pressure. The film's unknown is the transformed pressure P of `exudyn_ehd.film.viscosity`, in which its flow is
+that of a constant viscosity; the columns feel the pressure itself, p(P) with ``dp/dP = mu(p) / mu_0``. Since p grows exponentially with P,
+a Newton step that raises the pressure goes where the tangent of p(P) leads the pressure, which is less far than its P would take it; one that
+lowers it goes where P leads: in either case the shorter way, and to second order the same. Thick oil lifts the liner: where a rigid bore
+has no film any more the gap opens. What would need an oil that is solid ends with NO_PRESSURE.
 
 `ElrodAdams` has the balance of `exudyn_ehd.film.elrod` with the content ``fill H(P)``: at full vertices the unknown pressure takes part in
 the storage through the liner, at cavitated ones the unknown is the fill and the column rests under the cavity's pressure.
 
-Newton's method is the one of the plain liner: vertices without pressure (or full ones) are told from the iterate, a step is shortened where it
-would use up more than 80 % of a gap, and pseudo time leads to the steady state of a film that does not settle.
+Newton's method is the one of the plain liner (`exudyn_ehd.film.compliant_iteration`): vertices without pressure (or full ones) are told from
+the iterate, a step is shortened where it would use up more than 80 % of a gap, and pseudo time leads to the steady state of a film that
+does not settle (`exudyn_ehd.film.compliant_start`).
 """
 
 from __future__ import annotations
@@ -28,44 +36,38 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
-from exudyn_ehd.film.compliant_newton import (
+from exudyn_ehd.film.compliant_columns import (
+    BEND,
+    DRIVE,
+    LOAD_P,
+    SLOPE,
     Columns,
-    Storage,
     answer_columns,
+    drive_columns,
+    gain_of_columns,
+    move_columns,
+    press_columns,
+)
+from exudyn_ehd.film.compliant_iteration import factor, newton
+from exudyn_ehd.film.compliant_links import (
     compliant_coefficients,
     compliant_residual,
     compliant_sensitivities,
-    longest_step,
-    move_columns,
-    newton_step,
-    press_columns,
-    set_storage,
-    step_size,
-    take_step,
-    violation,
+    links_of,
 )
 from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
-from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
+from exudyn_ehd.film.elrod import _lu_buffers
+from exudyn_ehd.film.flux import FluxEffect, link_flux
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.liner import LINER_INSTANT, failed_film
-from exudyn_ehd.film.liner_newton import (
-    CLIPPED,
-    COMPLEMENTARY,
-    EXACT_STEP,
-    FULL,
-    LEAST_DEFLECTION,
-    ends_open,
-    flow_rounding,
-    select,
-)
+from exudyn_ehd.film.liner_newton import CLIPPED, COMPLEMENTARY, FULL, ends_open
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds import add_squeeze
 from exudyn_ehd.film.solver import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.status import Status
 
-MAX_NEWTON_STEPS = 60
-ERROR_TOLERANCE = 1e-13
-STEP_TOLERANCE = 1e-8
+# Share of an oil's largest pressure at which a film that was not found is on its way beyond.
+NEARLY_SOLID = 0.9
 
 
 class ColumnContact(Protocol):
@@ -91,8 +93,19 @@ class ColumnLimiter(Protocol):
     ) -> None: ...  # fmt: skip
 
 
+class ColumnOil(Protocol):
+    """How pressure follows from the film's unknown; as `exudyn_ehd.joint.effects.PressureLaw`."""
+
+    @property
+    def largest_pressure(self) -> float: ...
+
+    def transform(self, p: np.ndarray) -> np.ndarray: ...
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
+
+
 class CompliantFilmSolver(FilmSolver):
-    """`FilmSolver` on an elastic liner with contact, mass-conserving cavitation, or both.
+    """`FilmSolver` on an elastic liner with contact, mass-conserving cavitation, laws of the oil, flow factors, or any of them.
 
     The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves those that the film sees in ``H``, ``HF`` and ``H_t``.
 
@@ -103,7 +116,11 @@ class CompliantFilmSolver(FilmSolver):
     contact : ColumnContact, optional
         What presses on the liner beside the film.
     limiter : ColumnLimiter, optional
-        Of the gap that the film sees; goes with the contact.
+        Of the gap that the film sees; goes with the contact or with flow factors.
+    flux_effects : tuple of FluxEffect
+        As for `FilmSolver`.
+    oil : ColumnOil, optional
+        Of a viscosity that follows the pressure.
 
     Attributes
     ----------
@@ -122,10 +139,11 @@ class CompliantFilmSolver(FilmSolver):
     def __init__(
         self, grid: FilmGrid, closure: Closure, *, squeeze: bool = True,
         contact: ColumnContact | None = None, limiter: ColumnLimiter | None = None,
+        flux_effects: tuple[FluxEffect, ...] = (), oil: ColumnOil | None = None,
     ) -> None:  # fmt: skip
         super().__init__(grid, closure, squeeze=squeeze)
         self.coarse = None
-        self.contact, self.limiter = contact, limiter
+        self.contact, self.limiter, self.oil = contact, limiter, oil
         self.beta, self.pressure_scale = 0.0, 1.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -137,8 +155,16 @@ class CompliantFilmSolver(FilmSolver):
         self.scratch = [np.zeros(shape) for _ in range(4)]
         # whether contact_pressure, contact_G, bend and the slopes in columns are those of surfaces apart
         self.apart = True
-        self.columns = Columns(*(np.ones(shape) for _ in Columns._fields))
-        self.storage = Storage(*(np.zeros(shape) for _ in Storage._fields))
+        self.fields = np.ones((len(Columns._fields), *shape))
+        self.columns = Columns(*self.fields)
+        self.load = np.zeros((4, *shape))
+        self.load[SLOPE] = 1.0
+        # the cavity's pressure on the columns
+        self.cavity_load = 0.0
+        self.flux_effects = flux_effects
+        self.flux = link_flux(self.columns.HF, flux_effects) if flux_effects else None
+        self.link_flux = links_of(self.flux)
+        self.gain, self.gain_P, self.gain_fill = np.zeros(shape), np.zeros(shape), np.zeros(shape)
         self.residual = np.zeros(shape)
         self.full, self.trial_full = np.ones(shape, dtype=np.bool_), np.ones(shape, dtype=np.bool_)
         self.trial, self.trial_fill = np.zeros(shape), np.ones(shape)
@@ -146,7 +172,7 @@ class CompliantFilmSolver(FilmSolver):
         self.mass_old, self.deflection_old = np.zeros(shape), np.zeros(shape)
         self.inverse = self.mass_inverse = self.deflection_inverse = 0.0
         self.with_rate = False
-        self.exact = False
+        self.exact = self.held = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -181,7 +207,7 @@ class CompliantFilmSolver(FilmSolver):
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
         if self.deflection_inverse == 0.0:
             return 0.0
-        pressure = self.system.pressure + self.contact_pressure / self.pressure_scale
+        pressure = self.load[LOAD_P] + self.contact_pressure / self.pressure_scale
         rate = (self.columns.D - self.deflection_old) * self.deflection_inverse
         return float(np.sum(pressure * rate * self.grid.weight))
 
@@ -197,11 +223,13 @@ class CompliantFilmSolver(FilmSolver):
         P = s.linear_pressure
         if self.kind == CLIPPED:
             P[g.fixed] = s.pressure[g.fixed]
-        if self.contact is None and not ends_open(self.rigid, P, self.beta, g.fixed):
+        if not self._set_loads(P):
+            return Status.NO_PRESSURE, 0
+        if self.contact is None and not ends_open(self.rigid, self.load[LOAD_P], self.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
         steps, ok = 0, False
-        if self.work.warm:
+        if self.work.warm and self.press(P):
             ok, steps = self.target(P)
         if not ok:
             ok, more = cold_start(self, P)
@@ -211,11 +239,57 @@ class CompliantFilmSolver(FilmSolver):
             steps += more
         self.work.warm = ok
         if not ok:
-            if self.contact is not None:
-                return Status.NOT_CONVERGED, steps
-            return failed_film(self.kind, self.rigid[0], self.beta, cavity_pressure), steps
+            return self._failure(), steps
         self._finish(P)
+        if self.limiter is not None and self.contact is None and not self.true_gap.min() > 0.0:
+            # the film between rough surfaces stays open where nothing holds them apart
+            return Status.NO_FILM, steps
         return Status.CONVERGED, steps
+
+    def _failure(self) -> Status:
+        """Status of a film that was not found."""
+        if self.oil is not None:
+            highest = float(self.load[LOAD_P].max()) * self.pressure_scale
+            if highest > NEARLY_SOLID * self.oil.largest_pressure:
+                return Status.NO_PRESSURE
+        if self.contact is not None:
+            return Status.NOT_CONVERGED
+        return failed_film(self.kind, self.rigid[0], self.beta, self.cavity_load)
+
+    def _set_loads(self, P: np.ndarray) -> bool:
+        """Pressures on the columns at prescribed vertices and in the cavity; False where the oil has none."""
+        fixed, pc = self.grid.fixed, self.system.cavity_pressure
+        self.cavity_load = pc if np.isfinite(pc) else 0.0
+        if self.oil is None:
+            self.load[LOAD_P][fixed] = P[fixed]
+            return True
+        known = np.append(P[fixed], self.cavity_load)[None] * self.pressure_scale
+        p, slope, bend = np.empty_like(known), np.empty_like(known), np.empty_like(known)
+        if not self.oil.inverse(known, p, slope, bend):
+            return False
+        p /= self.pressure_scale
+        self.load[LOAD_P][fixed] = p[0, :-1]
+        self.cavity_load = float(p[0, -1])
+        return True
+
+    def press(self, P: np.ndarray) -> bool:
+        """Pressure on every column for the film's unknown P; False where the oil would be solid."""
+        load, scale = self.load, self.pressure_scale
+        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load[DRIVE])
+        if self.oil is None:
+            load[LOAD_P] = load[DRIVE]
+            return True
+        if not self.oil.inverse(load[DRIVE] * scale, load[LOAD_P], load[SLOPE], load[BEND]):
+            return False
+        if not float(load[LOAD_P].max()) <= self.oil.largest_pressure:
+            return False
+        load[LOAD_P] *= 1.0 / scale
+        load[BEND] *= scale
+        return True
+
+    def push(self, P: np.ndarray) -> np.ndarray:
+        """Deflection (n, m) that pseudo time counts, of settled columns: what is cut off counts as it stands."""
+        return self.beta * (self.load[LOAD_P] + (P - self.load[DRIVE]))
 
     def _take_rigid(self) -> None:
         """Keep the undeformed gaps, and what the film would see of them."""
@@ -254,41 +328,29 @@ class CompliantFilmSolver(FilmSolver):
             self.full |= self.grid.fixed
             self.film_fill[self.full] = 1.0
             P[~self.full] = self.system.cavity_pressure
-        return self.newton(P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
+        return newton(self, P, self.film_fill, self.closure.conserves_mass, 0.0, self.nothing)
 
-    def settle(self, P: np.ndarray) -> None:
-        """Every column under the pressure P."""
-        g, c, clips = self.grid, self.columns, self.kind == CLIPPED
-        pc, contact, limiter = self.system.cavity_pressure, self.contact, self.limiter
+    def settle(self, P: np.ndarray) -> bool:
+        """Every column under the film of the unknown P, with the gaps that the film sees; False where the oil has no pressure."""
+        c, contact, limiter = self.columns, self.contact, self.limiter
+        if not self.press(P):
+            return False
         x = self.true_gap if contact is None else self.scratch[0]
-        press_columns(self.rigid, P, g.fixed, pc, clips, self.beta, x)
+        smallest = press_columns(self.rigid, self.load[LOAD_P], self.beta, x)
         if contact is not None:
-            if x.min() < contact.presses_below:
+            if smallest < contact.presses_below:
                 contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
                 contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
-                self.contact_G /= self.pressure_scale
+                self.contact_G *= 1.0 / self.pressure_scale
                 self.apart = False
             else:
                 self.true_gap[:] = x
                 self._part()
-        move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, c)
-        self.true_link[:] = c.HF
-        if limiter is not None and (not self.apart or min(x.min(), c.HF.min()) < limiter.limits_below):
+        on_links = move_columns(self.rigid, self.true_gap, self.deflection_old, self.inverse, self.fields)
+        if limiter is not None and (not self.apart or min(smallest, on_links) < limiter.limits_below):
             limiter.limit(c.H, c.HF, c.rate, c.rate_t, self.bend, c.link)
             self.apart = False
-        answer_columns(
-            self.rigid_film,
-            self.rigid_slope,
-            P,
-            self.contact_G,
-            self.bend,
-            g.fixed,
-            pc,
-            clips,
-            self.beta,
-            self.inverse,
-            c,
-        )
+        return True
 
     def _part(self) -> None:
         """Surfaces out of each other's reach: no contact, and the film sees the gap itself."""
@@ -298,102 +360,51 @@ class CompliantFilmSolver(FilmSolver):
             self.columns.rate_t[:] = self.columns.link[:] = 1.0
             self.apart = True
 
-    def _balance(
+    def balance(
         self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
     ) -> tuple[float, float]:
-        """Residual at P and fill; returns (norm of what does not hold, smallest film gap)."""
-        g, c = self.grid, self.columns
-        self.settle(P)
-        set_storage(
-            c, P, fill, self.area, self.mass_old, self.mass_inverse, self.with_rate, extra, extra_old, conserves, self.beta,
-            self.storage,
+        """Residual at P and fill; returns (norm of what does not hold, smallest film gap), (inf, -1) where there is no film."""
+        g, pc = self.grid, self.system.cavity_pressure
+        if not self.settle(P):
+            return np.inf, -1.0
+        smallest = gain_of_columns(
+            self.fields, P, self.load, fill, self.rigid_film, self.area, self._times(extra), self.mass_old, extra_old,
+            conserves, self.beta, self.gain,
         )  # fmt: skip
-        compliant_residual(
-            c, P, fill, self.storage.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.residual
-        )
-        complementary = self.kind == COMPLEMENTARY and not conserves
-        return violation(c, self.residual, P, g.fixed, self.system.cavity_pressure, complementary)
-
-    def newton(
-        self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
-    ) -> tuple[bool, int]:
-        """Newton from P and fill, in place; ``extra`` is the rate of pseudo time, towards ``extra_old``."""
-        g, w, pc = self.grid, self.work, self.system.cavity_pressure
-        kind = FULL if conserves else self.kind
-        complementary = kind == COMPLEMENTARY
-        if complementary:
-            np.copyto(P, np.maximum(P, pc), where=~g.fixed)
-        norm, smallest = self._balance(P, fill, conserves, extra, extra_old)
         if not smallest > 0.0:
-            return False, 0
-        if conserves:
-            active = ~g.fixed
-        else:
-            active = w.active
-            self.full[:] = True
-            if w.warm:
-                select(P, self.residual, g.fixed, pc, kind, active)
-            else:
-                np.logical_not(g.fixed, out=active)
-        x, reference = w.unknowns, (pc if np.isfinite(pc) else 0.0)
-        noise = flow_rounding(
-            self.columns.H, self.columns.HF, self.rigid[2], self.vx, self.vz, g.width_x, g.width_z, g.link_x
-        )
-        for step in range(1, MAX_NEWTON_STEPS + 1):
-            if not self._step(P, fill, active, x):
-                return False, step
-            if w.count == 0 or norm == 0.0:
-                self.exact = True
-                return True, step
-            opening = smallest / self.beta
-            error, square, peak = step_size(
-                P, self.full, w.order, w.count, x, reference, kind == CLIPPED, LEAST_DEFLECTION * opening, opening
-            )
-            if not error < 1e300:
-                return False, step
-            share = 1.0 if kind == CLIPPED else longest_step(self.columns, self.full, w.order, w.count, x)
-            before = norm
-            for _ in range(12):
-                changes = take_step(
-                    P, fill, self.full, w.order, w.count, x, share, reference, complementary, conserves,
-                    1e-12 * peak, self.trial, self.trial_fill, self.trial_full,
-                )  # fmt: skip
-                norm, smallest = self._balance(self.trial, self.trial_fill, conserves, extra, extra_old)
-                if smallest > 0.0 and (norm < before or error <= STEP_TOLERANCE or (conserves and changes > 0)):
-                    break
-                share *= 0.5
-            if not (smallest > 0.0 and norm < 1e300):
-                return False, step
-            P[:], self.full[:] = self.trial, self.trial_full
-            if conserves:
-                fill[:] = self.trial_fill
-            else:
-                changes = select(P, self.residual, g.fixed, pc, kind, active)
-            if norm <= noise and not conserves:
-                self.exact = self._step(P, fill, active, x)
-                return self.exact, step
-            if changes == 0 and share == 1.0 and (error <= ERROR_TOLERANCE or 10.0 * square <= ERROR_TOLERANCE):
-                self.exact = error <= EXACT_STEP and extra == 0.0
-                return not conserves or self._sound(fill), step
-        return False, MAX_NEWTON_STEPS
-
-    def _step(self, P: np.ndarray, fill: np.ndarray, active: np.ndarray, x: np.ndarray) -> bool:
-        """Factor at P and fill, and solve for Newton's step x."""
-        g, w = self.grid, self.work
-        lower, upper = _lu_buffers(w)
-        ok, w.count, w.width = newton_step(
-            self.columns, P, fill, self.full, self.storage, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
-            self.links, active, w.order, w.number, lower, upper, w.inv_diag, self.residual, x,
+            return np.inf, smallest
+        self._set_flux()
+        complementary = self.kind == COMPLEMENTARY and not conserves
+        norm = compliant_residual(
+            self.fields, self.link_flux, P, fill, self.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
+            g.fixed, pc, complementary, self.residual,
         )  # fmt: skip
-        return ok
+        return norm, smallest
 
-    def _sound(self, fill: np.ndarray) -> bool:
-        """Whether no vertex holds less than nothing, but for rounding, which is cut off; sets the full vertices."""
-        np.logical_and(self.full, ~self.grid.fixed, out=self.work.active)
-        if not fill.min() > -LARGEST_DEFICIT:
-            return False
-        np.maximum(fill, 0.0, out=fill)
-        return True
+    def _times(self, extra: float) -> tuple[float, float, float]:
+        """Rates of the storage as `gain_of_columns` takes them."""
+        return self.mass_inverse, float(self.with_rate), float(extra)
+
+    def answer(self, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float) -> None:
+        """What settled columns and their storage answer to unknown and undeformed gap."""
+        answer_columns(
+            self.fields, P, self.load, fill, self.rigid_slope, self.contact_G, self.bend, self.area, self._times(extra),
+            conserves, self.beta, self.inverse, self.gain_P, self.gain_fill,
+        )  # fmt: skip
+
+    def _set_flux(self) -> None:
+        """Conductances and carriers in the present gaps, which are open."""
+        c, f = self.columns, self.flux
+        if f is None:
+            return
+        first, *others = self.flux_effects
+        first.start(f, c.H, self.vx, self.vz)
+        for effect in others:
+            effect.apply(f, c.HF, f.gap_z, self.vx, self.vz)
+
+    def refresh_fixed(self) -> None:
+        """Another set of prescribed vertices: the last factor serves no more."""
+        self.held = False
 
     def _finish(self, P: np.ndarray) -> None:
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
@@ -401,12 +412,28 @@ class CompliantFilmSolver(FilmSolver):
         if self.kind == CLIPPED:
             np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
+        elif self.kind == FULL:
+            np.logical_not(g.fixed, out=self.work.active)
+        self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
+        self.true_link[:] = self.rigid[1] + 0.5 * (c.D + np.roll(c.D, -1, axis=0))
         self.H[:], self.HF[:], self.H_t[:] = c.H, c.HF, c.rate
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
         np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
         compliant_coefficients(
-            c, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, s.kx, s.kz, s.fx, s.fz, s.b
+            self.fields,
+            self.link_flux,
+            self.vx,
+            self.vz,
+            g.width_x,
+            g.width_z,
+            g.link_x,
+            g.link_z,
+            s.kx,
+            s.kz,
+            s.fx,
+            s.fz,
+            s.b,
         )
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -421,7 +448,7 @@ class CompliantFilmSolver(FilmSolver):
         if not self.exact:
             conserves = self.closure.conserves_mass
             active = ~g.fixed if conserves or self.kind == CLIPPED else w.active
-            self._step(self.system.linear_pressure, self.film_fill, active, w.unknowns)
+            factor(self, self.system.linear_pressure, self.film_fill, active, conserves, 0.0)
             self.exact = True
         lower, upper = _lu_buffers(w)
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
@@ -442,7 +469,7 @@ class CompliantFilmSolver(FilmSolver):
         cell, face, rate = np.empty_like(lam), np.empty_like(lam), np.empty_like(lam)
         speed = np.empty((lam.shape[0], 2))
         compliant_sensitivities(
-            lam, c, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
+            lam, self.fields, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
             g.link_x, g.link_z, cell, face, rate, speed,
         )  # fmt: skip
         return Sensitivities(cell, face, rate if self.squeeze else None, speed)

@@ -1,185 +1,29 @@
-"""Kernels of the film on a liner that touches or keeps its oil: columns, balance, Newton's matrix; see `exudyn_ehd.film.compliant`.
+"""Kernels of Newton's method for the film on columns of liner: matrix, lengths of steps, trial states; see `exudyn_ehd.film.compliant`.
 
-Symbols, all scaled: P pressure, pc cavity pressure, beta compliance; G true gap, H the gap that the film sees, HF that on the links
-i -> i+1, D deflection, E = H - (film gap of the undeformed surfaces); a, b ends of a link. ``_P``, ``_r``, ``_fill``: derivatives to the
-pressure, to the undeformed gap, and to the fill.
+Symbols as in `exudyn_ehd.film.compliant_columns`; x the Newton step of the numbered unknowns, a, b ends of a link.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.band_lu import PAD, add_flux, factor_lu, solve_lu
+from exudyn_ehd.film.compliant_columns import BEND, DRIVE, LOAD_P, SLOPE, columns_of
+from exudyn_ehd.film.compliant_links import across, across_slopes, along, along_slopes
 from exudyn_ehd.film.direct import number_cells
 
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-
-
-class Columns(NamedTuple):
-    """The state of every column of liner, (n, m) arrays.
-
-    Attributes
-    ----------
-    H, HF, D, E : (n, m) arrays
-        Film gap at vertices and on links, deflection, and what it adds to the film gap.
-    H_P, D_P, H_r, D_r, E_r : (n, m) arrays
-        Derivatives to the pressure and to the undeformed gap at fixed pressure.
-    link : (n, m) array
-        Derivative of HF to the true gap on the link.
-    rate, rate_P, rate_r, rate_t : (n, m) arrays
-        dH/dt with its derivatives to the pressure, the undeformed gap and the undeformed rate.
-    """
-
-    H: np.ndarray
-    HF: np.ndarray
-    D: np.ndarray
-    E: np.ndarray
-    H_P: np.ndarray
-    D_P: np.ndarray
-    H_r: np.ndarray
-    D_r: np.ndarray
-    E_r: np.ndarray
-    link: np.ndarray
-    rate: np.ndarray
-    rate_P: np.ndarray
-    rate_r: np.ndarray
-    rate_t: np.ndarray
-
-
-class Storage(NamedTuple):
-    """What a control volume's content gains per time, with its derivatives to pressure and fill, (n, m) arrays."""
-
-    gain: np.ndarray
-    gain_P: np.ndarray
-    gain_fill: np.ndarray
-
-
-@njit(cache=True, fastmath=_FAST)
-def press_columns(rigid, P, fixed, pc, clips, beta, G_out):
-    """Gap under the film's pressure alone; a film that clips presses with no less than pc."""
-    n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            p = P[i, j]
-            if clips and not fixed[i, j] and p < pc:
-                p = pc
-            G_out[i, j] = rigid[0, i, j] + beta * p
-
-
-@njit(cache=True, fastmath=_FAST)
-def move_columns(rigid, G, delta_old, inverse, c):
-    """Deflections, and gaps and rate of the deformed surfaces, into ``c`` (Columns), where a limiter may change them."""
-    n, m = G.shape
-    for i in range(n):
-        for j in range(m):
-            d = G[i, j] - rigid[0, i, j]
-            c.D[i, j] = d
-            c.H[i, j] = G[i, j]
-            c.rate[i, j] = rigid[2, i, j] + (d - delta_old[i, j]) * inverse
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            c.HF[i, j] = rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j])
-
-
-@njit(cache=True, fastmath=_FAST)
-def answer_columns(rigid_film, rigid_slope, P, contact_G, bend, fixed, pc, clips, beta, inverse, c):
-    """What the columns answer to pressure and undeformed gap, for film gaps, rate and their slope (``c.rate_t``) in ``c`` (Columns).
-
-    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the film gap's second derivative times the gap's rate.
-    """
-    n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            follow = 1.0 / (1.0 - beta * contact_G[i, j])
-            free = not clips or fixed[i, j] or P[i, j] >= pc
-            s = c.rate_t[i, j]
-            c.E[i, j] = c.H[i, j] - rigid_film[i, j]
-            c.D_P[i, j] = beta * follow if free else 0.0
-            c.H_P[i, j] = s * c.D_P[i, j]
-            c.D_r[i, j] = follow - 1.0
-            c.H_r[i, j] = s * follow
-            c.E_r[i, j] = c.H_r[i, j] - rigid_slope[i, j]
-            c.rate_P[i, j] = (bend[i, j] + s * inverse) * c.D_P[i, j]
-            c.rate_r[i, j] = bend[i, j] * follow + s * inverse * c.D_r[i, j]
-
-
-@njit(cache=True, fastmath=_FAST)
-def set_storage(c, P, fill, area, mass_old, mass_inverse, with_rate, extra, extra_old, conserves, beta, out):
-    """Storage ``out`` of every vertex: of the mass fill H over a step, of the gap's rate, and of pseudo time (``extra``)."""
-    n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            w = area[i, j]
-            f = fill[i, j]
-            if conserves:
-                pull = mass_inverse + extra
-                mass = f * c.H[i, j]
-                gain = mass * pull - mass_old[i, j] * mass_inverse - extra_old[i, j] * extra
-                by_p = f * c.H_P[i, j] * pull
-                by_fill = c.H[i, j] * pull
-                if with_rate:
-                    gain += f * c.rate[i, j]
-                    by_p += f * c.rate_P[i, j]
-                    by_fill += c.rate[i, j]
-                out.gain[i, j], out.gain_P[i, j], out.gain_fill[i, j] = w * gain, w * by_p, w * by_fill
-            else:
-                out.gain[i, j] = w * (c.rate[i, j] + extra * (beta * P[i, j] - extra_old[i, j]))
-                out.gain_P[i, j] = w * (c.rate_P[i, j] + extra * beta)
-
-
-@njit(cache=True, fastmath=_FAST)
-def compliant_residual(c, P, fill, gain, vx, vz, width_x, width_z, link_x, link_z, r_out):
-    """Balance of every vertex: outflow - inflow + storage."""
-    n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            r_out[i, j] = gain[i, j]
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        lx = link_x[i]
-        v = vx if lx != 0.0 else 0.0
-        for j in range(m):
-            h = c.HF[i, j]
-            d = 0.5 * (c.E[nxt, j] - c.E[i, j])
-            f = fill[i, j] if v >= 0.0 else fill[nxt, j]
-            q = width_z[j] * (v * f * h - h * (h * h + d * d) * lx * (P[nxt, j] - P[i, j]))
-            r_out[i, j] += q
-            r_out[nxt, j] -= q
-        for j in range(m - 1):
-            h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
-            d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
-            f = fill[i, j] if vz >= 0.0 else fill[i, j + 1]
-            q = width_x[i] * (vz * f * h - h * (h * h + d * d) * link_z[j] * (P[i, j + 1] - P[i, j]))
-            r_out[i, j] += q
-            r_out[i, j + 1] -= q
-
-
-@njit(cache=True)
-def violation(c, r, P, fixed, pc, complementary):
-    """(norm of the balances that do not hold, smallest film gap); at pc oil may be drawn away if ``complementary``."""
-    n, m = P.shape
-    total = 0.0
-    smallest = 1e300
-    for i in range(n):
-        for j in range(m):
-            smallest = min(smallest, min(c.H[i, j], c.HF[i, j]))
-            if not fixed[i, j]:
-                s = r[i, j]
-                if complementary and P[i, j] <= pc:
-                    s = min(s, 0.0)
-                total += s * s
-    return np.sqrt(total), smallest
+# Largest growth of an oil's viscosity in one step, as a logarithm.
+LARGEST_THICKENING = 4.0
 
 
 @njit(cache=True)
 def assemble_compliant(
-    c, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, number, count, width, lower, upper
+    columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, number, count, width,
+    lower, upper,
 ):  # fmt: skip
     """d(balance)/d(unknown) of the numbered vertices into the two bands; the unknown is P where ``full``, else the fill."""
+    c = columns_of(columns)
     n, m = P.shape
     for r in range(count):
         for d in range(width + 1 + PAD):
@@ -193,16 +37,18 @@ def assemble_compliant(
             a = number[i, j]
             b = number[nxt, j]
             if a >= 0:
-                upper[a, 0] += storage.gain_P[i, j] if full[i, j] else storage.gain_fill[i, j]
+                upper[a, 0] += gain_P[i, j] if full[i, j] else gain_fill[i, j]
             if (a >= 0 or b >= 0) and lx != 0.0:
-                h = c.HF[i, j]
                 d = 0.5 * (c.E[nxt, j] - c.E[i, j])
                 f = fill[i, j] if v >= 0.0 else fill[nxt, j]
                 drop = lx * (P[nxt, j] - P[i, j])
-                k = width_z[j] * h * (h * h + d * d) * lx
-                by_h = 0.5 * width_z[j] * c.link[i, j] * (v * f - (3.0 * h * h + d * d) * drop)
-                by_d = width_z[j] * h * d * drop
-                carried = width_z[j] * v * h
+                h = c.HF[i, j]
+                k, carrier = along(links, i, j, h, d)
+                k_h, k_d, _, carrier_h = along_slopes(links, i, j, h, d)
+                k *= width_z[j] * lx
+                by_h = 0.5 * width_z[j] * c.link[i, j] * (v * f * carrier_h - k_h * drop)
+                by_d = 0.5 * width_z[j] * k_d * drop
+                carried = width_z[j] * v * carrier
                 if full[i, j]:
                     out_a = k + by_h * c.D_P[i, j] + by_d * c.H_P[i, j]
                 else:
@@ -216,14 +62,16 @@ def assemble_compliant(
                 continue
             b = number[i, j + 1]
             if a >= 0 or b >= 0:
-                h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
                 d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
                 f = fill[i, j] if vz >= 0.0 else fill[i, j + 1]
                 drop = link_z[j] * (P[i, j + 1] - P[i, j])
-                k = width_x[i] * h * (h * h + d * d) * link_z[j]
-                by_h = 0.5 * width_x[i] * (vz * f - (3.0 * h * h + d * d) * drop)
-                by_d = width_x[i] * h * d * drop
-                carried = width_x[i] * vz * h
+                h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
+                k, carrier = across(links, i, j, h, d)
+                k_h, k_d, _, carrier_h = across_slopes(links, i, j, h, d)
+                k *= width_x[i] * link_z[j]
+                by_h = 0.5 * width_x[i] * (vz * f * carrier_h - k_h * drop)
+                by_d = 0.5 * width_x[i] * k_d * drop
+                carried = width_x[i] * vz * carrier
                 if full[i, j]:
                     out_a = k + (by_h + by_d) * c.H_P[i, j]
                 else:
@@ -236,50 +84,86 @@ def assemble_compliant(
 
 
 @njit(cache=True)
-def longest_step(c, full, order, count, x):
-    """Share of the step x that uses up at most 80 % of any vertex's film gap."""
-    m = c.H.shape[1]
-    share = 1.0
-    for k in range(count):
-        i = order[k] // m
-        j = order[k] - i * m
-        if full[i, j]:
-            change = c.H_P[i, j] * x[k]
-            if change < -0.8 * c.H[i, j]:
-                share = min(share, -0.8 * c.H[i, j] / change)
-    return share
+def factor_compliant(
+    columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, metric, active, order,
+    number, lower, upper, inv_diag,
+):  # fmt: skip
+    """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width)."""
+    count, width = number_cells(active, metric, order, number)
+    assemble_compliant(
+        columns, links, P, fill, full, gain_P, gain_fill, vx, vz, width_x, width_z, link_x, link_z, number, count, width,
+        lower, upper,
+    )  # fmt: skip
+    return factor_lu(lower, upper, count, width, inv_diag), count, width
 
 
 @njit(cache=True)
-def step_size(P, full, order, count, x, pc, clips, least, opening):
-    """Largest step over the peak pressure (at least ``least``), or of a fill; the square of what is left after it; the peak.
+def newton_step(r, order, count, width, lower, upper, inv_diag, x):
+    """Newton's step x of the numbered unknowns with the factor at hand."""
+    m = r.shape[1]
+    for k in range(count):
+        i = order[k] // m
+        x[k] = -r[i, order[k] - i * m]
+    if count > 0:
+        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
 
-    What a film that clips cuts off may lie far below pc and drops over the bent gaps, so that its steps are small by what presses and by
-    ``opening``, the pressure that opens the smallest gap. Infinite for steps that are not finite.
+
+@njit(cache=True)
+def step_size(
+    P, load, columns, contact_G, beta, full, order, count, x, cavity_load, clips, least, opening
+):  # fmt: skip
+    """(largest step over the peak pressure, or of a fill; over what counts as much after it; the peak; share of the step to take).
+
+    All in pressures on the columns, pc being ``cavity_load`` among them, the peak at least ``least``. What a film that clips cuts off may
+    lie far below pc and drops over the bent gaps, so that its steps are small by what presses and by ``opening``, the pressure that opens the
+    smallest gap. Infinite for steps that are not finite. The share uses up at most 80 % of any vertex's film gap.
     """
+    c = columns_of(columns)
     m = P.shape[1]
     peak = least
     pressing = least
     largest = 0.0
     filled = 0.0
+    share = 1.0
     for k in range(count):
         i = order[k] // m
         j = order[k] - i * m
         if not abs(x[k]) < 1e300:
-            return np.inf, np.inf, peak
+            return np.inf, np.inf, peak, 1.0
         if full[i, j]:
-            peak = max(peak, abs(P[i, j] - pc))
-            pressing = max(pressing, P[i, j] - pc)
-            largest = max(largest, abs(x[k]))
+            cut = P[i, j] - load[DRIVE, i, j]
+            over = load[LOAD_P, i, j] + cut - cavity_load
+            peak = max(peak, abs(over))
+            pressing = max(pressing, over)
+            change = x[k] * load[SLOPE, i, j]
+            largest = max(largest, abs(change))
+            if change < 0.0 and cut == 0.0:
+                change *= c.rate_t[i, j] * beta / (1.0 - beta * contact_G[i, j])
+                if change < -0.8 * c.H[i, j]:
+                    share = min(share, -0.8 * c.H[i, j] / change)
         else:
             filled = max(filled, abs(x[k]))
     unit = min(pressing, opening) if clips else peak
-    return max(largest / peak, filled), max(largest / unit, filled) ** 2, peak
+    return max(largest / peak, filled), max(largest / unit, filled), peak, 1.0 if clips else share
+
+
+@njit(cache=True, inline="always")
+def _moved(P, x, drive, slope, bend):
+    """P + x; above ``drive`` no further than the pressure p(P) would go along its tangent.
+
+    p grows exponentially with P: there, with ``bend`` = p'' the rate k = p'' / p' of growth, x becomes (1 - exp(-k x)) / k.
+    """
+    target = P + x
+    rise = target - drive
+    if bend == 0.0 or rise <= 0.0:
+        return target
+    k = bend / slope
+    return drive - np.expm1(-min(k * rise, LARGEST_THICKENING)) / k
 
 
 @njit(cache=True)
 def take_step(
-    P, fill, full, order, count, x, share, pc, complementary, conserves, tolerance, P_out, fill_out, full_out
+    P, load, fill, full, order, count, x, share, pc, complementary, conserves, tolerance, P_out, fill_out, full_out
 ):
     """Trial P + share x, or fill + share x, projected on what a closure allows; returns how many vertices rupture or fill up."""
     m = P.shape[1]
@@ -291,7 +175,7 @@ def take_step(
         i = order[k] // m
         j = order[k] - i * m
         if full[i, j]:
-            p = P[i, j] + share * x[k]
+            p = _moved(P[i, j], share * x[k], load[DRIVE, i, j], load[SLOPE, i, j], load[BEND, i, j])
             if complementary and p < pc:
                 p = pc
             if conserves and p < pc:
@@ -309,98 +193,3 @@ def take_step(
                 f = 1.0
             fill_out[i, j] = f
     return changes
-
-
-@njit(cache=True)
-def compliant_sensitivities(
-    lam, c, P, fill, gain_r, gain_t, vx, vz, width_x, width_z, link_x, link_z, cell, face, rate, speed
-):  # fmt: skip
-    """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gap at vertices and links, its rate and the speeds.
-
-    ``gain_r``, ``gain_t`` (n, m): derivatives of the storage to the undeformed gap and rate.
-    """
-    count, n, m = lam.shape
-    for k in range(count):
-        for i in range(n):
-            for j in range(m):
-                cell[k, i, j] = -lam[k, i, j] * gain_r[i, j]
-                rate[k, i, j] = -lam[k, i, j] * gain_t[i, j]
-        sx = 0.0
-        sz = 0.0
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            lx = link_x[i]
-            v = vx if lx != 0.0 else 0.0
-            for j in range(m):
-                h = c.HF[i, j]
-                d = 0.5 * (c.E[nxt, j] - c.E[i, j])
-                f = fill[i, j] if v >= 0.0 else fill[nxt, j]
-                drop = lx * (P[nxt, j] - P[i, j])
-                out = (lam[k, nxt, j] - lam[k, i, j]) * width_z[j]
-                by_h = out * c.link[i, j] * (v * f - (3.0 * h * h + d * d) * drop)
-                by_d = out * h * d * drop
-                face[k, i, j] = by_h
-                cell[k, i, j] += 0.5 * by_h * c.D_r[i, j] + by_d * c.E_r[i, j]
-                cell[k, nxt, j] += 0.5 * by_h * c.D_r[nxt, j] - by_d * c.E_r[nxt, j]
-                if lx != 0.0:
-                    sx += out * f * h
-            for j in range(m - 1):
-                h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
-                d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
-                f = fill[i, j] if vz >= 0.0 else fill[i, j + 1]
-                drop = link_z[j] * (P[i, j + 1] - P[i, j])
-                out = (lam[k, i, j + 1] - lam[k, i, j]) * width_x[i]
-                by_h = 0.5 * out * (vz * f - (3.0 * h * h + d * d) * drop)
-                by_d = out * h * d * drop
-                cell[k, i, j] += by_h * c.H_r[i, j] + by_d * c.E_r[i, j]
-                cell[k, i, j + 1] += by_h * c.H_r[i, j + 1] - by_d * c.E_r[i, j + 1]
-                sz += out * f * h
-        speed[k, 0] = sx
-        speed[k, 1] = sz
-
-
-@njit(cache=True)
-def compliant_coefficients(c, vx, vz, width_x, width_z, link_x, link_z, kx_out, kz_out, fx_out, fz_out, b_out):
-    """Conductances and Couette fluxes of a full film in the deformed gap; ``b_out`` without storage."""
-    n, m = c.H.shape
-    b_out[:] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        v = vx if link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            h = c.HF[i, j]
-            d = 0.5 * (c.E[nxt, j] - c.E[i, j])
-            kx_out[i, j] = h * (h * h + d * d) * link_x[i] * width_z[j]
-            fx_out[i, j] = v * h * width_z[j]
-            b_out[i, j] -= fx_out[i, j]
-            b_out[nxt, j] += fx_out[i, j]
-        for j in range(m - 1):
-            h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
-            d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
-            kz_out[i, j] = h * (h * h + d * d) * link_z[j] * width_x[i]
-            fz_out[i, j] = vz * h * width_x[i]
-            b_out[i, j] -= fz_out[i, j]
-            b_out[i, j + 1] += fz_out[i, j]
-        kz_out[i, m - 1] = 0.0
-        fz_out[i, m - 1] = 0.0
-
-
-@njit(cache=True)
-def newton_step(
-    c, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, links, active, order, number, lower, upper,
-    inv_diag, r, x,
-):  # fmt: skip
-    """Factor Newton's matrix of the ``active`` vertices and solve for the step x; returns (ok, count, width)."""
-    count, width = number_cells(active, links, order, number)
-    assemble_compliant(
-        c, P, fill, full, storage, vx, vz, width_x, width_z, link_x, link_z, number, count, width, lower, upper
-    )
-    if not factor_lu(lower, upper, count, width, inv_diag):
-        return False, count, width
-    m = P.shape[1]
-    for k in range(count):
-        i = order[k] // m
-        x[k] = -r[i, order[k] - i * m]
-    if count > 0:
-        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
-    return True, count, width

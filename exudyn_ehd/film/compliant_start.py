@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.compliant_iteration import newton
 from exudyn_ehd.film.liner_newton import FULL
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.compliant import CompliantFilmSolver
+    from exudyn_ehd.film.compliant import ColumnOil, CompliantFilmSolver
 
 MAX_PSEUDO_STEPS = 200
+# Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.
+OPEN, MODERATE = 0.01, 0.1
 
 
 def cold_start(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, int]:
@@ -24,7 +27,7 @@ def cold_start(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, int]:
     _dry_guess(solver, P)
     if not solver.closure.conserves_mass:
         return solver.target(P)
-    ok, steps = solver.newton(P, solver.ones, False, 0.0, solver.nothing)
+    ok, steps = newton(solver, P, solver.ones, False, 0.0, solver.nothing)
     if not ok:
         return False, steps
     _all_full(solver, np.logical_or(solver.work.active, solver.grid.fixed))
@@ -46,9 +49,19 @@ def _dry_guess(solver: CompliantFilmSolver, P: np.ndarray) -> None:
     guess = np.zeros(H0.shape)
     if solver.contact is None and H0.min() < film:
         guess = np.maximum((film - H0) / solver.beta, 0.0)
+    if solver.oil is not None:
+        guess = _transformed(solver, solver.oil, guess)
     free = ~solver.grid.fixed
     lowest = solver.system.cavity_pressure if solver.kind != FULL else 0.0
     P[free] = np.maximum(guess, lowest)[free]
+
+
+def _transformed(solver: CompliantFilmSolver, oil: ColumnOil, guess: np.ndarray) -> np.ndarray:
+    """Unknowns of guessed pressures (n, m), which thicken the oil no more than they need to open the gap."""
+    scale = solver.pressure_scale
+    touching = np.maximum((OPEN - solver.rigid[0]) / solver.beta, 0.0)
+    p = np.minimum(guess, np.maximum(touching, MODERATE * oil.largest_pressure / scale))
+    return oil.transform(np.minimum(p * scale, oil.largest_pressure)) / scale
 
 
 def pseudo_transient(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, int]:
@@ -73,8 +86,8 @@ def pseudo_transient(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, 
     start, start_fill, start_full = P.copy(), fill.copy(), solver.full.copy()
     solver.settle(P)
     for _ in range(MAX_PSEUDO_STEPS):
-        old = start_fill * solver.columns.H if conserves else solver.beta * start
-        ok, steps = solver.newton(P, fill, conserves, extra, old)
+        old = start_fill * solver.columns.H if conserves else solver.push(start)
+        ok, steps = newton(solver, P, fill, conserves, extra, old)
         total += steps
         if not ok:
             P[:], fill[:], solver.full[:] = start, start_fill, start_full

@@ -25,28 +25,21 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu
-from exudyn_ehd.film.density import CompressibleLaw, pressure_near
+from exudyn_ehd.film.density import CompressibleLaw
+from exudyn_ehd.film.density_field import pressure_at, viscosity_at
+from exudyn_ehd.film.density_matrix import Balance, compressible_balance, dense_band
 from exudyn_ehd.film.density_newton import (
-    AT,
     CLIPPED,
     COMPLEMENTARY,
     FILLED,
     FULL,
-    RHO,
-    Balance,
     Buffers,
-    carry_density,
-    carry_density_plain,
-    compressible_balance,
-    dense_band,
-    dense_link_derivatives,
     factor_compressible,
-    link_factors,
     raise_to,
     solve_compressible,
     solve_exact_transposed,
-    solved_viscosity,
 )
+from exudyn_ehd.film.density_sweep import carry_density, carry_density_plain, dense_link_derivatives, link_factors
 from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import FluxEffect
 from exudyn_ehd.film.grid import FilmGrid
@@ -96,9 +89,9 @@ class CompressibleFilmSolver(FilmSolver):
         )
         lower, upper = _lu_buffers(w)
         self.buffers = Buffers(
-            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.ones((8, *shape)), np.zeros(shape)
-        )
-        self.buffers.fields[AT] = np.nan
+            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
+            np.zeros(shape), np.zeros(shape),
+        )  # fmt: skip
         self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
         self.sigma_known = False
         self.exact = False
@@ -113,12 +106,17 @@ class CompressibleFilmSolver(FilmSolver):
     @property
     def rho(self) -> np.ndarray:
         """Density ratio of the last solution (n, m)."""
-        return self.buffers.fields[RHO]
+        return self.buffers.rho
 
     @property
     def content(self) -> np.ndarray:
         """Scaled mass rho fill H of the last solution (n, m)."""
         return self.rho * self._fill * self.H
+
+    @property
+    def _floor(self) -> float:
+        """Scaled pressure below which the density stays."""
+        return -np.inf if self.kind == FULL else self.system.cavity_pressure
 
     @property
     def _fill(self) -> np.ndarray:
@@ -252,11 +250,11 @@ class CompressibleFilmSolver(FilmSolver):
 
         False where that has no pressure.
         """
-        s, table, fields = self.system, self.law.kernel_table, self.buffers.fields
-        floor = -np.inf if self.kind == FULL else s.cavity_pressure
-        if solved_viscosity(
-            s.pressure, self.pressure_scale, floor, table, fields, p_out, ratio_out, ratio_P_out, p_P_out
-        ):
+        s, b = self.system, self.buffers
+        if viscosity_at(
+            s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, b.known, b.rho, p_out, ratio_out, ratio_P_out,
+            p_P_out,
+        ):  # fmt: skip
             return True
         if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
             return False
@@ -267,10 +265,8 @@ class CompressibleFilmSolver(FilmSolver):
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure of the last solution (n, m) and its derivative to the transformed one; False where that has no pressure."""
-        s, c = self.system, self.buffers.fields
-        floor = -np.inf if self.kind == FULL else s.cavity_pressure
-        known = c[AT], c[AT + 1], c[AT + 2], c[AT + 3], c[AT + 4], c[AT + 5]
-        if pressure_near(s.pressure, self.pressure_scale, floor, self.law.kernel_table, *known, p_out, p_P_out):
+        s, table = self.system, self.law.kernel_table
+        if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.buffers.known, p_out, p_P_out):
             return True
         rest = np.empty((2, *p_out.shape))
         return self.viscosity(p_out, rest[0], rest[1], p_P_out)
@@ -294,8 +290,9 @@ class CompressibleFilmSolver(FilmSolver):
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
         w = self.work
         solve_exact_transposed(
-            self._fill, self.film, self.kind, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs
-        )
+            self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
+            self.law.kernel_table, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs,
+        )  # fmt: skip
         self.exact = True
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
@@ -317,7 +314,10 @@ class CompressibleFilmSolver(FilmSolver):
         """L and U of Newton's matrix at the solution, factored if the last one was before."""
         w, b = self.work, self.buffers
         if not self.exact:
-            factor_compressible(self._fill, self.film, self.kind, self._unknown_pressure(), b)
+            factor_compressible(
+                self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
+                self.law.kernel_table, 1.0, self._unknown_pressure(), b,
+            )  # fmt: skip
             self.exact = True
         return dense_band(b.lower, w.count, w.width), dense_band(b.upper, w.count, w.width)
 

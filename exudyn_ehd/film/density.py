@@ -21,7 +21,6 @@ from exudyn_ehd.film.viscosity import (
     LARGEST_PRESSURE,
     BoundPressureLaw,
     HermiteTable,
-    hermite_fourth_at,
     hermite_inverse,
 )
 from exudyn_ehd.status import InputError, require_number
@@ -29,12 +28,6 @@ from exudyn_ehd.status import InputError, require_number
 LARGEST_COEFFICIENT = 1e-6
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
 SMALLEST_EXPONENT = 1e-30
-# Change of dp/dq, as a share, up to which Taylor's polynomial about a known value is the law: to 1e-14 in the density, which the balance is
-# solved with, 3e-13 in p and 1e-10 in their slopes.
-NEAR = 5e-4
-# Tension, Pa, at which the law for p >= 0 and its continuation below still agree to rounding (for any coefficients below the largest).
-AMBIENT = 1e-2
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class DensityTable(NamedTuple):
@@ -174,153 +167,3 @@ def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
             ratio_q_out[i, j] = ratio_q_out[i, j] * rho + rho_p * s * s
             ratio_out[i, j] = s * rho
     return True
-
-
-@njit(cache=True)
-def density_of_transformed(P, scale, floor, law, share, at, p, s, s_q, s_qq, s_3, rho_out, rho_P_out):
-    """Density ratio and its derivative at scaled pressures P (n, m), with ``floor`` the scaled pressure below which it stays.
-
-    ``share`` = 1: the law; less: that share of the difference to a constant density. Pressures beyond the law's range have the density
-    at its end. p, s, s_q, s_qq, s_3 (n, m) are the law's value and derivatives at the transformed pressures ``at`` (n, m), Pa, as of
-    `viscosity.hermite_fourth_at`: they serve for all pressures near by, see `near_value`, and are looked up anew for others
-    (``at`` = nan: nothing known).
-    """
-    n, m = P.shape
-    found = False
-    y0 = p0 = s0 = s0_q = s0_qq = s0_3 = rho0 = rho0_P = 0.0
-    for i in range(n):
-        for j in range(m):
-            x = P[i, j]
-            if x <= floor:
-                if not found:
-                    found = True
-                    y0 = min(max(floor * scale, law.lowest), law.highest)
-                    p0, s0, s0_q, s0_qq, s0_3 = hermite_fourth_at(
-                        y0, law.exponent, law.q, law.table, law.bucket, law.bucket_scale
-                    )
-                    rho0, rho0_p = density_ratio(p0, law.a, law.b)
-                    rho0 = 1.0 + share * (rho0 - 1.0)
-                    rho0_P = share * rho0_p * s0 * scale if law.lowest < floor * scale < law.highest else 0.0
-                if at[i, j] != y0:
-                    at[i, j], p[i, j], s[i, j], s_q[i, j], s_qq[i, j], s_3[i, j] = y0, p0, s0, s0_q, s0_qq, s0_3
-                rho_out[i, j] = rho0
-                rho_P_out[i, j] = rho0_P if x == floor else 0.0
-                continue
-            q = x * scale
-            inside = law.lowest < q < law.highest
-            y = q if inside else min(max(q, law.lowest), law.highest)
-            near, value, slope, _ = near_value(y, at[i, j], p[i, j], s[i, j], s_q[i, j], s_qq[i, j], s_3[i, j])
-            if not near:
-                value, slope, s_q[i, j], s_qq[i, j], s_3[i, j] = hermite_fourth_at(
-                    y, law.exponent, law.q, law.table, law.bucket, law.bucket_scale
-                )
-                at[i, j], p[i, j], s[i, j] = y, value, slope
-            rho, rho_p = density_ratio(value, law.a, law.b)
-            rho_out[i, j] = 1.0 + share * (rho - 1.0)
-            rho_P_out[i, j] = share * rho_p * slope * scale if inside else 0.0
-
-
-@njit(cache=True)
-def density_near(P, scale, floor, law, share, at, p, s, s_q, s_qq, s_3, rho_out, rho_P_out):
-    """As `density_of_transformed` for pressures that are all near known ones; False if some are not."""
-    known = (
-        at.reshape(-1),
-        p.reshape(-1),
-        s.reshape(-1),
-        s_q.reshape(-1),
-        s_qq.reshape(-1),
-        s_3.reshape(-1),
-    )
-    far, others = _ratio_near(
-        P.reshape(-1), scale, floor, law.lowest / scale, law.highest / scale, share, law.a, law.b, *known,
-        rho_out.reshape(-1),
-    )  # fmt: skip
-    if far > 0.0:
-        return False
-    if others > 0.0:
-        density_of_transformed(P, scale, floor, law, share, at, p, s, s_q, s_qq, s_3, rho_out, rho_P_out)
-    else:
-        _slope_near(P.reshape(-1), scale, floor, share, law.a, law.b, *known, rho_P_out.reshape(-1))
-    return True
-
-
-# Checks for a division by zero would keep the compiler from vectorising the next two.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _ratio_near(P, scale, floor, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3, rho_out):
-    """Density ratio of `density_near`, flat; returns how many are far from known pressures, and how many in tension or outside of the range."""
-    far = 0.0
-    others = 0.0
-    for c in range(rho_out.size):
-        x = P[c] if P[c] > floor else floor
-        q = x * scale
-        d = q - at[c]
-        value = p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
-        far += 0.0 if (abs(d * s_q[c]) <= NEAR * s[c]) & ((q > 0.0) == (at[c] > 0.0)) else 1.0
-        others += 0.0 if (value >= -AMBIENT) & (x > lowest) & (x < highest) else 1.0
-        rho_out[c] = 1.0 + share * a * value / (1.0 + b * value)
-    return far, others
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _slope_near(P, scale, floor, share, a, b, at, p, s, s_q, s_qq, s_3, rho_P_out):
-    """Derivative of the density ratio of `density_near`, flat, for p >= 0 inside the range."""
-    for c in range(rho_P_out.size):
-        d = P[c] * scale - at[c]
-        value = p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
-        slope = s[c] + d * (s_q[c] + d * (0.5 * s_qq[c] + d * s_3[c] * (1.0 / 6.0)))
-        denser = 1.0 / (1.0 + b * value)
-        rho_P_out[c] = share * a * scale * denser * denser * slope if P[c] >= floor else 0.0
-
-
-@njit(cache=True)
-def pressure_near(P, scale, floor, law, at, p, s, s_q, s_qq, s_3, p_out, p_P_out):
-    """Pressure over ``scale`` and its derivative to P where all P are near known ones; False if some are not, or have no pressure."""
-    far = _pressure_near(
-        P.reshape(-1), scale, max(floor, law.lowest / scale), law.highest / scale, at.reshape(-1), p.reshape(-1),
-        s.reshape(-1), s_q.reshape(-1), s_qq.reshape(-1), s_3.reshape(-1), p_out.reshape(-1),
-    )  # fmt: skip
-    _pressure_slope_near(
-        P.reshape(-1),
-        scale,
-        at.reshape(-1),
-        s.reshape(-1),
-        s_q.reshape(-1),
-        s_qq.reshape(-1),
-        s_3.reshape(-1),
-        p_P_out.reshape(-1),
-    )
-    return far == 0.0
-
-
-@njit(cache=True, fastmath=_FAST)
-def _pressure_near(P, scale, lowest, highest, at, p, s, s_q, s_qq, s_3, p_out):
-    far = 0.0
-    per_scale = 1.0 / scale
-    for c in range(p_out.size):
-        q = P[c] * scale
-        d = q - at[c]
-        near = (abs(d * s_q[c]) <= NEAR * s[c]) & ((q > 0.0) == (at[c] > 0.0)) & (P[c] >= lowest) & (P[c] < highest)
-        far += 0.0 if near else 1.0
-        p_out[c] = per_scale * (
-            p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
-        )
-    return far
-
-
-@njit(cache=True, fastmath=_FAST)
-def _pressure_slope_near(P, scale, at, s, s_q, s_qq, s_3, p_P_out):
-    for c in range(p_P_out.size):
-        d = P[c] * scale - at[c]
-        p_P_out[c] = s[c] + d * (s_q[c] + d * (0.5 * s_qq[c] + d * s_3[c] * (1.0 / 6.0)))
-
-
-@njit(cache=True, inline="always")
-def near_value(q, at, p, s, s_q, s_qq, s_3):
-    """Whether q is so near that Taylor's polynomial about ``at`` is the law (`NEAR`; on one side of 0), and p and two derivatives there."""
-    d = q - at
-    return (
-        abs(d * s_q) <= NEAR * s and (q > 0.0) == (at > 0.0),
-        p + d * (s + d * (0.5 * s_q + d * (s_qq / 6.0 + d * s_3 / 24.0))),
-        s + d * (s_q + d * (0.5 * s_qq + d * s_3 / 6.0)),
-        s_q + d * (s_qq + 0.5 * d * s_3),
-    )

@@ -121,6 +121,10 @@ class PressureLaw(Protocol):
     complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
     """
 
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
+
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
 

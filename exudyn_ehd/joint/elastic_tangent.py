@@ -146,7 +146,7 @@ def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
         face, cell = drag_by_gap(model)
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
-        rows += factors[:, 2, None, None] * cell[0]
+        rows += factors[:, 2, None, None] * cell[1]
     out = np.zeros((6, model.bore.size))
     out[2::3] = model.bore.contract(rows)
     return out if model.pressing is None else out + _contact_wrench(model)

@@ -19,11 +19,11 @@ from exudyn_ehd.film.contact_loads import (
     contact_tangent,
     couette_gradient_ratio,
 )
-from exudyn_ehd.film.gap import contract_pose
+from exudyn_ehd.film.gap import contract_ends, contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
-from exudyn_ehd.joint.drag import add_drag_rows, drag_by_gap
+from exudyn_ehd.joint.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
@@ -83,9 +83,7 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
     if has_extra_rows(model):
         extra = gradient[at : at + 2]
     if model.effects.uneven_drag:
-        face, cell = drag_by_gap(model)
-        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:1, :4])
-        contract_pose(cell, model.cos_x, model.sin_x, model.grid.z, extra[1:, :4])
+        add_drag_by_pose(model, extra)
     return gradient[:4], dc, extra
 
 
@@ -187,6 +185,8 @@ def adjoint_rows(model: BearingModel) -> np.ndarray:
             add_drag_rows(model, extra)
         if P_q is not None:
             weigh_rows(w.order, w.count, P_q, extra)
+        if model.effects.uneven_drag and model.compliant is not None:
+            extra += drag_by_deflection(model, model.compliant).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and model.compliant is not None:
         contact_adjoint_rhs(
             w.order, w.count, g.weight, model.compliant.contact_by_pressure, model.cos_x, model.sin_x, g.z, rows[own:]
@@ -199,10 +199,7 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     s, g, w = model.solver, model.grid, model.solver.work
     if model.compliant is not None:
         # by the pressure's deflection at unknown pressures, by the fill elsewhere
-        field = -g.weight * model.compliant.gap_by_pressure / s.H**2
-        if s.closure.conserves_mass:
-            field += np.where(w.active, 0.0, g.weight / s.H)
-        row[:] = field.ravel()[w.order[: w.count]]
+        row[:] = _compliant_shear(model, model.compliant).ravel()[w.order[: w.count]]
         return
     if model.liner_solver is not None:
         liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, model.liner_solver.beta, row)
@@ -212,6 +209,19 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     if s.closure.conserves_mass:
         by_fill = s.ones if model.ratio is None else model.ratio
     shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
+
+
+def _compliant_shear(model: BearingModel, film: CompliantFilmSolver) -> np.ndarray:
+    """d(Couette integral)/d(unknown) (n, m) on a liner: by the gap and the viscosity at unknown pressures, by the fill elsewhere."""
+    H, weight, active = film.H, model.grid.weight, film.work.active
+    ratio = 1.0 if model.ratio is None else model.ratio
+    by_gap = -ratio / H if model.ratio_h is None else model.ratio_h - ratio / H
+    field = by_gap * film.gap_by_pressure
+    if model.ratio_q is not None:
+        field = field + np.where(active, model.ratio_q, 0.0)
+    if film.closure.conserves_mass:
+        field = field + np.where(active, 0.0, ratio)
+    return weight / H * field
 
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
@@ -282,10 +292,5 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
     """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a liner's contact acts on the gap."""
     slope = _film_gap_slope(model)
     assert slope is not None
-    field = np.zeros((1, *model.grid.shape))
-    step = model.grid.width_x[0]
-    field[0, :, -1] = model.end_pressures[1] * step * slope[:, -1]
-    field[0, :, 0] = -model.end_pressures[0] * step * slope[:, 0]
-    out = np.zeros((1, 4))
-    contract_pose(field, model.cos_x, model.sin_x, model.grid.z, out)
-    return out[0]
+    lower, upper = (model.end_pressures * model.grid.width_x[0]).tolist()
+    return contract_ends(slope, -lower, upper, model.cos_x, model.sin_x, model.grid.z)

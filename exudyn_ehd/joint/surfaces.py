@@ -14,7 +14,6 @@ from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.profile import ProfileTerm
 from exudyn_ehd.film.roughness import RoughFlow, RoughShear
-from exudyn_ehd.film.thermal import FilmEnergy
 from exudyn_ehd.film.wear import WearDepth
 from exudyn_ehd.joint.effects import Contact, FluxEffect, GapLimiter, GapTerm, History, ShearFactor, Wear
 from exudyn_ehd.status import InputError
@@ -96,17 +95,13 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
         return None
     excluded = {
         f"film={type(bearing.film).__name__}()": not isinstance(bearing.film, FiniteLength),
-        "lubricant.pressure_law": bearing.lubricant.pressure_law is not None,
         "lubricant.density_law": bearing.lubricant.density_law is not None,
-        "lubricant.shear_law": bearing.lubricant.shear_law is not None,
-        "thermal=FilmEnergy(...)": isinstance(bearing.thermal, FilmEnergy),
-        "roughness=PatirCheng(...)": bearing.roughness is not None,
     }
     for option, present in excluded.items():
         if present:
             raise InputError(
                 f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved in two dimensions, with "
-                "constant viscosity and without flow factors; leave one of the two out."
+                "constant density; leave one of the two out."
             )
     return bearing.bush
 

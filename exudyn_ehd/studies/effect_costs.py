@@ -111,6 +111,10 @@ EFFECTS: dict[str, Case] = {
     "`Crown`": Case(options={"profile": Crown(drop=1e-6)}),
     "`ElasticLiner`": Case(options=_LINER),
     "`ElasticLiner`, `GreenwoodTripp`": Case(options=_LINER | _ASPERITY),
+    "`ElasticLiner`, `BarusPressure`": Case(options=_LINER | _LAWS["`BarusPressure`"]),
+    "`ElasticLiner`, `PatirCheng`": Case(options=_LINER | _ROUGHNESS),
+    "`ElasticLiner`, `CarreauShear`": Case(options=_LINER | _LAWS["`CarreauShear`"]),
+    "`ElasticLiner`, `FilmEnergy`": Case(options=_LINER | _LAWS["`FilmEnergy`"]),
 }
 WITH_CONSERVING: dict[str, Case] = {
     f"{CONSERVING}, {name}": Case(options=options | _CONSERVING, base=CONSERVING)

@@ -1,6 +1,7 @@
-"""Liner with contact or mass-conserving cavitation: columns, a readable twin solved by scipy, limits, and balances."""
+"""Liner with contact, mass-conserving cavitation, laws of the oil or flow factors: columns, a readable twin solved by scipy, limits, balances."""
 
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -13,7 +14,10 @@ from exudyn_ehd.film.compliant import CompliantFilmSolver
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.liner import LinerFilmSolver
+from exudyn_ehd.film.roughness import RoughFlow, pressure_flow_factor, shear_flow_factor
+from exudyn_ehd.film.shear import ShearThinning
 from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.joint.thermal import ViscosityField
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 SMALL = bearing_grid(0.02, 0.03, 16, 4)
@@ -30,6 +34,10 @@ every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(
 every_contact = pytest.mark.parametrize("contact", CONTACTS)
 touching = pytest.mark.parametrize("contact", ["wall", "asperities"])
 ENDS = (0.5, 1.0)
+BARUS = ehd.BarusPressure(coefficient=2e-7)
+THINNING = ehd.CarreauShear(relaxation_time=2e-6, exponent=0.6, residual=0.1)
+UNEVEN = ehd.PatirCheng(composite_roughness=0.03 * CLEARANCE, journal_share=0.9)
+WARM = 1.0 + 0.3 * np.sin(np.arange(80)).reshape(16, 5)
 
 
 def gaps(grid, eps, angle=0.3, rate=0.0):
@@ -41,17 +49,36 @@ def gaps(grid, eps, angle=0.3, rate=0.0):
     return np.array([row(grid.x), row(grid.x_face), -rate * np.outer(np.cos(grid.x), np.ones(grid.z.size))])
 
 
-def solver_of(closure, contact, grid=GRID):
+def flux_of(effect):
+    """Flux effects of one bearing model."""
+    if effect == "carreau":
+        return (ShearThinning(THINNING, 0.02, CLEARANCE),)
+    if effect == "rough":
+        return (RoughFlow(UNEVEN, CLEARANCE, ROUGH.residual_film),)
+    if effect == "warm":
+        field = ViscosityField()
+        field.set(WARM)
+        return (field,)
+    return ()
+
+
+def solver_of(closure, contact, grid=GRID, effect="none"):
     surfaces = CONTACTS[contact]()
-    made = CompliantFilmSolver(grid, closure, contact=surfaces, limiter=surfaces)
+    oil = BARUS if effect == "barus" else None
+    made = CompliantFilmSolver(grid, closure, contact=surfaces, limiter=surfaces, flux_effects=flux_of(effect), oil=oil)
     made.pressure_scale = SCALE
     return made
+
+
+def unknown(oil, p):
+    """Scaled unknown of the film for scaled pressures."""
+    return p if oil is None else oil.transform(np.asarray(p) * SCALE) / SCALE
 
 
 def solve(solver, beta, eps=0.6, rate=0.0, cold=True, mass_old=None, delta_old=None, step=0.0):
     solver.beta = beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(solver.grid, eps, rate=rate)
-    solver.pressure[:, 0], solver.pressure[:, -1] = ENDS
+    solver.pressure[:, 0], solver.pressure[:, -1] = unknown(solver.oil, ENDS) if hasattr(solver, "oil") else ENDS
     solver.delta_old = delta_old
     if cold:
         solver.forget()
@@ -85,10 +112,49 @@ def contact_twin(contact):
     return pressure, mean
 
 
-def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_old, closure):
-    """Balance of every vertex, link by link, the columns by bracketing."""
+def link_twin(effect, vx):
+    """(conductance, carrier) as functions of (i, j, axis, gap) from the textbook formulas."""
+    if effect == "carreau":
+        n, rest = THINNING.exponent, THINNING.residual
+
+        def thinned(i, j, axis, h):
+            s = (THINNING.relaxation_time * 2.0 * 0.02 * vx / (CLEARANCE * h)) ** 2
+            power = (1.0 - rest) * (1.0 + s) ** ((n - 1.0) / 2.0)
+            # along the sliding the tangent of the shear stress, across it the viscosity
+            return h**3 / (rest + power * ((1.0 + n * s) / (1.0 + s) if axis == 0 else 1.0)), h
+
+        return thinned
+    if effect == "rough":
+        sigma = UNEVEN.composite_roughness / CLEARANCE
+
+        def rough(i, j, axis, h):
+            # from above, where the average gap as a function of the nominal one is convex
+            x, a = h / sigma, ROUGH.residual_film
+            for _ in range(30):
+                y = x - a
+                share = 0.5 * (1.0 + math.erf(y / math.sqrt(2.0)))
+                x -= (a + y * share + math.exp(-0.5 * y * y) / math.sqrt(2.0 * math.pi) - h / sigma) / share
+            shear = (2.0 * UNEVEN.journal_share - 1.0) * float(shear_flow_factor(x, 1.0))
+            return float(pressure_flow_factor(x, 1.0)) * (sigma * x) ** 3, h + sigma * shear
+
+        return rough
+    if effect == "warm":
+        n = len(WARM)
+
+        def warm(i, j, axis, h):
+            other = WARM[(i + 1) % n, j] if axis == 0 else WARM[i, j + 1]
+            return h**3 / (0.5 * (WARM[i, j] + other)), h
+
+        return warm
+    return lambda i, j, axis, h: (h**3, h)
+
+
+def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_old, closure, effect="none"):
+    """Balance of every vertex, link by link, the columns by bracketing; P the true pressures but where a film clips."""
     n, m = P.shape
     press, seen = contact_twin(contact)
+    links = link_twin(effect, vx)
+    alpha = BARUS.coefficient * SCALE
     D, H, E, rate = (np.zeros((n, m)) for _ in range(4))
     for i, j in itertools.product(range(n), range(m)):
         p = max(P[i, j], 0.0) if closure.clips and not grid.fixed[i, j] else P[i, j]
@@ -99,16 +165,22 @@ def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_o
         E[i, j] = H[i, j] - seen(rigid[0, i, j])
         slope = (seen(g + 1e-6) - seen(g - 1e-6)) / 2e-6
         rate[i, j] = slope * (rigid[2, i, j] + (D[i, j] - delta_old[i, j]) * inverse)
+    # Barus: dp over the viscosity's ratio exp(alpha p), integrated along a link
+    Q = (1.0 - np.exp(-alpha * P)) / alpha if effect == "barus" else P
     r = np.zeros((n, m))
     for i, j in itertools.product(range(n), range(m)):
         k = (i + 1) % n
         h, d = seen(rigid[1, i, j] + 0.5 * (D[i, j] + D[k, j])), 0.5 * (E[k, j] - E[i, j])
-        q = vx * h * fill[i, j] - h * (h * h + d * d) * grid.link_x[i] * (P[k, j] - P[i, j])
+        conductance, carrier = links(i, j, 0, h)
+        q = vx * carrier * fill[i, j] - conductance * (1.0 + (d / h) ** 2) * grid.link_x[i] * (Q[k, j] - Q[i, j])
         r[i, j] += grid.width_z[j] * q
         r[k, j] -= grid.width_z[j] * q
         if j + 1 < m:
             h, d = 0.5 * (H[i, j] + H[i, j + 1]), 0.5 * (E[i, j + 1] - E[i, j])
-            q = vz * h * fill[i, j] - h * (h * h + d * d) * grid.link_z[j] * (P[i, j + 1] - P[i, j])
+            conductance, carrier = links(i, j, 1, h)
+            q = vz * carrier * fill[i, j] - conductance * (1.0 + (d / h) ** 2) * grid.link_z[j] * (
+                Q[i, j + 1] - Q[i, j]
+            )
             r[i, j] += grid.width_x[i] * q
             r[i, j + 1] -= grid.width_x[i] * q
         gain = rate[i, j]
@@ -138,12 +210,23 @@ def test_columns_settle(contact):
     np.testing.assert_allclose((up - down) / 2e-5, 1.0 / (1.0 - 1e-9 * scratch), atol=1e-5)
 
 
-@every_contact
+WITH_EFFECT = [
+    ("none", "barus"),
+    ("wall", "barus"),
+    ("none", "carreau"),
+    ("wall", "carreau"),
+    ("asperities", "rough"),
+    ("none", "warm"),
+]
+EVERY_EFFECT = [*((contact, "none") for contact in CONTACTS), *WITH_EFFECT]
+
+
+@pytest.mark.parametrize(("contact", "effect"), EVERY_EFFECT)
 @every_closure
-def test_matrix_is_the_derivative_of_the_balance(closure, contact):
+def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     """Assembled from Newton's pieces against central differences of the solver's own balance, unknown by unknown."""
     rng = np.random.default_rng(4)
-    s = solver_of(closure, contact, SMALL)
+    s = solver_of(closure, contact, SMALL, effect)
     s.beta, s.vx, s.vz, s.inverse = 0.02, 2.0, -1.0, 3.0
     s.system.cavity_pressure = 0.1
     s.H[:], s.HF[:], s.H_t[:] = 0.2 + rng.random((3, *SMALL.shape))
@@ -159,7 +242,8 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
         s.full[:] = rng.random(SMALL.shape) < 0.6
         fill[~s.full] = rng.random(SMALL.shape)[~s.full]
         fill[SMALL.fixed] = 1.0
-    s._balance(P, fill, conserves, 0.5, s.nothing)
+    s.balance(P, fill, conserves, 0.5, s.nothing)
+    s.answer(P, fill, conserves, 0.5)
     free = ~SMALL.fixed
     from exudyn_ehd.film.compliant_newton import assemble_compliant
     from exudyn_ehd.film.direct import number_cells
@@ -168,8 +252,8 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
     lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
     count, width = number_cells(free, s.links, w.order, w.number)
     assemble_compliant(
-        s.columns, P, fill, s.full, s.storage, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, w.number, count, width,
-        lower, upper,
+        s.fields, s.link_flux, P, fill, s.full, s.gain_P, s.gain_fill, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z,
+        w.number, count, width, lower, upper,
     )  # fmt: skip
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
@@ -183,7 +267,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact):
         for sign in (1.0, -1.0):
             moved = [P.copy(), fill.copy()]
             moved[0 if s.full.ravel()[at[k]] else 1].ravel()[at[k]] += sign * h
-            s._balance(*moved, conserves, 0.5, s.nothing)
+            s.balance(*moved, conserves, 0.5, s.nothing)
             sides.append(s.residual.ravel()[at].copy())
         B[:, k] = (sides[0] - sides[1]) / (2.0 * h)
     # differences of smooth functions; the wall's curvature over its onset of a tenth makes them good to 1e-7
@@ -205,28 +289,44 @@ def test_without_contact_it_is_the_plain_liner(closure):
         assert other.stored_power() == pytest.approx(plain.stored_power(), rel=1e-9, abs=1e-12)
 
 
-CASES = [(c, t) for c in CLOSURES for t in CONTACTS if not (c.conserves_mass is False and t == "none")]
+CASES = [
+    (c, t, e)
+    for c in CLOSURES
+    for t, e in EVERY_EFFECT
+    if (c.conserves_mass or (t, e) != ("none", "none")) and (t, e) not in (("wall", "barus"), ("wall", "carreau"))
+]
+
+
+def pressures(solver):
+    """Scaled pressures of the last film (n, m), below the cavity pressure where it is cut off."""
+    q = solver.system.linear_pressure
+    return q if solver.oil is None else -np.log1p(-BARUS.coefficient * SCALE * q) / (BARUS.coefficient * SCALE)
 
 
 @pytest.mark.parametrize("motion", ["steady", "step"])
-@pytest.mark.parametrize(("closure", "contact"), CASES, ids=lambda v: v if isinstance(v, str) else type(v).__name__)
-def test_scipy_finds_the_same_film(closure, contact, motion):
+@pytest.mark.parametrize(
+    ("closure", "contact", "effect"), CASES, ids=lambda v: v if isinstance(v, str) else type(v).__name__
+)
+def test_scipy_finds_the_same_film(closure, contact, effect, motion):
     """The twin's equations on 16 x 4, solved by MINPACK from the rigid film; deep contact where there is one.
 
     One unknown u per vertex: the pressure above, and (minus) slack or missing oil below the cavity pressure. 1e-7 of the peak: MINPACK's tolerance
-    and the bracketing of the columns; with asperities the tabulated contact pressure, good to 1e-6.
+    and the bracketing of the columns; with asperities the tabulated contact pressure, good to 1e-6, and the tabulated flow factors.
     """
     g, beta = SMALL, 0.01
     eps = 0.7 if contact == "none" else 1.05
+    if effect == "rough":
+        # no deeper than the flow factors' fit reaches
+        eps = 0.93
     step = 0.0 if motion == "steady" else 2e-3
     inverse = 0.0 if step == 0.0 else 1.0 / step
     rate = 5.0 if step > 0.0 and not closure.conserves_mass else 0.0
     rigid = gaps(g, eps, rate=rate)
-    start = solve(solver_of(closure, contact, g), beta, eps - 0.02)
+    start = solve(solver_of(closure, contact, g, effect), beta, eps - 0.02)
     delta = start.deflection
     mass = 0.97 * start.content if closure.conserves_mass and step > 0.0 else None
     s = solve(
-        solver_of(closure, contact, g),
+        solver_of(closure, contact, g, effect),
         beta,
         eps,
         rate,
@@ -239,7 +339,8 @@ def test_scipy_finds_the_same_film(closure, contact, motion):
     peak = max(np.abs(start.pressure).max(), 1.0)
 
     def parts(u):
-        P, fill, slack = s.pressure.copy(), np.ones(g.shape), np.zeros(g.shape)
+        P, fill, slack = np.zeros(g.shape), np.ones(g.shape), np.zeros(g.shape)
+        P[:, 0], P[:, -1] = ENDS
         P[free] = peak * u
         if complementary:
             below = np.minimum(u, 0.0)
@@ -254,18 +355,18 @@ def test_scipy_finds_the_same_film(closure, contact, motion):
         P, fill, slack = parts(u)
         r = twin(
             g, rigid, P, fill, beta, contact, 50.0, 3.0, inverse if mass is not None or not closure.conserves_mass else 0.0,
-            delta if step > 0.0 and not closure.conserves_mass else np.zeros(g.shape), mass, closure,
+            delta if step > 0.0 and not closure.conserves_mass else np.zeros(g.shape), mass, closure, effect,
         )  # fmt: skip
         return (r + slack)[free]
 
-    guess = start.system.linear_pressure[free] / peak
+    guess = pressures(start)[free] / peak
     if closure.conserves_mass:
         guess = guess + start.fill[free] - 1.0
     found = root(equations, guess, method="hybr", options={"xtol": 1e-12, "maxfev": 40000})
     P, fill, _ = parts(found.x)
     assert np.abs(equations(found.x)).max() < 1e-8, found.message
     tolerance = 2e-6 if contact == "asperities" else 1e-7
-    np.testing.assert_allclose(s.system.linear_pressure, P, atol=tolerance * np.abs(P).max())
+    np.testing.assert_allclose(pressures(s), P, atol=tolerance * np.abs(P).max())
     if closure.conserves_mass:
         np.testing.assert_allclose(s.fill, fill, atol=tolerance)
 

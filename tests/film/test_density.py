@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.density import NEAR, density_near, density_of_transformed, near_value
+from exudyn_ehd.film.density_field import NEAR, WEAK, density_at, density_slope_at, look_up, pressure_at, viscosity_at
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
 VISCOSITIES = {
@@ -82,22 +82,39 @@ def test_no_pressure_beyond_the_range():
         assert not law.inverse(np.full((1, 1), q), *out)
 
 
+def asked(P, scale, floor, law, share, known):
+    """Density ratio and its derivative from the kernels."""
+    rho, rho_P = np.empty_like(P), np.empty_like(P)
+    density_at(P, scale, floor, law.kernel_table, share, known, rho)
+    density_slope_at(P, scale, floor, law.kernel_table, share, known, rho_P)
+    return rho, rho_P
+
+
+def test_weak_and_strong_tension():
+    """The exponential's series and the exponential, across the tension where they take turns."""
+    density = ehd.DowsonHigginson()
+    law = density.bound(None)
+    p = np.array([[-1e-3, -1e5, -0.99 * WEAK / 0.6e-9, 0.0, 1e6]])
+    for strong in (p, np.append(p, [[-1.01 * WEAK / 0.6e-9, -1e8]], axis=1)):
+        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, 1.0, np.full((6, strong.size), np.nan))
+        np.testing.assert_allclose(rho, density.ratio(strong), rtol=2e-15)
+        np.testing.assert_allclose(rho_P, density.ratio_slope(strong) / density.ratio(strong), rtol=1e-10)
+
+
 def test_density_kernel_equals_its_twin():
     density = ehd.DowsonHigginson()
     law = density.bound(VISCOSITIES["barus"])
     p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
     scale, floor, share = 1e5, -1.0, 0.7
     P = law.transform(p) / scale
-    rho, rho_P, work = np.empty_like(P), np.empty_like(P), np.full((6, *P.shape), np.nan)
-    density_of_transformed(P, scale, floor, law.kernel_table, share, *work, rho, rho_P)
+    rho, rho_P = asked(P, scale, floor, law, share, np.full((6, P.size), np.nan))
     kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
     np.testing.assert_allclose(rho, 1.0 + share * (density.ratio(kept) - 1.0), rtol=1e-12)  # the spline's
     assert rho_P[0, 0] == 0.0
     slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * share * scale
     np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
     beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
-    rho, rho_P, work = np.empty((1, 1)), np.empty((1, 1)), np.full((6, 1, 1), np.nan)
-    density_of_transformed(beyond, scale, floor, law.kernel_table, 1.0, *work, rho, rho_P)
+    rho, rho_P = asked(beyond, scale, floor, law, 1.0, np.full((6, 1), np.nan))
     assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
     assert rho_P[0, 0] == 0.0
 
@@ -106,39 +123,48 @@ def test_density_kernel_equals_its_twin():
 def test_what_is_known_near_by_serves_to_rounding(viscosity):
     law = ehd.DowsonHigginson().bound(None if viscosity is None else VISCOSITIES[viscosity])
     q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
-    rho, rho_P, fresh, fresh_P = np.empty((4, *q.shape))
-    known = np.full((6, *q.shape), np.nan)
-    density_of_transformed(q, 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    known = np.full((6, q.size), np.nan)
+    asked(q, 1.0, -np.inf, law, 1.0, known)
     at = known[0].copy()
     moved = q + 0.9 * NEAR * np.abs(known[2] / known[3])
-    density_of_transformed(moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    rho, rho_P = asked(moved, 1.0, -np.inf, law, 1.0, known)
     np.testing.assert_array_equal(known[0], at)
-    density_of_transformed(moved, 1.0, -np.inf, law.kernel_table, 1.0, *np.full((6, *q.shape), np.nan), fresh, fresh_P)
+    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, 1.0, np.full((6, q.size), np.nan))
     np.testing.assert_allclose(rho, fresh, rtol=1e-14)
     np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
-    assert density_near(moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, fresh, fresh_P)
-    np.testing.assert_allclose(fresh, rho, rtol=1e-14)
-    np.testing.assert_allclose(fresh_P, rho_P, rtol=1e-13)
-    assert not density_near(2.0 * moved, 1.0, -np.inf, law.kernel_table, 1.0, *known, fresh, fresh_P)
-    found = np.empty((3, *q.shape))
-    law.inverse(moved, *found)
-    for k in range(q.size):
-        near, p, s, _ = near_value(moved[0, k], *known[:, 0, k])
-        assert near
-        assert p == pytest.approx(found[0, 0, k], rel=3e-13)
-        assert s == pytest.approx(found[1, 0, k] / float(law.density.ratio(found[0, 0, k])), rel=1e-10)
-    density_of_transformed(moved + 2.0 * (moved - q), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+    exact, found = np.empty((3, *q.shape)), np.empty((4, *q.shape))
+    law.inverse(moved, *exact)
+    assert viscosity_at(moved, 1.0, -np.inf, law.kernel_table, known, rho, *found)
+    np.testing.assert_allclose(found[0], exact[0], rtol=3e-13)
+    np.testing.assert_allclose(found[1], exact[1], rtol=1e-10)
+    # A derivative further; where density and viscosity cancel, what the spline's second derivative rounds to.
+    np.testing.assert_allclose(found[2], exact[2], rtol=1e-9, atol=1e-7 * law.density.coefficient)
+    np.testing.assert_allclose(found[3], exact[1] / rho, rtol=1e-10)
+    asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, 1.0, known)
     assert np.all(known[0] != at)
+    assert not pressure_at(moved, 1.0, -np.inf, law.kernel_table, known, *found[:2])
+
+
+@pytest.mark.parametrize(
+    ("floor", "beyond"), [(1e6, 9e5), (-np.inf, 1e12)], ids=["below the floor", "beyond the range"]
+)
+def test_cut_pressures_have_a_density_but_no_pressure(floor, beyond):
+    law, P, known = ehd.DowsonHigginson().bound(None), np.array([[2e6, beyond]]), np.full((6, 2), np.nan)
+    rho, rho_P = asked(P, 1.0, floor, law, 1.0, known)
+    assert np.all(rho > 1.0) and rho_P[0, 0] > 0.0 and rho_P[0, 1] == 0.0
+    found = np.empty((2, 1, 2))
+    assert not pressure_at(P, 1.0, floor, law.kernel_table, known, *found)
+    assert pressure_at(P[:, :1], 1.0, floor, law.kernel_table, known[:, :1].copy(), *found[:, :, :1].copy())
 
 
 def test_nothing_is_known_across_ambient_pressure():
     """The law's higher derivatives jump there."""
     law = ehd.DowsonHigginson().bound(None)
-    rho, rho_P = np.empty((2, 1, 1))
     for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
-        known = np.full((6, 1, 1), np.nan)
-        density_of_transformed(np.full((1, 1), start), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
-        assert not density_near(np.full((1, 1), end), 1.0, -np.inf, law.kernel_table, 1.0, *known, rho, rho_P)
+        known = np.full((6, 1), np.nan)
+        for x in (start, end):
+            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, known)
+            assert known[0, 0] == x
 
 
 @pytest.mark.parametrize("name", ["coefficient", "saturation"])

@@ -325,16 +325,23 @@ def test_liner_mass_balance():
     assert evaluation.status is ehd.Status.CONVERGED
 
 
+THINNING = {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.6, residual=0.1)}
+THICKENING = {"pressure_law": ehd.BarusPressure(coefficient=1e-7)}
+
+
+@pytest.mark.parametrize("laws", [{}, THICKENING, THINNING], ids=["constant", "barus", "carreau"])
 @pytest.mark.parametrize(
     "cavitation", [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()], ids=lambda c: type(c).__name__
 )
-def test_damping_on_a_liner_follows_slow_motions(cavitation):
+def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
     """Force of a slowly moving journal minus the steady one, by a long step of the transient film, against the damping columns.
 
     A step of 10 s at 1 nm/s moves by 5e-4 c; relaxation within 1 ms leaves 1e-4. The film alone, without the liner's rate, would
     miss more than a tenth.
     """
-    model = build_model(bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9), cavitation=cavitation))
+    oil = ehd.Lubricant(viscosity=0.03, **laws)
+    liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)
+    model = build_model(bearing(bush=liner, cavitation=cavitation, lubricant=oil))
     steady, step = at(0.8, 0.3), 10.0
     model.evaluate(steady)
     damping, film_alone = model.tangent(slow_motion=True)[:, 4:8], model.tangent()[:, 4:8]
@@ -359,7 +366,7 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation):
         ({"asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=1e-6)}, "must equal"),
         ({"roughness": ehd.PatirCheng(composite_roughness=6e-6)}, "quarter of the radial clearance"),
         (
-            {"bush": LINER, "asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=SIGMA)},
+            {"bush": LINER, "lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
             "can't be combined",
         ),
         ({"bush": LINER, "film": ehd.ShortBearing()}, "ShortBearing"),

@@ -1,0 +1,146 @@
+"""Newton's method for the film on columns of liner, with factors that are held as long as they serve; see `exudyn_ehd.film.compliant`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, step_size, take_step
+from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
+from exudyn_ehd.film.liner_newton import (
+    CLIPPED,
+    COMPLEMENTARY,
+    EXACT_STEP,
+    FULL,
+    LEAST_DEFLECTION,
+    flow_rounding,
+    select,
+)
+
+if TYPE_CHECKING:
+    from exudyn_ehd.film.compliant import CompliantFilmSolver
+
+MAX_NEWTON_STEPS = 60
+# Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
+ERROR_TOLERANCE = 1e-13
+STEP_TOLERANCE = 1e-8
+# A factor serves as long as every step is so much shorter than the last.
+CONTRACTION = 0.2
+
+
+def newton(
+    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, conserves: bool, extra: float, extra_old: np.ndarray
+) -> tuple[bool, int]:
+    """Newton from P and fill, in place; ``extra`` is the rate of pseudo time, towards ``extra_old``. Returns (found, steps).
+
+    A factor serves further steps as long as the set stays and each step is five times smaller than the last; the first step takes
+    that of the last film if there is one.
+    """
+    s, g, w, pc = solver, solver.grid, solver.work, solver.system.cavity_pressure
+    kind = FULL if conserves else s.kind
+    complementary = kind == COMPLEMENTARY
+    if complementary:
+        np.copyto(P, np.maximum(P, pc), where=~g.fixed)
+    norm, smallest = s.balance(P, fill, conserves, extra, extra_old)
+    if not smallest > 0.0:
+        return False, 0
+    if not conserves:
+        s.full[:] = True
+    # without complementarity every vertex has an unknown
+    active = w.active if complementary else ~g.fixed
+    held = s.held and w.warm and extra == 0.0
+    if complementary and not w.warm:
+        np.logical_not(g.fixed, out=active)
+    elif complementary and not held:
+        select(P, s.residual, g.fixed, pc, kind, active)
+    s.held = False
+    x = w.unknowns
+    noise = flow_rounding(s.columns.H, s.columns.HF, s.rigid[2], s.vx, s.vz, g.width_x, g.width_z, g.link_x)
+    lower, upper = _lu_buffers(w)
+    factored, last, last_size, moved = held, 0.0, 0.0, 0.0
+    for step in range(1, MAX_NEWTON_STEPS + 1):
+        fresh = not factored
+        if fresh:
+            if not factor(s, P, fill, active, conserves, extra):
+                return False, step
+            moved = 0.0
+            if w.count == 0 or norm == 0.0:
+                s.exact, s.held = True, extra == 0.0
+                return True, step
+        newton_step(s.residual, w.order, w.count, w.width, lower, upper, w.inv_diag, x)
+        opening = smallest / s.beta
+        error, size, peak, share = step_size(
+            P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, x, s.cavity_load, kind == CLIPPED,
+            LEAST_DEFLECTION * opening, opening,
+        )  # fmt: skip
+        if not error < 1e300:
+            return False, step
+        borrowed = held and step == 1
+        standing = error <= ERROR_TOLERANCE
+        if not fresh and not borrowed and not standing and error > CONTRACTION * last:
+            factored = False
+            continue
+        before = norm
+        for k in range(1 if borrowed else 12):
+            if k > 0:
+                share *= 0.5
+                s.press(P)
+            changes = take_step(
+                P, s.load, fill, s.full, w.order, w.count, x, share, pc, complementary, conserves, 1e-12 * peak,
+                s.trial, s.trial_fill, s.trial_full,
+            )  # fmt: skip
+            norm, smallest_trial = s.balance(s.trial, s.trial_fill, conserves, extra, extra_old)
+            if smallest_trial > 0.0 and (norm < before or error <= STEP_TOLERANCE or (conserves and changes > 0)):
+                break
+        if borrowed and not (smallest_trial > 0.0 and (norm < before or standing)):
+            norm, smallest = s.balance(P, fill, conserves, extra, extra_old)
+            if complementary:
+                select(P, s.residual, g.fixed, pc, kind, active)
+            factored = False
+            continue
+        smallest = smallest_trial
+        if not (smallest > 0.0 and norm < 1e300):
+            return False, step
+        P[:], s.full[:] = s.trial, s.trial_full
+        if conserves:
+            fill[:] = s.trial_fill
+        else:
+            changes = select(P, s.residual, g.fixed, pc, kind, active) if complementary else 0
+        moved += share * error
+        if norm <= noise and not conserves:
+            s.exact = s.held = factor(s, P, fill, active, conserves, extra)
+            return s.exact, step
+        factored = changes == 0 and share == 1.0
+        if factored:
+            # What is left: about the square of a Newton step, or a step times its ratio to the last one.
+            rest = 10.0 * size * size if fresh else size * size / min(max(last_size, 1e-300), 1.0)
+            if standing or (not borrowed and rest <= ERROR_TOLERANCE):
+                s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
+                s.held = extra == 0.0
+                return not conserves or _sound(s, fill), step
+        last, last_size = error, size
+    return False, MAX_NEWTON_STEPS
+
+
+def factor(
+    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, active: np.ndarray, conserves: bool, extra: float
+) -> bool:
+    """Factor Newton's matrix at P and fill, where the columns stand; arguments as for `newton`."""
+    g, w = solver.grid, solver.work
+    solver.answer(P, fill, conserves, extra)
+    lower, upper = _lu_buffers(w)
+    ok, w.count, w.width = factor_compliant(
+        solver.fields, solver.link_flux, P, fill, solver.full, solver.gain_P, solver.gain_fill, solver.vx, solver.vz,
+        g.width_x, g.width_z, g.link_x, g.link_z, solver.links, active, w.order, w.number, lower, upper, w.inv_diag,
+    )  # fmt: skip
+    return ok
+
+
+def _sound(solver: CompliantFilmSolver, fill: np.ndarray) -> bool:
+    """Whether no vertex holds less than nothing, but for rounding, which is cut off; sets the full vertices."""
+    np.logical_and(solver.full, ~solver.grid.fixed, out=solver.work.active)
+    if not fill.min() > -LARGEST_DEFICIT:
+        return False
+    np.maximum(fill, 0.0, out=fill)
+    return True
