@@ -92,6 +92,9 @@ class FilmElement:
         self._uses_memory = False
         self._memory: Any = None
         self._resumed: tuple[float, Any] | None = None
+        # coordinates at the start of the run, and where the film was asked for last
+        self._first: list[float] = []
+        self._seen: list[float] = []
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -143,6 +146,7 @@ class FilmElement:
         if last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory:
             return last
         motion = self._move(mbs, q, q_t, configuration)
+        self._seen = q
         evaluation = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
@@ -301,13 +305,15 @@ class FilmElement:
             self._ringing = self._ringing_watch()
             # the time of a static solve is a load parameter: the film is the steady one
             self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
-            # a run that starts behind the record goes on with it, any other begins anew
-            if not self._uses_memory or not start > self._record.last_time:
+            goes_on = self._goes_on(mbs, start)
+            if not self._uses_memory or not goes_on:
                 self._memory = None
             resumed = self._resumed is not None and start == self._resumed[0]
             if resumed:
                 assert self._resumed is not None
                 self._memory, self._start = self._resumed[1], start
+            elif not goes_on:
+                self._record.clear()
             self._resumed = None
         elif start < self._start:
             self._memory = None
@@ -342,6 +348,14 @@ class FilmElement:
                 ringing.warn(self.name, watch)
         if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
             raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
+
+    def _goes_on(self, mbs: Any, start: float) -> bool:
+        """Whether a run goes on with the record: it starts behind it, and elsewhere than the run before, whose end has become the initial state.
+
+        Where nothing has moved either run starts where the other ended.
+        """
+        before, self._first = self._first, self._read(mbs, _START_OF_STEP)[0]
+        return start > self._record.last_time and (self._first != before or self._seen == before)
 
     def _ringing_watch(self) -> ringing.RingingWatch | None:
         if solvers.is_explicit(self._solver) or solvers.is_static(self._solver):

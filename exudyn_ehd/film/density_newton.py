@@ -70,7 +70,7 @@ def factor_compressible(P, fill, film, kind, scale, floor, law, share, full, b):
         count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
     lower, upper = dense_band(b.lower, count, width), dense_band(b.upper, count, width)
     if kind == FILLED:
-        assemble_compressible(fill, b.rho, b.rho_P, film, full, b.number, b.order, count, width, lower, upper)
+        assemble_compressible(fill, b.rho, b.rho_P, film, full, b.number, b.order, count, lower, upper)
     else:
         assemble_full(b.rho_P, film, b.number, b.order, count, lower, upper)
     return factor_lu(lower, upper, count, width, b.inv_diag), count, width
