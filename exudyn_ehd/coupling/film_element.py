@@ -285,7 +285,7 @@ class FilmElement:
     def _heat_message(self, t: float, trial: Trial) -> str:
         contact = (
             "with the friction of asperities: they heat spots through which hardly any oil flows; "
-            if getattr(self.model.bearing, "asperity", None) is not None
+            if getattr(self.model.bearing, "asperity", None) is not None and np.ndim(self._memory.temperature) > 0
             else ""
         )
         return (
@@ -336,11 +336,11 @@ class FilmElement:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
                 self._trial = None
-                if is_too_hot(self._memory.temperature):
-                    raise FilmError(self._heat_message(start, trial))
         last, self._start = self._start, start
         if row is not None and self._is_pressed_through(trial):
             raise FilmError(self._through_message(start, trial))
+        if self._memory is not None and is_too_hot(self._memory.temperature):
+            raise FilmError(self._heat_message(start, trial))
         if self._ringing is not None and row is not None:
             assert trial.evaluation is not None
             if self._ringing.take(start, float(trial.evaluation.wrench[0]), float(trial.evaluation.wrench[1])):
