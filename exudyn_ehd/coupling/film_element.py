@@ -339,7 +339,7 @@ class FilmElement:
         last, self._start = self._start, start
         if row is not None and self._is_pressed_through(trial):
             raise FilmError(self._through_message(start, trial))
-        if self._memory is not None and is_too_hot(self._memory.temperature):
+        if is_too_hot(getattr(self._memory, "temperature", None)):
             raise FilmError(self._heat_message(start, trial))
         if self._ringing is not None and row is not None:
             assert trial.evaluation is not None
