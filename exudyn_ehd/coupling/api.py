@@ -81,8 +81,9 @@ class LubricatedJoint(JointResults):
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
 
         Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record goes on with it, any other
-        starts a new one.
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record
+        goes on with it and with what the film remembers, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new
+        one, also a run at that time from the old initial values.
         """
         return self.element.snapshot(self.mbs)
 

@@ -276,6 +276,10 @@ class Record:
         self._rows[self._count] = row
         self._count += 1
 
+    def clear(self) -> None:
+        """Begin a new record."""
+        self._count = 0
+
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, k), with ``final`` behind them if given and later."""
         rows = self._rows[: self._count].copy()
