@@ -142,9 +142,11 @@ class AsperityContact(AverageGap):
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         asperity_pressure(H, self.sigma, self.level, self.table, P_out, slope_out)
 
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
-        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
-        settle_asperities(X, compliance, self.sigma, self.level, self.table, G)
+    def settle(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `joint.effects.Contact`."""
+        settle_asperities(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
 
 
 @njit(cache=True)
@@ -184,10 +186,11 @@ def asperity_pressure(H, sigma, level, table, P_out, slope_out):
 
 
 @njit(cache=True)
-def settle_asperities(X, compliance, sigma, level, table, G):
+def settle_asperities(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
     """Gap on a column of liner that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
 
-    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
+    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it. With the pressure there,
+    and its derivative to G over ``scale``.
     """
     n, m = X.shape
     inverse = 1.0 / sigma
@@ -197,7 +200,10 @@ def settle_asperities(X, compliance, sigma, level, table, G):
             g = max(G[i, j], x)
             if x >= REACH * sigma:
                 G[i, j] = x
+                P_out[i, j] = 0.0
+                slope_out[i, j] = 0.0
                 continue
+            p = slope = 0.0
             for _ in range(MAX_COLUMN_STEPS):
                 p, slope = _asperity_at(g, inverse, level, table)
                 step = (x + compliance * p - g) / (1.0 - compliance * slope)
@@ -205,3 +211,5 @@ def settle_asperities(X, compliance, sigma, level, table, G):
                 if abs(step) <= COLUMN_TOLERANCE * (sigma + abs(g) + abs(x)):
                     break
             G[i, j] = g
+            P_out[i, j] = p
+            slope_out[i, j] = slope / scale

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, step_size, take_step
+from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, take_step
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.liner_newton import (
     CLIPPED,
@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
 
 MAX_NEWTON_STEPS = 60
-# Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
-ERROR_TOLERANCE = 1e-13
+# Shares of the peak pressure: the error at which the solution stands, what may be left after a step (after one with a fresh factor the step's
+# square tells, with some distance), and steps too small for the residual to fall any further.
+STANDING = 1e-13
+SQUARE_TOLERANCE, REST_TOLERANCE = 1e-14, 1e-12
 STEP_TOLERANCE = 1e-8
 # A factor serves as long as every step is so much shorter than the last.
 CONTRACTION = 0.2
@@ -68,16 +70,15 @@ def newton(
             if w.count == 0 or norm == 0.0:
                 s.exact, s.held = True, extra == 0.0
                 return True, step
-        newton_step(s.residual, w.order, w.count, w.width, lower, upper, w.inv_diag, x)
         opening = smallest / s.beta
-        error, size, peak, share = step_size(
-            P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, x, s.cavity_load, kind == CLIPPED,
-            LEAST_DEFLECTION * opening, opening,
+        error, size, peak, share = newton_step(
+            s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper,
+            w.inv_diag, s.cavity_load, kind == CLIPPED, LEAST_DEFLECTION * opening, opening, x,
         )  # fmt: skip
         if not error < 1e300:
             return False, step
         borrowed = held and step == 1
-        standing = error <= ERROR_TOLERANCE
+        standing = error <= STANDING
         if not fresh and not borrowed and not standing and error > CONTRACTION * last:
             factored = False
             continue
@@ -102,9 +103,9 @@ def newton(
         smallest = smallest_trial
         if not (smallest > 0.0 and norm < 1e300):
             return False, step
-        P[:], s.full[:] = s.trial, s.trial_full
+        P[:] = s.trial
         if conserves:
-            fill[:] = s.trial_fill
+            fill[:], s.full[:] = s.trial_fill, s.trial_full
         else:
             changes = select(P, s.residual, g.fixed, pc, kind, active) if complementary else 0
         moved += share * error
@@ -114,8 +115,8 @@ def newton(
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
-            rest = 10.0 * size * size if fresh else size * size / min(max(last_size, 1e-300), 1.0)
-            if standing or (not borrowed and rest <= ERROR_TOLERANCE):
+            rest = size * size / (SQUARE_TOLERANCE if fresh else REST_TOLERANCE * min(max(last_size, 1e-300), 1.0))
+            if standing or (not borrowed and rest <= 1.0):
                 s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
                 s.held = extra == 0.0
                 return not conserves or _sound(s, fill), step

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.compliant_links import compliant_shear_row
 from exudyn_ehd.film.contact_loads import (
     chain_limiter,
     chain_links,
@@ -65,7 +66,9 @@ def film_gradient(model: BearingModel, slow_motion: bool) -> np.ndarray:
     rows = adjoint_rows(model)
     lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], SIZE))
-    if s.plain_links and not slow_motion:
+    if model.compliant is not None and not slow_motion:
+        model.compliant.pose_gradient(lam, model.cos_x, model.sin_x, model.cos_f, model.sin_f, gradient)
+    elif s.plain_links and not slow_motion:
         swept_gradient(model, lam, gradient)
     else:
         field_gradient(model, lam, gradient, slow_motion)
@@ -202,7 +205,12 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     s, g, w = model.solver, model.grid, model.solver.work
     if model.compliant is not None:
         # by the pressure's deflection at unknown pressures, by the fill elsewhere
-        row[:] = _compliant_shear(model, model.compliant).ravel()[w.order[: w.count]]
+        film, none = model.compliant, s.nothing
+        compliant_shear_row(
+            film.fields, w.order, w.count, g.weight, w.active, s.closure.conserves_mass,
+            s.ones if model.ratio is None else model.ratio, none if model.ratio_q is None else model.ratio_q,
+            none if model.ratio_h is None else model.ratio_h, row,
+        )  # fmt: skip
         return
     if model.liner_solver is not None:
         liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, model.liner_solver.beta, row)
@@ -212,19 +220,6 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     if s.closure.conserves_mass:
         by_fill = s.ones if model.ratio is None else model.ratio
     shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
-
-
-def _compliant_shear(model: BearingModel, film: CompliantFilmSolver) -> np.ndarray:
-    """d(Couette integral)/d(unknown) (n, m) on a liner: by the gap and the viscosity at unknown pressures, by the fill elsewhere."""
-    H, weight, active = film.H, model.grid.weight, film.work.active
-    ratio = 1.0 if model.ratio is None else model.ratio
-    by_gap = -ratio / H if model.ratio_h is None else model.ratio_h - ratio / H
-    field = by_gap * film.gap_by_pressure
-    if model.ratio_q is not None:
-        field = field + np.where(active, model.ratio_q, 0.0)
-    if film.closure.conserves_mass:
-        field = field + np.where(active, 0.0, ratio)
-    return weight / H * field
 
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
