@@ -30,7 +30,7 @@ REACH = 8.0
 STEPS_PER_SIGMA = 64
 # Of a column's gap: steps, and the last one as share of roughness and gap.
 MAX_COLUMN_STEPS = 60
-COLUMN_TOLERANCE = 1e-15
+COLUMN_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,7 +208,9 @@ def settle_asperities(X, compliance, scale, sigma, level, table, G, P_out, slope
                 p, slope = _asperity_at(g, inverse, level, table)
                 step = (x + compliance * p - g) / (1.0 - compliance * slope)
                 g += step
-                if abs(step) <= COLUMN_TOLERANCE * (sigma + abs(g) + abs(x)):
+                if abs(step) <= COLUMN_TOLERANCE * sigma:
+                    # what is left is of the order of step^2 / sigma
+                    p += slope * step
                     break
             G[i, j] = g
             P_out[i, j] = p

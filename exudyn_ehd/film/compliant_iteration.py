@@ -27,8 +27,8 @@ MAX_NEWTON_STEPS = 60
 STANDING = 1e-13
 SQUARE_TOLERANCE, REST_TOLERANCE = 1e-14, 1e-12
 STEP_TOLERANCE = 1e-8
-# A factor serves as long as every step is so much shorter than the last.
-CONTRACTION = 0.2
+# Steps with a factor at hand that are not so much shorter than the last are not taken; one that leaves so much is the factor's last.
+CONTRACTION, SERVING = 0.2, 0.02
 
 
 def newton(
@@ -112,6 +112,8 @@ def newton(
         if norm <= noise and not conserves:
             s.exact = s.held = factor(s, P, fill, active, conserves, extra)
             return s.exact, step
+        # a factor that leaves more than a fiftieth of a step serves no more after it
+        serves = fresh or borrowed or error <= SERVING * last
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
@@ -120,6 +122,7 @@ def newton(
                 s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
                 s.held = extra == 0.0
                 return not conserves or _sound(s, fill), step
+        factored = factored and serves
         last, last_size = error, size
     return False, MAX_NEWTON_STEPS
 

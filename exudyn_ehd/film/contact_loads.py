@@ -159,30 +159,6 @@ def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_
         rhs_out[4, r] = w
 
 
-@njit(cache=True)
-def contact_chain(gradient, motion, pose_scale, friction, transition, R, tangent):
-    """Add the wrench's answer to the integrals of `contact_wrench` to ``tangent`` (6, 10).
-
-    ``gradient`` (5, 10): of the integrals to (scaled pose, scaled rates, vx, vz), with vx = omega / 2 and vz = w / (2 R).
-    """
-    v = R * motion[8]
-    w = motion[9]
-    size = math.sqrt(v * v + w * w + transition * transition)
-    a = v / size
-    b = w / size
-    for q in range(10):
-        scale = 0.5 if q == 8 else (0.5 / R if q == 9 else pose_scale[q % 4])
-        scale *= R * R
-        gc, gs = gradient[0, q] * scale, gradient[1, q] * scale
-        gzc, gzs, gn = gradient[2, q] * scale, gradient[3, q] * scale, gradient[4, q] * scale
-        tangent[0, q] += friction * a * gs - gc
-        tangent[1, q] -= friction * a * gc + gs
-        tangent[2, q] -= friction * b * gn
-        tangent[3, q] += R * (gzs + friction * (a * gzc - b * gs))
-        tangent[4, q] += R * (friction * (a * gzs + b * gc) - gzc)
-        tangent[5, q] += motion[1] * gc - motion[0] * gs + R * (motion[3] * gzc - motion[2] * gzs - friction * a * gn)
-
-
 @njit(cache=True, fastmath=_FAST)
 def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
     """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.

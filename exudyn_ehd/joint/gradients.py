@@ -16,13 +16,13 @@ from exudyn_ehd.film.contact_loads import (
     chain_limiter,
     chain_links,
     contact_adjoint_rhs,
-    contact_chain,
     contact_tangent,
     couette_gradient_ratio,
 )
 from exudyn_ehd.film.gap import contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.stencil import integral_weights
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 from exudyn_ehd.joint.drag import add_drag_rows, drag_by_deflection, drag_by_gap
 
@@ -43,7 +43,13 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
     `adjoint_rows`, if they are known already.
     """
-    gradient = film_gradient(model, slow_motion) if gradient is None else gradient
+    through_film = None
+    if gradient is None and _pressed_contact(model):
+        # six rows instead of the film's and the contact's ten and more
+        through_film = film_gradient(model, slow_motion, _wrench_weights(model)) * _motion_scale(model)
+        gradient = np.zeros((shape_rows(model), SIZE))
+    elif gradient is None:
+        gradient = film_gradient(model, slow_motion)
     ds, dc, extra = _integral_gradients(model, gradient)
     ends = np.zeros(4)
     if _film_gap_slope(model) is not None and any(model.bearing.end_pressures):
@@ -55,15 +61,15 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     )  # fmt: skip
     if model.pressing is not None:
         _add_contacts(model, model.pressing, out)
-        if gradient.shape[0] > shape_rows(model):
-            _add_pressed_contact(model, model.pressing, gradient[shape_rows(model) :], out)
-    return out
+    return out if through_film is None else out + through_film
 
 
-def film_gradient(model: BearingModel, slow_motion: bool) -> np.ndarray:
-    """Gradients (k, 10) of the film's integrals to (scaled pose, scaled rates, vx, vz)."""
+def film_gradient(model: BearingModel, slow_motion: bool, weights: np.ndarray | None = None) -> np.ndarray:
+    """Gradients (k, 10) of the film's integrals, or of their sums with ``weights`` (k, integrals), to (scaled pose, scaled rates, vx, vz)."""
     s = model.solver
     rows = adjoint_rows(model)
+    if weights is not None:
+        rows = weights @ rows
     lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], SIZE))
     if model.compliant is not None and not slow_motion:
@@ -167,6 +173,33 @@ def shape_rows(model: BearingModel) -> int:
 def _pressed_contact(model: BearingModel) -> bool:
     """Whether a contact acts on a liner, and so answers to the film's pressure."""
     return model.compliant is not None and model.pressing is not None
+
+
+def _motion_scale(model: BearingModel) -> np.ndarray:
+    """(scaled pose, scaled rates, vx, vz) per motion in SI units (10,)."""
+    return np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / model.grid.reference_length)))
+
+
+def _wrench_weights(model: BearingModel) -> np.ndarray:
+    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, with a contact that presses on a liner."""
+    film = np.empty((6, 8))
+    R = model.grid.reference_length
+    integral_weights(model.pose, R, model.force_scale, model.shear_scale, model.omega, model.axial_speed, film)
+    contact = model.effects.contacts[0]
+    a, b, _ = model.slip(contact)
+    a, b = contact.friction_coefficient * a, contact.friction_coefficient * b
+    x, y, bx, by = model.motion[:4].tolist()
+    pressed = R**2 * np.array(
+        [
+            [-1.0, a, 0.0, 0.0, 0.0],
+            [-a, -1.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, 0.0, 0.0, -b],
+            [0.0, -R * b, R * a, R, 0.0],
+            [R * b, 0.0, -R, R * a, 0.0],
+            [y, -x, R * by, -R * bx, -R * a],
+        ]
+    )
+    return np.concatenate((film[:, : shape_rows(model)], pressed), axis=1)
 
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
@@ -278,12 +311,6 @@ def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> Non
                 f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, model.motion, model.pose_scale, friction, transition, R,
                 f.integrals[k], f.gradients, out,
             )  # fmt: skip
-
-
-def _add_pressed_contact(model: BearingModel, f: ContactFields, gradient: np.ndarray, out: np.ndarray) -> None:
-    """Add what the wrench of a liner's contact owes to the film's pressure: ``gradient`` (5, 10) of its integrals, to ``out``."""
-    friction, transition = f.friction[0]
-    contact_chain(gradient, model.motion, model.pose_scale, friction, transition, model.grid.reference_length, out)
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:
