@@ -28,7 +28,7 @@ from exudyn_ehd.status import InputError, require_number
 
 REACH = 8.0
 STEPS_PER_SIGMA = 64
-# Of a column's gap: steps, and the last one as share of roughness and gap.
+# Of a column's gap: steps, and the last one as share of the roughness.
 MAX_COLUMN_STEPS = 60
 COLUMN_TOLERANCE = 1e-8
 

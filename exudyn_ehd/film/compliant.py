@@ -176,6 +176,8 @@ class CompliantFilmSolver(FilmSolver):
         self.inverse = self.mass_inverse = self.deflection_inverse = 0.0
         self.with_rate = False
         self.exact = self.held = False
+        # whether the columns' derivatives are those of their present state
+        self.answered = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -331,6 +333,7 @@ class CompliantFilmSolver(FilmSolver):
     def settle(self, P: np.ndarray) -> bool:
         """Every column under the film of the unknown P, with the gaps that the film sees; False where the oil has no pressure."""
         c, contact, limiter = self.columns, self.contact, self.limiter
+        self.answered = False
         if not self.press(P):
             return False
         x = self.true_gap if contact is None else self.scratch[0]
@@ -385,6 +388,7 @@ class CompliantFilmSolver(FilmSolver):
             self.fields, P, self.load, fill, self.rigid_slope, self.contact_G, self.bend, self.area, self._times(extra),
             conserves, self.beta, self.inverse, self.gain_P, self.gain_fill,
         )  # fmt: skip
+        self.answered = True
 
     def _set_flux(self) -> None:
         """Conductances and carriers in the present gaps, which are open."""
@@ -408,7 +412,8 @@ class CompliantFilmSolver(FilmSolver):
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
         elif self.kind == FULL:
             np.logical_not(g.fixed, out=self.work.active)
-        self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
+        if not self.answered:
+            self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
         self.H[:], self.HF[:], self.H_t[:] = c.H, c.HF, c.rate
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse

@@ -132,7 +132,8 @@ def factor(
 ) -> bool:
     """Factor Newton's matrix at P and fill, where the columns stand; arguments as for `newton`."""
     g, w = solver.grid, solver.work
-    solver.answer(P, fill, conserves, extra)
+    if not solver.answered:
+        solver.answer(P, fill, conserves, extra)
     lower, upper = _lu_buffers(w)
     ok, w.count, w.width = factor_compliant(
         solver.fields, solver.link_flux, P, fill, solver.full, solver.gain_P, solver.gain_fill, solver.vx, solver.vz,

@@ -159,6 +159,25 @@ def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_
         rhs_out[4, r] = w
 
 
+@njit(cache=True)
+def contact_weights(motion, friction, transition, R, out):
+    """Weights (6, 5) of the integrals of `contact_wrench` in the wrench."""
+    v = R * motion[8]
+    w = motion[9]
+    size = math.sqrt(v * v + w * w + transition * transition)
+    a = friction * v / size
+    b = friction * w / size
+    area = R * R
+    out[:] = 0.0
+    out[0, 0], out[0, 1] = -area, area * a
+    out[1, 0], out[1, 1] = -area * a, -area
+    out[2, 4] = -area * b
+    out[3, 1], out[3, 2], out[3, 3] = -area * R * b, area * R * a, area * R
+    out[4, 0], out[4, 2], out[4, 3] = area * R * b, -area * R, area * R * a
+    out[5, 0], out[5, 1] = area * motion[1], -area * motion[0]
+    out[5, 2], out[5, 3], out[5, 4] = area * R * motion[3], -area * R * motion[2], -area * R * a
+
+
 @njit(cache=True, fastmath=_FAST)
 def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
     """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.

@@ -17,6 +17,7 @@ from exudyn_ehd.film.contact_loads import (
     chain_links,
     contact_adjoint_rhs,
     contact_tangent,
+    contact_weights,
     couette_gradient_ratio,
 )
 from exudyn_ehd.film.gap import contract_pose
@@ -182,24 +183,15 @@ def _motion_scale(model: BearingModel) -> np.ndarray:
 
 def _wrench_weights(model: BearingModel) -> np.ndarray:
     """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, with a contact that presses on a liner."""
-    film = np.empty((6, 8))
+    assert model.pressing is not None
+    # the last of the film's eight is the ends', which no row of `adjoint_rows` has
+    film = np.empty((6, shape_rows(model) + 5))
+    own = np.empty((6, 8))
     R = model.grid.reference_length
-    integral_weights(model.pose, R, model.force_scale, model.shear_scale, model.omega, model.axial_speed, film)
-    contact = model.effects.contacts[0]
-    a, b, _ = model.slip(contact)
-    a, b = contact.friction_coefficient * a, contact.friction_coefficient * b
-    x, y, bx, by = model.motion[:4].tolist()
-    pressed = R**2 * np.array(
-        [
-            [-1.0, a, 0.0, 0.0, 0.0],
-            [-a, -1.0, 0.0, 0.0, 0.0],
-            [0.0, 0.0, 0.0, 0.0, -b],
-            [0.0, -R * b, R * a, R, 0.0],
-            [R * b, 0.0, -R, R * a, 0.0],
-            [y, -x, R * by, -R * bx, -R * a],
-        ]
-    )
-    return np.concatenate((film[:, : shape_rows(model)], pressed), axis=1)
+    integral_weights(model.pose, R, model.force_scale, model.shear_scale, model.omega, model.axial_speed, own)
+    film[:, : shape_rows(model)] = own[:, : shape_rows(model)]
+    contact_weights(model.motion, *model.pressing.friction[0], R, film[:, shape_rows(model) :])
+    return film
 
 
 def adjoint_rows(model: BearingModel) -> np.ndarray:
