@@ -27,8 +27,10 @@ MAX_NEWTON_STEPS = 60
 STANDING = 1e-13
 SQUARE_TOLERANCE, REST_TOLERANCE = 1e-14, 1e-12
 STEP_TOLERANCE = 1e-8
+# Largest last step that is not worth another look at gaps and balances.
+POLISHING = 1e-10
 # Steps with a factor at hand that are not so much shorter than the last are not taken; one that leaves so much is the factor's last.
-CONTRACTION, SERVING = 0.2, 0.02
+CONTRACTION, SERVING = 0.2, 0.005
 
 
 def newton(
@@ -60,6 +62,8 @@ def newton(
     x = w.unknowns
     noise = flow_rounding(s.columns.H, s.columns.HF, s.rigid[2], s.vx, s.vz, g.width_x, g.width_z, g.link_x)
     lower, upper = _lu_buffers(w)
+    # oil is kept to more digits than pressure
+    left = STANDING if conserves else REST_TOLERANCE
     factored, last, last_size, moved = held, 0.0, 0.0, 0.0
     for step in range(1, MAX_NEWTON_STEPS + 1):
         fresh = not factored
@@ -112,19 +116,47 @@ def newton(
         if norm <= noise and not conserves:
             s.exact = s.held = factor(s, P, fill, active, conserves, extra)
             return s.exact, step
-        # a factor that leaves more than a fiftieth of a step serves no more after it
+        # a factor that leaves much of a step serves no more after it
         serves = fresh or borrowed or error <= SERVING * last
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
-            rest = size * size / (SQUARE_TOLERANCE if fresh else REST_TOLERANCE * min(max(last_size, 1e-300), 1.0))
+            rest = size * size / (SQUARE_TOLERANCE if fresh else left * min(max(last_size, 1e-300), 1.0))
             if standing or (not borrowed and rest <= 1.0):
+                if not standing and extra == 0.0:
+                    _polish(s, P, fill, conserves, complementary, opening)
                 s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
                 s.held = extra == 0.0
                 return not conserves or _sound(s, fill), step
         factored = factored and serves
         last, last_size = error, size
     return False, MAX_NEWTON_STEPS
+
+
+def _polish(
+    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, conserves: bool, complementary: bool, opening: float
+) -> None:
+    """Add one more step to P and fill alone, for the balances where the gap is wide: what is left changes the gaps by next to nothing."""
+    s, w, pc = solver, solver.work, solver.system.cavity_pressure
+    lower, upper = _lu_buffers(w)
+    error, _, peak, _ = newton_step(
+        s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper, w.inv_diag,
+        s.cavity_load, False, LEAST_DEFLECTION * opening, opening, w.unknowns,
+    )  # fmt: skip
+    if not error <= POLISHING:
+        return
+    changes = take_step(
+        P, s.load, fill, s.full, w.order, w.count, w.unknowns, 1.0, pc, complementary, conserves, 1e-12 * peak, s.trial,
+        s.trial_fill, s.trial_full,
+    )  # fmt: skip
+    if changes > 0:
+        return
+    if not s.press(s.trial):
+        s.press(P)
+        return
+    P[:] = s.trial
+    if conserves:
+        fill[:] = s.trial_fill
 
 
 def factor(
