@@ -21,6 +21,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 CRANK, ROD = 0.043, 0.14
 SPEED = 3000.0 * 2.0 * math.pi / 60.0
@@ -121,6 +122,29 @@ def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) 
     }
 
 
+@styled(10.0)
+def draw(cases: dict, path: Path) -> None:
+    """Pressure, film, force and path of the pin, rigid against elastic."""
+    figure = Figure(figsize=(11, 7), layout="constrained")
+    axes = figure.subplots(2, 2)
+    for name, style in (("rigid", "-"), ("elastic", "--")):
+        h, angle = cases[name]["history"], cases[name]["angle_deg"]
+        axes[0, 0].plot(angle, h.peak_pressure / 1e6, style, label=name)
+        axes[0, 1].plot(angle, 1e6 * h.minimum_gap, style)
+        axes[1, 0].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, style)
+        axes[1, 1].plot(h.eccentricity[:, 0] * 1e6, h.eccentricity[:, 1] * 1e6, style)
+    for a, label in zip(axes.ravel()[:3], ("peak pressure [MPa]", "smallest film [µm]", "force [kN]")):
+        a.set(
+            xlabel="crank angle [°]", ylabel=label, xlim=(0, angle[-1]), xticks=np.arange(0.0, angle[-1] + 1.0, 180.0)
+        )
+    axes[0, 1].set_ylim(0, 15)
+    axes[1, 1].set(
+        xlabel="x in the rod [µm]", ylabel="y in the rod [µm]", aspect="equal", title="path of the crank pin"
+    )
+    axes[0, 0].legend()
+    figure.savefig(path, dpi=130)
+
+
 def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     """Run rigid and elastic bore; with ``results`` write the picture there."""
     turns, steps = (1.4, 360) if quick else (4.0, 720)
@@ -132,22 +156,7 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        figure = Figure(figsize=(11, 7), layout="constrained")
-        axes = figure.subplots(2, 2)
-        for name, case in cases.items():
-            h, angle = case["history"], case["angle_deg"]
-            axes[0, 0].plot(angle, h.peak_pressure / 1e6, label=name)
-            axes[0, 1].plot(angle, 1e6 * h.minimum_gap, label=name)
-            axes[1, 0].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
-            axes[1, 1].plot(h.eccentricity[:, 0] * 1e6, h.eccentricity[:, 1] * 1e6, label=name)
-        for a, label in zip(axes.ravel()[:3], ("peak pressure in MPa", "smallest film in µm", "force in kN")):
-            a.set(xlabel="crank angle in °", ylabel=label)
-        axes[0, 1].set_ylim(0, 15)
-        axes[1, 1].set(
-            xlabel="x in the rod in µm", ylabel="y in the rod in µm", aspect="equal", title="path of the crank pin"
-        )
-        axes[0, 0].legend()
-        figure.savefig(folder / "elastic_big_end.png", dpi=130)
+        draw(cases, folder / "elastic_big_end.png")
         cases["picture"] = folder / "elastic_big_end.png"
     return cases
 

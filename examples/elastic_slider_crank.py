@@ -36,6 +36,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 CRANK, ROD = 0.05, 0.12
 CRANK_MASS, CRANK_INERTIA = 0.30, 1e-4
@@ -291,6 +292,7 @@ def print_table(rows: dict[str, dict[str, float]]) -> None:
         print(f"{key:38s}" + "".join(f"{row[key]:25.4g}" if key in row else f"{'-':>25s}" for row in rows.values()))
 
 
+@styled(10.0)
 def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     """Slider against the ideal mechanism, the rod against beam theory, pins and films."""
     ideal, names = runs[CASES[0]], CASES[1:]
@@ -340,11 +342,11 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     axes[1, 1].set(
         xlabel="x / c (along the rod) [-]", ylabel="y / c [-]", aspect="equal", title="pins in the rod's eyes"
     )
-    axes[1, 1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, fontsize=9, frameon=False)
+    axes[1, 1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False)
     axes[1, 2].set(ylabel="minimum film [µm]", ylim=(0, None))
     for ax in (*axes[0], axes[1, 0], axes[1, 2]):
         ax.set(
-            xlabel="crank angle [deg]",
+            xlabel="crank angle [°]",
             xlim=(begin, end),
             xticks=range(begin, end + 1, 90 if end == begin + 360 else 180),
         )

@@ -30,6 +30,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 DATA = pathlib.Path(__file__).parent / "data"
 SPEED = 2000.0 * 2.0 * math.pi / 60.0
@@ -178,6 +179,7 @@ def print_table(rows: dict[str, dict[str, float]]) -> None:
         print(f"{key:38s}" + "".join(f"{row[key]:13.4g}" for row in rows.values()))
 
 
+@styled(10.0)
 def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None:
     """Orbits with the reference, load, smallest film and peak pressure over the cycle."""
     colours = dict(zip(cycles, ("black", "tab:blue", "tab:green", "tab:red", "tab:orange"), strict=True))
@@ -201,15 +203,15 @@ def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None
         xticks=(-1, -0.5, 0, 0.5, 1),
         yticks=(-1, -0.5, 0, 0.5, 1),
     )
-    axes[0, 0].legend(fontsize=9, frameon=False, loc="center left", bbox_to_anchor=(1.02, 0.5))
+    axes[0, 0].legend(frameon=False, loc="center left", bbox_to_anchor=(1.02, 0.5))
     angles, forces = _load_table()
     axes[0, 1].plot(angles, 1e-3 * forces, "o-", ms=3, color="black")
     axes[0, 1].axhline(0.0, color="grey", lw=0.8)
     axes[0, 1].set(ylabel="load along the rod [kN]", title="load of the four-stroke cycle")
-    axes[1, 0].set(ylabel="smallest film [um]", title="smallest film", ylim=(0, None))
+    axes[1, 0].set(ylabel="smallest film [µm]", title="smallest film", ylim=(0, None))
     axes[1, 1].set(ylabel="peak pressure [MPa]", title="peak pressure", ylim=(0, None))
     for ax in (axes[0, 1], axes[1, 0], axes[1, 1]):
-        ax.set(xlabel="crank angle [deg]", xlim=(0, 720), xticks=range(0, 721, 90))
+        ax.set(xlabel="crank angle [°]", xlim=(0, 720), xticks=range(0, 721, 90))
         ax.grid(alpha=0.3)
     fig.savefig(path, dpi=100)
     plt.close(fig)

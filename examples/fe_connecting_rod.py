@@ -2,10 +2,11 @@
 
 The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the piston, with the whole rod as a reduced finite-element body:
 two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and the modes that its bore needs under an
-oil film. The mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
+oil film. At the firing the mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
 narrow one carries the firing load in the middle of a thin eye that gives way beside it, so that the pressure gathers over the shank
 and the film gets less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the pressure
-is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart.
+is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide shank is the heavier one: between
+firings its inertia asks for more force than that of the narrow one, whose mass the rigid rod has.)
 
 Run ``python examples/fe_connecting_rod.py``; the picture is written to ``results``.
 """
@@ -27,6 +28,7 @@ from matplotlib.figure import Figure
 from scipy.sparse.linalg import spsolve
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.hex20 import NODES
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
@@ -210,7 +212,7 @@ def draw_rod(axes, fem: FEMinterface) -> None:
     for u, style in ((np.zeros_like(nodes), {"color": "0.75", "lw": 0.6}), (shape, {"color": "C1", "lw": 0.8})):
         x = 1e3 * (nodes + u)[top][:, ring]
         axes.plot(x[..., 0].T, x[..., 1].T, **style)
-    axes.set(xlabel="x in mm", ylabel="y in mm", aspect="equal")
+    axes.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
 
 
 def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
@@ -232,6 +234,28 @@ def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
     return whole.reshape(-1, 3), modal.reshape(-1, 3)
 
 
+@styled(10.0)
+def draw(cases: dict, rods: dict, path: Path) -> None:
+    """Pressure, film and force of the three rods, and how the elastic ones deform."""
+    figure = Figure(figsize=(11, 8), layout="constrained")
+    axes = figure.subplot_mosaic("pg;pg;fn;fw")
+    for name, case in cases.items():
+        h, angle = case["history"], case["angle_deg"]
+        axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
+        axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
+        axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
+    for a, label in zip("pgf", ("peak pressure [MPa]", "smallest film [µm]", "pin force [kN]")):
+        axes[a].set(
+            xlabel="crank angle [°]", ylabel=label, xlim=(0, angle[-1]), xticks=np.arange(0.0, angle[-1] + 1.0, 60.0)
+        )
+    axes["g"].set_ylim(0, 15)
+    axes["p"].legend()
+    for a, (name, (fem, _)) in zip("nw", rods.items()):
+        draw_rod(axes[a], fem)
+        axes[a].set_title(f"{name}: small end held, 25 kN, 300 times")
+    figure.savefig(path, dpi=110)
+
+
 def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     """Run all rods over the turn of a firing; with ``results`` write the picture there."""
     turns, steps = (0.27, 240) if quick else (1.0, 360)
@@ -246,21 +270,7 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        figure = Figure(figsize=(11, 8), layout="constrained")
-        axes = figure.subplot_mosaic("pg;pg;fn;fw")
-        for name, case in cases.items():
-            h, angle = case["history"], case["angle_deg"]
-            axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
-            axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
-            axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
-        for a, label in zip("pgf", ("peak pressure in MPa", "smallest film in µm", "pin force in kN")):
-            axes[a].set(xlabel="crank angle in °", ylabel=label)
-        axes["g"].set_ylim(0, 15)
-        axes["p"].legend()
-        for a, (name, (fem, _)) in zip("nw", rods.items()):
-            draw_rod(axes[a], fem)
-            axes[a].set_title(f"{name}: small end held, 25 kN, 300 times", fontsize="medium")
-        figure.savefig(folder / "fe_connecting_rod.png", dpi=110)
+        draw(cases, rods, folder / "fe_connecting_rod.png")
         outcome["picture"] = folder / "fe_connecting_rod.png"
     return outcome
 

@@ -36,6 +36,7 @@ from exudyn.rigidBodyUtilities import InertiaCylinder, InertiaMassPoint
 from scipy import optimize
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 STEEL, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 DIAMETER = 0.016
@@ -324,6 +325,7 @@ def figures(ideal: Run, run: Run, start_up: float, *, elastic: bool = False) -> 
     }
 
 
+@styled(10.0)
 def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path: pathlib.Path) -> None:
     """Load and tilt of the right bearing, its films, and the tool against the ideal mechanism."""
     begin = start_up * 2.0 * math.pi / SPEED
@@ -365,13 +367,13 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     )
     for ax, label in zip(axes.flat, labels, strict=True):
         ax.set(
-            xlabel="crank angle from the rocker's dead centre [deg]",
+            xlabel="crank angle from the rocker's dead centre [°]",
             ylabel=label,
             xlim=(first, end),
             xticks=range(first, end + 1, 90 if end == first + 360 else 180),
         )
         ax.grid(alpha=0.3)
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, fontsize=9, frameon=False, columnspacing=1.0)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, columnspacing=1.0)
     for ax in (axes[0, 0], axes[1, 0], axes[1, 1]):
         ax.set_ylim(0, None)
     fig.savefig(path, dpi=85)

@@ -25,10 +25,11 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.coupling.bush_object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
 from exudyn_ehd.coupling.sparse_newton import SolveDynamicSparse
+from exudyn_ehd.pictures.bush import Frame, contour_figure
+from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.picture import Frame, contour_figure
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
@@ -109,6 +110,18 @@ def settings(step: float, end: float) -> exu.SimulationSettings:
     return result
 
 
+@styled(10.0)
+def draw(cases: list[dict], folder: Path) -> list[Path]:
+    """Write the pictures and return their paths."""
+    figures = {
+        "hollow_cylinder_histories.png": history_figure(cases),
+        "hollow_cylinder_shapes.png": shapes_figure(cases[-1]),
+    }
+    for file, figure in figures.items():
+        figure.savefig(folder / file, dpi=130)
+    return [folder / file for file in figures]
+
+
 def history_figure(cases: list[dict]) -> Figure:
     """Displacement of the top point for all meshes, von Mises stress of the finest."""
     figure = Figure(figsize=(10, 4.2), layout="constrained")
@@ -116,12 +129,12 @@ def history_figure(cases: list[dict]) -> Figure:
     for case, style in zip(cases, ("-", "--", "-.", ":")):
         label = " x ".join(map(str, case["counts"]))
         left.plot(case["time"], 1e3 * case["top_displacement"], style, label=label, linewidth=2)
-    left.set(xlabel="time in s", ylabel="displacement of the top point in mm", title="Mesh: axial x radial x around")
+    left.set(xlabel="time [s]", ylabel="displacement of the top point [mm]", title="Mesh: axial x radial x around")
     fine = cases[-1]
     right.plot(fine["stress_time"], 1e-3 * fine["von_mises_under_load"], label="bore, under the load")
     right.plot(fine["stress_time"], 1e-3 * fine["von_mises_side"], label="bore, side")
     name = " x ".join(map(str, fine["counts"]))
-    right.set(xlabel="time in s", ylabel="von Mises stress in kPa", title=f"Mid-plane, mesh {name}")
+    right.set(xlabel="time [s]", ylabel="von Mises stress [kPa]", title=f"Mid-plane, mesh {name}")
     for axes in (left, right):
         axes.grid(alpha=0.3)
         axes.legend()
@@ -135,7 +148,7 @@ def shapes_figure(case: dict) -> Figure:
         Frame(title=f"t = {t:g} s", displacements=u, values=1e-3 * bush.stress.von_mises_at_nodes(u))
         for t, u in case["shapes"].items()
     ]
-    return contour_figure(bush.mesh, frames, label="von Mises stress in kPa, displacement at true scale")
+    return contour_figure(bush.mesh, frames, label="von Mises stress [kPa], displacement at true scale")
 
 
 def main(*, quick: bool = False, results: str | Path | None = "results") -> dict:
@@ -162,12 +175,7 @@ def main(*, quick: bool = False, results: str | Path | None = "results") -> dict
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        for name, figure in (
-            ("hollow_cylinder_histories.png", history_figure(cases)),
-            ("hollow_cylinder_shapes.png", shapes_figure(cases[-1])),
-        ):
-            figure.savefig(folder / name, dpi=130)
-            files.append(folder / name)
+        files = draw(cases, folder)
     return {
         "cases": [
             {

@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 SPEED = 100.0 * math.pi
 LOAD, TURNING_LOAD, LOAD_SPEED = 3000.0, 2000.0, 0.1 * SPEED
@@ -172,6 +173,7 @@ def figures(films, sweeps, runs) -> dict[str, float]:
     return rows
 
 
+@styled(10.0)
 def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
     """Maps of pressure and fill, and the two sweeps."""
     fig, axes = plt.subplots(2, 2, figsize=(12, 8.5), layout="constrained")
@@ -181,8 +183,8 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
     for closure, sweep in sweeps.items():
         axes[1, 0].plot(sweep.angle, 1e6 * sweep.minimum_gap, "o-", ms=3, color=COLOURS[closure], label=closure)
     axes[1, 0].set(
-        xlabel="groove's angle from the load [deg]",
-        ylabel="smallest film [um]",
+        xlabel="groove's angle from the load [°]",
+        ylabel="smallest film [µm]",
         title="where to put the groove (load 3 kN)",
         xticks=range(-180, 181, 60),
         ylim=(0, 75),
@@ -191,8 +193,8 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
         late = angle >= -90.0
         axes[1, 1].plot(angle[late], 1e6 * history.minimum_gap[late], color=COLOURS[closure], label=closure)
     axes[1, 1].set(
-        xlabel="load's angle from the groove [deg]",
-        ylabel="smallest film [um]",
+        xlabel="load's angle from the groove [°]",
+        ylabel="smallest film [µm]",
         title="a load of 2 kN turns over the groove",
         xticks=range(-90, 361, 90),
         ylim=(0, 85),

@@ -22,11 +22,13 @@ from matplotlib.figure import Figure
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.pictures.style import styled
 
 SPEED = 3000 * 2 * np.pi / 60
 CLEARANCE, ECCENTRICITY = 30e-6, 24e-6
 TILT = 1e-4
 MODULI = {"E = 2.1e12 (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
+KINDS = {"liner": ehd.ElasticLiner, "modal": ehd.ModalBush, "nodal": ehd.ANCFBush}
 CLOSURES = {"Gumbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
 
@@ -98,24 +100,27 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
             plain = dataclasses.replace(rigid, cavitation=cavitation)
             cases[closure, name, "rigid"] = solve(plain, tilt)
             for material, modulus in moduli.items():
-                kinds: dict[str, type] = {"modal": ehd.ModalBush}
-                if closure == "Gumbel":
-                    kinds = {"liner": ehd.ElasticLiner, **kinds, "nodal": ehd.ANCFBush}
-                for label, kind in kinds.items():
+                for label, kind in KINDS.items():
                     bearing = dataclasses.replace(plain, bush=bush(modulus, kind, mesh, tilt > 0.0))
                     cases[closure, name, f"{material}, {label}"] = solve(bearing, tilt)
     if results is not None:
         folder = Path(results)
         folder.mkdir(parents=True, exist_ok=True)
-        files = {
-            "rotating_journal.png": summary_figure(cases, moduli),
-            "rotating_journal_pressure.png": pressure_figure(cases, moduli),
-            "rotating_journal_bore.png": bore_figure(cases, moduli),
-        }
-        for file, figure in files.items():
-            figure.savefig(folder / file, dpi=110)
-        cases["pictures"] = [folder / file for file in files]
+        cases["pictures"] = draw(cases, moduli, folder)
     return cases
+
+
+@styled(10.0)
+def draw(cases: dict, moduli: dict, folder: Path) -> list[Path]:
+    """Write the pictures and return their paths."""
+    figures = {
+        "rotating_journal.png": summary_figure(cases, moduli),
+        "rotating_journal_pressure.png": pressure_figure(cases, moduli),
+        "rotating_journal_bore.png": bore_figure(cases, moduli),
+    }
+    for file, figure in figures.items():
+        figure.savefig(folder / file, dpi=110)
+    return [folder / file for file in figures]
 
 
 def pressure_figure(cases: dict, moduli: dict) -> Figure:
@@ -125,19 +130,24 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
         axes = figure.add_subplot(2, 3, 1 + 3 * column)
         for name in ("rigid", *(f"{m}, modal" for m in moduli)):
             film = cases[closure, "aligned", name]["film"]
-            axes.plot(np.degrees(film.theta), film.pressure[:, film.z.size // 2] / 1e6, label=name.split(",")[0])
-        axes.set(xlabel="angle in °", ylabel="pressure at the mid-plane in MPa", title=f"aligned, {title}")
+            axes.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
+        axes.set(
+            xlabel="angle [°]", ylabel="pressure at the mid-plane [MPa]", title=f"aligned, {title}", xticks=range(0, 361, 60)
+        )  # fmt: skip
         axes.legend()
     for column, name in enumerate(("aligned", "tilted")):
         film = cases["Gumbel", name, "steel, modal"]["film"]
         axes = figure.add_subplot(2, 3, 2 + 3 * column)
-        picture = axes.contourf(np.degrees(film.theta), 1e3 * film.z, film.pressure.T / 1e6, 24)
-        figure.colorbar(picture, label="MPa")
-        axes.set(xlabel="angle in °", ylabel="z in mm", title=f"steel, {name}")
+        angle, pressure = np.degrees(around(film.theta, 2 * np.pi)), np.vstack((film.pressure, film.pressure[:1])) / 1e6
+        picture = axes.contourf(angle, 1e3 * film.z, pressure.T, 24)
+        figure.colorbar(picture, label="pressure [MPa]")
+        axes.set(xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gumbel", xticks=range(0, 361, 60))
         view = figure.add_subplot(2, 3, 3 + 3 * column, projection="3d")
-        T, Z = np.meshgrid(np.degrees(film.theta), 1e3 * film.z, indexing="ij")
-        view.plot_surface(T, Z, film.pressure / 1e6, cmap="viridis", rcount=96, ccount=16)
-        view.set(xlabel="angle in °", ylabel="z in mm", title=f"steel, {name}, pressure in MPa")
+        T, Z = np.meshgrid(angle, 1e3 * film.z, indexing="ij")
+        view.plot_surface(T, Z, pressure, cmap="viridis", rcount=97, ccount=17)
+        view.set(
+            xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gumbel: pressure [MPa]", xticks=range(0, 361, 90)
+        )  # fmt: skip
     return figure
 
 
@@ -148,23 +158,34 @@ def summary_figure(cases: dict, moduli: dict) -> Figure:
     draw_bores(figure.add_subplot(1, 3, 3, projection="polar"), cases, moduli)
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
         film = cases["Gumbel", "aligned", name]["film"]
-        middle, angle = film.z.size // 2, np.degrees(film.theta)
-        pressure.plot(angle, film.pressure[:, middle] / 1e6, label=name.split(",")[0])
-        gap.plot(angle, 1e6 * film.gap[:, middle])
-    pressure.set(xlabel="angle in °", ylabel="pressure at the mid-plane in MPa")
+        pressure.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
+        gap.plot(*at_middle(film, 1e6 * film.gap))
+    pressure.set(ylabel="pressure at the mid-plane [MPa]")
     pressure.legend()
-    gap.set(xlabel="angle in °", ylabel="film thickness at the mid-plane in µm", ylim=(0, None))
+    gap.set(ylabel="film thickness at the mid-plane [µm]", ylim=(0, None))
+    for axes in (pressure, gap):
+        axes.set(xlabel="angle [°]", xticks=range(0, 361, 60))
     return figure
+
+
+def around(values: np.ndarray, end: float | None = None) -> np.ndarray:
+    """Return values over the angle with the first one again at the end, where they have become ``end``."""
+    return np.append(values, values[:1] if end is None else end)
+
+
+def at_middle(film: ehd.SteadyResult, field: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return angles in degrees from 0 to 360 and a field [theta, z] there, at the mid-plane."""
+    return np.degrees(around(film.theta, 2 * np.pi)), around(field[:, film.z.size // 2])
 
 
 def draw_bores(polar: Axes, cases: dict, moduli: dict) -> None:
     """Bore radius at the mid-plane, aligned, Gumbel, with the displacement enlarged."""
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
         film = cases["Gumbel", "aligned", name]["film"]
-        middle, ring = film.z.size // 2, np.append(film.theta, film.theta[:1] + 2 * np.pi)
-        shift = np.zeros(film.theta.size) if film.bore_displacement is None else film.bore_displacement[:, middle]
-        polar.plot(ring, 30.0 + 1e6 * np.append(shift, shift[:1]), label=name.split(",")[0])
-    polar.set(title="bore radius at the mid-plane in mm,\ndisplacement times 1000", ylim=(0, None))
+        shift = np.zeros_like(film.gap) if film.bore_displacement is None else film.bore_displacement
+        angle, shift = at_middle(film, 1e6 * shift)
+        polar.plot(np.radians(angle), 30.0 + shift, label=name.split(",")[0])
+    polar.set(title="bore radius at the mid-plane [mm],\ndisplacement times 1000", ylim=(0, None))
 
 
 def bore_figure(cases: dict, moduli: dict) -> Figure:
@@ -175,15 +196,24 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
     draw_bores(polar, cases, moduli)
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
         film = cases["Gumbel", "aligned", name]["film"]
-        gap.plot(np.degrees(film.theta), 1e6 * film.gap[:, film.z.size // 2], label=name.split(",")[0])
-    gap.set(xlabel="angle in °", ylabel="film thickness at the mid-plane in µm", ylim=(0, None), title="aligned")
+        gap.plot(*at_middle(film, 1e6 * film.gap), label=name.split(",")[0])
+    gap.set(
+        xlabel="angle [°]", ylabel="film thickness at the mid-plane [µm]", ylim=(0, None), title="aligned, Gumbel",
+        xticks=range(0, 361, 60),
+    )  # fmt: skip
     gap.legend()
     film = cases["Gumbel", "tilted", "steel, modal"]["film"]
     axes = figure.add_subplot(1, 3, 3)
     assert film.bore_displacement is not None
-    picture = axes.contourf(np.degrees(film.theta), 1e3 * film.z, 1e6 * film.bore_displacement.T, 24)
+    angle, shift = (
+        np.degrees(around(film.theta, 2 * np.pi)),
+        np.vstack((film.bore_displacement, film.bore_displacement[:1])),
+    )
+    picture = axes.contourf(angle, 1e3 * film.z, 1e6 * shift.T, 24)
     figure.colorbar(picture, label="µm")
-    axes.set(xlabel="angle in °", ylabel="z in mm", title="radial displacement of the bore, steel, tilted")
+    axes.set(
+        xlabel="angle [°]", ylabel="z [mm]", title="radial displacement of the bore, steel, tilted", xticks=range(0, 361, 60)
+    )  # fmt: skip
     return figure
 
 
@@ -194,9 +224,12 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     outcome = main(quick=arguments.quick, results=arguments.results)
     outcome.pop("pictures")
+    print(
+        f"{'':55s}{'peak':>8s}{'load':>8s}{'min. film':>11s}{'extent':>8s}{'asymmetry':>11s}{'evaluation':>12s}{'solve':>8s}"
+    )
+    print(f"{'':55s}{'MPa':>8s}{'kN':>8s}{'um':>11s}{'°':>8s}{'-':>11s}{'ms':>12s}{'s':>8s}")
     for (closure, name, label), case in outcome.items():
         print(
-            f"{closure:16s} {name:8s} {label:28s} peak {case['peak_MPa']:6.2f} MPa  load {case['load_kN']:6.2f} kN  minimum film "
-            f"{case['minimum_gap_um']:6.2f} um  extent {case['extent_deg']:4.0f}°  solve {case['solve_s']:5.2f} s  evaluation with "
-            f"Jacobian {case['evaluation_ms']:7.2f} ms"
+            f"{closure:17s}{name:10s}{label:28s}{case['peak_MPa']:8.2f}{case['load_kN']:8.2f}{case['minimum_gap_um']:11.2f}"
+            f"{case['extent_deg']:8.0f}{case['asymmetry']:11.1e}{case['evaluation_ms']:12.2f}{case['solve_s']:8.2f}"
         )

@@ -40,6 +40,7 @@ import numpy as np
 from scipy import linalg, optimize, signal
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 STEEL, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 DIAMETER, SPAN = 0.022, 0.6
@@ -397,6 +398,7 @@ def figures(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ri
     }
 
 
+@styled(10.0)
 def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride: RunUp, path: pathlib.Path) -> None:
     """Waterfall, frequencies and growth rates against linear theory, orbits."""
     threshold, bending = linear.threshold() / HZ, linear.first_bending / HZ
@@ -419,7 +421,7 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
         xlabel="frequency [Hz]", ylabel="spin [Hz]", xlim=(20, ride.frequency[-1]), ylim=(ends[0] - 1.0, ends[1] + 12.0),
         title=f"forward motion of the left journal\n(0.5 c = {height * 0.5 * CLEARANCE:.1f} Hz high)",
     )  # fmt: skip
-    water.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2, fontsize=9, frameon=False)
+    water.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2, frameon=False)
 
     speeds = np.linspace(0.85 * threshold, ends[1], 40)
     modes = [linear.mode(HZ * s)[0] for s in speeds]
@@ -430,7 +432,7 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     frequency.plot(speeds, 0.5 * speeds, color="tab:orange", ls="--", label="half the spin")
     frequency.axhline(bending, color="tab:red", ls="-.", label="first bending")
     frequency.set(xlabel="spin [Hz]", ylabel="whirl frequency [Hz]", ylim=(40, 95))
-    frequency.legend(fontsize=9, loc="upper left")
+    frequency.legend(loc="upper left")
     growth.plot(speeds, [m.real for m in modes], color="black", ls=":", label="linear theory")
     growth.plot(
         [s / HZ for s in rates],
@@ -442,7 +444,7 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     growth.axhline(0.0, color="grey", lw=0.8)
     growth.axvline(threshold, color="tab:green", ls="--", label="threshold")
     growth.set(xlabel="spin [Hz]", ylabel="growth rate [1/s]", xlim=(0.87 * threshold, 1.3 * threshold), ylim=(-19, 27))
-    growth.legend(fontsize=9, loc="upper left")
+    growth.legend(loc="lower right")
     orbits, disc = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2])
     around = np.exp(1j * np.linspace(0.0, HZ, 200))
     orbits.plot(around.real, around.imag, color="grey", lw=1)
@@ -464,7 +466,7 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
         )
     orbits.set(xlabel="y / c [-]", ylabel="z / c [-]", aspect="equal", title="left journal in its bearing")
     disc.set(xlabel="y [mm]", ylabel="z [mm]", aspect="equal", title="disc")
-    disc.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3, fontsize=9, frameon=False)
+    disc.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False)
     fig.savefig(path, dpi=85)
     plt.close(fig)
 

@@ -30,6 +30,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 CRANK, ROD = 0.05, 0.12
 CRANK_MASS, CRANK_INERTIA = 0.30, 1e-4
@@ -220,6 +221,7 @@ def print_table(rows: dict[str, dict[str, float]], ideal: Run, start_up: float) 
         print(f"{key:32s}{first}" + "".join(f"{row[key]:14.4g}" for row in rows.values()))
 
 
+@styled(10.0)
 def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path) -> None:
     """Mechanism figures over the crank angle, and the bearing's orbit, film and pressure."""
     end = round(math.degrees(ideal.angle[-1]) - 360.0 * start_up)
@@ -243,14 +245,14 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
             deviation = run.slider - np.interp(run.angle, ideal.angle, ideal.slider)
             axes[0, 0].plot(degrees, 1e6 * deviation[late], **style)
     labels = (
-        "slider position - ideal [um]",
+        "slider position - ideal [µm]",
         "slider acceleration [km/s$^2$]",
         "joint force on the pin [kN]",
         "crank moment [Nm]",
     )
     for ax, label in zip(axes.flat, labels, strict=True):
         ax.set(
-            xlabel="crank angle after start-up [deg]",
+            xlabel="crank angle after start-up [°]",
             ylabel=label,
             xlim=(0, end),
             xticks=range(0, end + 1, 90 if end == 360 else 180),
@@ -270,7 +272,7 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
         kept = h.time >= start_up * 2.0 * math.pi / SPEED
         degrees = np.degrees(SPEED * h.time[kept]) - 360.0 * start_up
         c = bearing.radial_clearance
-        label = f"{name}: c = {1e6 * c:g} um, {bearing.lubricant.viscosity:g} Pa s"
+        label = f"{name}: c = {1e6 * c:g} µm, {bearing.lubricant.viscosity:g} Pa s"
         axes[0].plot(*(h.eccentricity[kept].T / c), color=colours[name], label=label)
         axes[1].semilogy(degrees, h.minimum_gap[kept] / c, color=colours[name])
         axes[2].plot(degrees, 1e-6 * h.peak_pressure[kept], color=colours[name])
@@ -280,12 +282,12 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
         aspect="equal",
         title="orbit of the pin in the rod's eye",
     )
-    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=9, frameon=False)
+    axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
     axes[1].set(ylabel="minimum gap / clearance [-]", title="minimum film")
     axes[2].set(ylabel="peak pressure [MPa]", title="peak pressure")
     for ax in axes[1:]:
         ax.set(
-            xlabel="crank angle after start-up [deg]",
+            xlabel="crank angle after start-up [°]",
             xlim=(0, end),
             xticks=range(0, end + 1, 90 if end == 360 else 180),
         )

@@ -26,6 +26,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 MASS, INERTIA = 5.0, 0.0015625  # a solid cylinder of 50 mm
 LOAD = 2000.0
@@ -161,6 +162,7 @@ def figures(run: Run, curve: ehd.StribeckResult) -> dict[str, float]:
     }
 
 
+@styled(10.0)
 def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     """Speed and contact, films, Stribeck curve and wear."""
     h = run.history
@@ -174,7 +176,7 @@ def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     speed.legend(handles=[first, second], frameon=False, loc="upper center", ncols=2)
     axes[0, 1].semilogy(h.time, 1e6 * h.minimum_gap, color="black")
     axes[0, 1].axhline(2.0, color="grey", ls="--", lw=0.9, label="4 x composite roughness: asperities meet below")
-    axes[0, 1].set(xlabel="time [s]", ylabel="smallest nominal gap [um]", title="smallest gap", ylim=(0.2, 30))
+    axes[0, 1].set(xlabel="time [s]", ylabel="smallest nominal gap [µm]", title="smallest gap", ylim=(0.2, 30))
     axes[0, 1].legend(frameon=False, loc="upper right")
     friction = friction_coefficient(h)
     up, down = (h.time <= MOTOR_TIME) & (spin > 0.1), (h.time > MOTOR_TIME) & (spin > 0.1)
@@ -196,7 +198,7 @@ def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     image = axes[1, 1].contourf(angle[where][rows], 1e3 * film.z, depth.T, levels=12, cmap="viridis")
     fig.colorbar(image, ax=axes[1, 1], label="wear depth [nm]")
     axes[1, 1].set(
-        xlabel="angle from the load's direction [deg]",
+        xlabel="angle from the load's direction [°]",
         ylabel="z [mm]",
         title=f"wear of the bore after {STARTS:g} starts",
     )

@@ -25,6 +25,7 @@ import numpy as np
 from exudyn.utilities import InertiaCuboid, SensorBody
 
 import exudyn_ehd as ehd
+from exudyn_ehd.pictures.style import styled
 
 GRAVITY = [0.0, -9.81, 0.0]
 LENGTH, WIDTH = 1.0, 0.1
@@ -136,6 +137,7 @@ def lost_in_films(histories: list[ehd.JointHistory], time: np.ndarray) -> np.nda
     return total
 
 
+@styled(10.0)
 def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     """Tip, energy, eccentricity and smallest film of both variants."""
     fig, axes = plt.subplots(2, 2, figsize=(11, 7.5), layout="constrained")
@@ -154,9 +156,9 @@ def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     axes[1, 0].set(
         ylabel="largest eccentricity ratio [-]", title="pins in their clearance (at the worse end)", ylim=(0, 1)
     )
-    axes[1, 1].set(ylabel="smallest film [um]", title="smallest film")
+    axes[1, 1].set(ylabel="smallest film [µm]", title="smallest film")
     axes[1, 1].axhline(2.0, color="grey", lw=0.8, ls="--", label="the wall acts below")
-    axes[1, 1].legend(frameon=False, loc="upper center", ncols=3, fontsize=9)
+    axes[1, 1].legend(frameon=False, loc="upper center", ncols=3)
     axes[1, 1].set_ylim(0.5, 150)
     axes[1, 0].legend(frameon=False)
     for ax in axes.flat:

@@ -23,6 +23,7 @@ UNITS = {
     "eccentricity_ratio": "-",
     "attitude_angle": "rad",
     "minimum_gap": "m",
+    "bore_displacement": "m",
     "minimum_gap_z": "m",
     "minimum_gap_angle": "rad",
     "peak_pressure": "Pa",

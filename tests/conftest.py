@@ -11,7 +11,10 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import matplotlib
 import pytest
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import exudyn_ehd as ehd
 
@@ -44,6 +47,25 @@ def _own_cache(tmp_path_factory):
 def example():
     """Function that imports an example by its name."""
     return lambda name: load_module(ROOT / "examples" / f"{name}.py")
+
+
+@pytest.fixture
+def tidy_pictures(monkeypatch):
+    """Pictures keep their own type under settings that Exudyn's plots leave behind, and lie within their page."""
+    write = Figure.savefig
+
+    def checked(figure, *args, **options):
+        figure.draw_without_rendering()
+        sizes = {text.get_fontsize() for text in figure.findobj(Text) if text.get_text()}
+        assert max(sizes) <= 10.0, f"type of {max(sizes)} pt in a picture"
+        page, drawn = figure.bbox_inches, figure.get_tightbbox()
+        outside = max(page.x0 - drawn.x0, page.y0 - drawn.y0, drawn.x1 - page.x1, drawn.y1 - page.y1)
+        assert outside < 0.02, f"a picture reaches {outside:.2f} inch beyond its page"
+        write(figure, *args, **options)
+
+    monkeypatch.setattr(Figure, "savefig", checked)
+    with matplotlib.rc_context({"font.size": 16.0}):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures("tidy_pictures")
 PATH = Path(__file__).parents[1] / "examples" / "hollow_cylinder.py"
 
 

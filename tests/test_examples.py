@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.usefixtures("tidy_pictures")
+
 
 def test_slider_crank(example, tmp_path):
     rows = example("slider_crank").main(quick=True, output=tmp_path)
@@ -28,13 +30,21 @@ def test_rotating_journal(example, tmp_path):
     assert all(path.stat().st_size > 10_000 for path in cases.pop("pictures"))
     for closure in ("Gumbel", "mass conserving"):
         for name in ("aligned", "tilted"):
-            rigid, steel = cases[closure, name, "rigid"], cases[closure, name, "steel, modal"]
-            # the paper's conclusion: flexibility widens the film and lowers the peak
-            assert steel["peak_MPa"] < 0.95 * rigid["peak_MPa"]
-            assert steel["extent_deg"] >= rigid["extent_deg"]
-            assert steel["minimum_gap_um"] > rigid["minimum_gap_um"]
-    # Gumbel drops the linear film's suction: symmetric to rounding when aligned
-    assert cases["Gumbel", "aligned", "steel, modal"]["asymmetry"] < 1e-6
+            rigid = cases[closure, name, "rigid"]
+            liner, modal, nodal = (cases[closure, name, f"steel, {kind}"] for kind in ("liner", "modal", "nodal"))
+            # the paper's conclusion: flexibility widens the film, by one interval of the grid and more, and lowers the peak
+            for elastic in (liner, modal, nodal):
+                assert elastic["peak_MPa"] < 0.9 * rigid["peak_MPa"]
+                assert elastic["extent_deg"] >= rigid["extent_deg"] + 360 / 64 - 1e-9
+            for solid in (modal, nodal):
+                assert solid["minimum_gap_um"] > 1.02 * rigid["minimum_gap_um"]
+            # columns give way too little at the ends and are none beyond them; the modes of tolerance 0.02 on a coarse film grid
+            assert liner["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.05)
+            assert modal["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.015)
+            assert modal["minimum_gap_um"] == pytest.approx(nodal["minimum_gap_um"], rel=0.04)
+            # both halves of an aligned bearing are alike, to the rounding of a solve
+            for case in (rigid, liner, modal, nodal):
+                assert case["asymmetry"] < 1e-9 if name == "aligned" else case["asymmetry"] > 0.5
 
 
 def test_elastic_big_end(example, tmp_path):
@@ -232,3 +242,26 @@ def test_reading_results(example, tmp_path):
     assert table.mean_power_loss[0] == pytest.approx(-table.mean_friction_torque[0] * 314.16, rel=0.2)
     # every twenty-fourth of a turn
     assert len(films) == 49 and films[-1].time == history.time[-1]
+
+
+@pytest.mark.slow
+def test_rotating_journal_over_all_stiffnesses(example):
+    """The full grid: the softer the bush, the lower the peak and the wider the film, from the rigid limit on; bushes agree."""
+    cases = example("rotating_journal").main()
+    materials = ("E = 2.1e12 (paper)", "steel", "aluminium", "polymer")
+    for closure in ("Gumbel", "mass conserving"):
+        for name in ("aligned", "tilted"):
+            for kind in ("liner", "modal", "nodal"):
+                ladder = [cases[closure, name, label] for label in ("rigid", *(f"{m}, {kind}" for m in materials))]
+                peaks, extents, films = (
+                    np.array([case[key] for case in ladder]) for key in ("peak_MPa", "extent_deg", "minimum_gap_um")
+                )
+                assert (np.diff(peaks) < 0).all() and (np.diff(extents) >= 0).all()
+                # rims of columns don't give way
+                assert (np.diff(films) > 0).all() if kind != "liner" else np.ptp(films) < 1e-6
+                # E of the paper, ten times steel, is rigid but for 2 % of the peak, 5 % at the edge of a tilted journal
+                assert peaks[1] == pytest.approx(peaks[0], rel=0.022 if name == "aligned" else 0.055)
+            for material in materials:
+                modal, nodal = (cases[closure, name, f"{material}, {kind}"] for kind in ("modal", "nodal"))
+                for key in ("peak_MPa", "minimum_gap_um"):
+                    assert modal[key] == pytest.approx(nodal[key], rel=0.01), (closure, name, material, key)

@@ -81,8 +81,9 @@ class LubricatedJoint(JointResults):
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
 
         Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record goes on with it, any other
-        starts a new one.
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record
+        goes on with it and with what the film remembers, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new
+        one, also a run at that time from the old initial values.
         """
         return self.element.snapshot(self.mbs)
 
@@ -143,7 +144,8 @@ class LubricatedJoint(JointResults):
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
 
         The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,
-        on a model of their own: the joint is not touched.
+        on a model of their own: the joint is not touched. What the record holds counts as recorded; what it takes a field for (cavitated
+        share, grid, heat of a field) is that of a flexible bore settled under the film.
 
         Parameters
         ----------

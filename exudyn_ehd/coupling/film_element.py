@@ -26,6 +26,7 @@ from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
 from exudyn_ehd.coupling.step_control import GapWatch
 from exudyn_ehd.joint import ringing
 from exudyn_ehd.joint.fields import FilmFields, film_fields
+from exudyn_ehd.joint.settle import HOTTEST, WAY_OUT, is_too_hot
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -91,6 +92,9 @@ class FilmElement:
         self._uses_memory = False
         self._memory: Any = None
         self._resumed: tuple[float, Any] | None = None
+        # coordinates at the start of the run, and where the film was asked for last
+        self._first: list[float] = []
+        self._seen: list[float] = []
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -142,6 +146,7 @@ class FilmElement:
         if last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory:
             return last
         motion = self._move(mbs, q, q_t, configuration)
+        self._seen = q
         evaluation = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
@@ -277,6 +282,17 @@ class FilmElement:
             "a StepControl if the step has overshot."
         )
 
+    def _heat_message(self, t: float, trial: Trial) -> str:
+        contact = (
+            "with the friction of asperities: they heat spots through which hardly any oil flows; "
+            if getattr(self.model.bearing, "asperity", None) is not None
+            else ""
+        )
+        return (
+            f"LubricatedJoint '{self.name}' at t = {t:.9g} s: the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial)}its heat has no "
+            f"way out; {WAY_OUT}"
+        )
+
     # --- accepted steps -------------------------------------------------------------------------------------------
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
@@ -289,13 +305,15 @@ class FilmElement:
             self._ringing = self._ringing_watch()
             # the time of a static solve is a load parameter: the film is the steady one
             self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
-            # a run that starts behind the record goes on with it, any other begins anew
-            if not self._uses_memory or not start > self._record.last_time:
+            goes_on = self._goes_on(mbs, start)
+            if not self._uses_memory or not goes_on:
                 self._memory = None
             resumed = self._resumed is not None and start == self._resumed[0]
             if resumed:
                 assert self._resumed is not None
                 self._memory, self._start = self._resumed[1], start
+            elif not goes_on:
+                self._record.clear()
             self._resumed = None
         elif start < self._start:
             self._memory = None
@@ -318,6 +336,8 @@ class FilmElement:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
                 self._trial = None
+                if is_too_hot(self._memory.temperature):
+                    raise FilmError(self._heat_message(start, trial))
         last, self._start = self._start, start
         if row is not None and self._is_pressed_through(trial):
             raise FilmError(self._through_message(start, trial))
@@ -328,6 +348,14 @@ class FilmElement:
                 ringing.warn(self.name, watch)
         if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
             raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
+
+    def _goes_on(self, mbs: Any, start: float) -> bool:
+        """Whether a run goes on with the record: it starts behind it, and elsewhere than the run before, whose end has become the initial state.
+
+        Where nothing has moved either run starts where the other ended.
+        """
+        before, self._first = self._first, self._read(mbs, _START_OF_STEP)[0]
+        return start > self._record.last_time and (self._first != before or self._seen == before)
 
     def _ringing_watch(self) -> ringing.RingingWatch | None:
         if solvers.is_explicit(self._solver) or solvers.is_static(self._solver):

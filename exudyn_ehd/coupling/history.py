@@ -33,10 +33,11 @@ _SCALARS = (
     "minimum_gap_angle",
     "minimum_gap_z",
     "peak_angle",
+    "bore_displacement",
 )
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 _WIDTH = _FIRST_SCALAR + len(_SCALARS)
-_FORMAT = "exudyn_ehd JointHistory 1"
+_FORMAT = "exudyn_ehd JointHistory 2"
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
     "force": ("force_x", "force_y", "force_z"),
@@ -67,6 +68,7 @@ class Quantity(enum.Enum):
     MINIMUM_GAP_ANGLE = "minimum_gap_angle"
     MINIMUM_GAP_Z = "minimum_gap_z"
     PEAK_ANGLE = "peak_angle"
+    BORE_DISPLACEMENT = "bore_displacement"
 
 
 _COLUMNS: dict[str, Any] = {
@@ -108,6 +110,8 @@ class JointHistory(HistoryPictures):
         [N m], [m3/s], [K], [K].
     minimum_gap_angle, minimum_gap_z, peak_angle : ndarray (n,)
         Place of the smallest gap [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
+    bore_displacement : ndarray (n,)
+        Largest displacement of a liner or of a flexible bore [m].
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
     """
@@ -132,6 +136,7 @@ class JointHistory(HistoryPictures):
     minimum_gap_angle: np.ndarray
     minimum_gap_z: np.ndarray
     peak_angle: np.ndarray
+    bore_displacement: np.ndarray
     radial_clearance: float
     journal_radius: float
     length: float
@@ -270,6 +275,10 @@ class Record:
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
         self._rows[self._count] = row
         self._count += 1
+
+    def clear(self) -> None:
+        """Begin a new record."""
+        self._count = 0
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, k), with ``final`` behind them if given and later."""

@@ -8,14 +8,14 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
     [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
 
 after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own analytic Jacobians. The
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product with their exact
 tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES
 (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r. The bush answers a film's short waves weakly, so that
 some eight products do. Newton then takes the iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and
-hardly changing, lasts.
+hardly changing, lasts. The matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """
@@ -23,19 +23,17 @@ Additive coordinates only: Lie group nodes and first-order coordinates are refus
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import exudyn
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, issparse
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
-from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.run import own_errors, start_guess
 from exudyn_ehd.coupling.start_guess import StartGuess
-from exudyn_ehd.status import InputError, require_integer, require_number
+from exudyn_ehd.coupling.system_matrix import SystemMatrix
+from exudyn_ehd.status import require_integer, require_number
 
 # the index types exist at run time, but not in the type stubs
 exu: Any = exudyn
@@ -263,221 +261,3 @@ class _Newton:
         data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square))
         if len(d) > n:
             data.SetAECoordinates(data.GetAECoordinates() - d[n:] / square)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class SystemMatrix:
-    """The system's iteration matrix, assembled object by object.
-
-    Parameters
-    ----------
-    coordinates, constraints : int
-        Second-order coordinates and algebraic equations.
-    parts : tuple
-        One function (mbs, M factor, K factor, D factor) -> (rows, columns, values) per object.
-    """
-
-    coordinates: int
-    constraints: int
-    parts: tuple[Callable, ...]
-    films: tuple[tuple[Any, np.ndarray], ...]
-
-    @classmethod
-    def of(cls, mbs: Any) -> SystemMatrix:
-        """Look up the objects of an assembled model."""
-        data = mbs.systemData
-        for number in range(data.NumberOfNodes()):
-            kind = mbs.GetNode(exu.NodeIndex(number))["nodeType"]
-            if "LG" in kind or "LieGroup" in kind:
-                raise InputError(
-                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
-                    "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
-                    "mbs.SolveDynamic."
-                )
-        n = len(data.GetODE2Coordinates())
-        films: list[tuple[Any, np.ndarray]] = []
-        parts: list[Callable] = [
-            _euler_parameters(mbs, exu.NodeIndex(number), n)
-            for number in range(data.NumberOfNodes())
-            if mbs.GetNode(exu.NodeIndex(number))["nodeType"] == "RigidBodyEP"
-        ]
-        if len(data.GetODE1Coordinates()):
-            raise InputError(
-                "SolveDynamicSparse mbs must have second-order coordinates only, got "
-                f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
-            )
-        for number in range(data.NumberOfObjects()):
-            item = exu.ObjectIndex(number)
-            places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
-            if len(places) == 0:
-                continue
-            film = _nodal_film(mbs, item)
-            if film is not None:
-                films.append((film, places))
-            elif mbs.GetObject(item)["objectType"] == "GenericODE2":
-                parts.append(_generic(mbs, item, places))
-            else:
-                parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
-        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
-
-    def film_operators(self, mbs: Any, solver: Any) -> list[tuple[np.ndarray, Callable]]:
-        """Places and operators of the films on nodal bushes at the current state, scaled by beta h^2."""
-        if not self.films:
-            return []
-        h, data = solver.it.currentStepSize, mbs.systemData
-        q, q_t, t = (np.asarray(data.GetODE2Coordinates()), np.asarray(data.GetODE2Coordinates_t()), data.GetTime())
-        factors = solver.newmarkBeta * h * h, solver.newmarkGamma * h
-        made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
-        return [(places, operator) for places, operator in made if operator is not None]
-
-    def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
-        """Return the iteration matrix of the current state, scaled by beta h^2."""
-        h = solver.it.currentStepSize
-        factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
-        triplets = [part(mbs, *factors) for part in self.parts]
-        rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
-        size = self.coordinates + self.constraints
-        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
-        if self.constraints:
-            # rows of inactive constraints are lambda = 0
-            empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
-            system = (system + coo_matrix((np.ones(len(empty)), (empty, empty)), shape=(size, size))).tocsc()
-        return system
-
-
-def _nodal_film(mbs: Any, item: Any) -> NodalFilmElement | None:
-    """The film element behind an object, if its bore is that of a nodal bush."""
-    if mbs.GetObject(item)["objectType"] != "GenericODE2":
-        return None
-    jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
-    element = getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
-    return element if isinstance(element, NodalFilmElement) else None
-
-
-def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
-    """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
-
-    def function(name: str) -> Callable | None:
-        value = mbs.GetObjectParameter(item, name)
-        return value["function"] if isinstance(value, dict) else None
-
-    def constant(name: str) -> coo_matrix | None:
-        matrix = _as_sparse(mbs.GetObjectParameter(item, name))
-        return None if matrix is None or matrix.nnz == 0 else matrix
-
-    jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
-    if jacobian is None and function("forceUserFunction") is not None:
-        raise InputError(
-            f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, "
-            "got none; add one, or use mbs.SolveDynamic, which differentiates numerically."
-        )
-    mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
-
-    def part(mbs, fM, fK, fD):
-        data = mbs.systemData
-        q = np.asarray(data.GetODE2Coordinates())[places]
-        q_t = np.asarray(data.GetODE2Coordinates_t())[places]
-        t = data.GetTime()
-        terms = [(f, m) for f, m in ((fM, mass), (fK, stiffness), (fD, damping)) if m is not None]
-        if jacobian is not None:
-            terms.append((1.0, _as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
-        if mass_function is not None:
-            terms.append((fM, _as_sparse(mass_function(mbs, t, int(item), q, q_t))))
-        return tuple(
-            np.concatenate(x)
-            for x in (
-                [places[m.row] for _, m in terms],
-                [places[m.col] for _, m in terms],
-                [f * m.data for f, m in terms],
-            )
-        )
-
-    return part
-
-
-def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) -> Callable:
-    """Triplets of a body, connector or constraint through Exudyn's own matrices."""
-    kind = exu.ComputeItemType
-    offered = mbs.ComputeItem(item)
-    terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
-    constrained = kind.ConstraintJacobian in offered and len(equations) > 0
-    object_type = mbs.GetObject(item)["objectType"]
-    own_mass: Callable | None = None
-    if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
-        # Exudyn keeps these mass matrices sparse and can't return them
-        terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
-        own_mass = _planar_mass(mbs, item) if object_type == "RigidBody2D" else _point_mass(mbs, item, len(places))
-    for what, _ in terms:
-        try:
-            mbs.ComputeItem(item, what)
-        except exu.ExudynError as error:
-            raise InputError(
-                f"SolveDynamicSparse mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
-                f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
-            ) from error
-    rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
-
-    def part(mbs, *factors):
-        values = np.zeros((len(places), len(places))) if own_mass is None else factors[0] * own_mass(mbs)
-        for what, i in terms:
-            matrix = np.asarray(mbs.ComputeItem(item, what))
-            if matrix.size:
-                values += factors[i] * matrix
-        if not constrained:
-            return rows, columns, values.ravel()
-        C = coo_matrix(np.asarray(mbs.ComputeItem(item, kind.ConstraintJacobian)))
-        a, q = equations[C.row], places[C.col]
-        return (
-            np.concatenate([rows, a, q]),
-            np.concatenate([columns, q, a]),
-            np.concatenate([values.ravel(), C.data, C.data]),
-        )
-
-    return part
-
-
-def _point_mass(mbs: Any, item: Any, size: int) -> Callable:
-    """Mass matrix of a mass point: density times position Jacobian."""
-    mass = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
-    return lambda mbs: mass
-
-
-def _planar_mass(mbs: Any, item: Any) -> Callable:
-    """Mass matrix of a planar rigid body; density times position Jacobian are its first two rows, centre of mass off the node included."""
-    inertia = float(mbs.GetObjectParameter(item, "inertia"))
-
-    def mass(mbs: Any) -> np.ndarray:
-        out = np.zeros((3, 3))
-        out[:2] = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:2]
-        out[2, :2], out[2, 2] = out[:2, 2], inertia
-        return out
-
-    return mass
-
-
-def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
-    """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
-    data = mbs.systemData
-    columns = np.array(data.GetNodeLTGODE2(int(node)), dtype=np.int32)[3:]
-    rows = np.full(4, n + data.GetNodeLTGAE(int(node))[0], dtype=np.int32)
-    reference = np.array(mbs.GetNode(node)["referenceCoordinates"], dtype=float)[3:]
-
-    def part(mbs, *factors):
-        slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
-        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
-
-    return part
-
-
-def _as_sparse(value) -> coo_matrix | None:
-    """A matrix that a user function or an object holds, as triplets."""
-    if isinstance(value, exu.MatrixContainer):
-        value = value.GetPythonObject()
-    if isinstance(value, dict):
-        shape = (value["numberOfRows"], value["numberOfColumns"])
-        triplets = np.asarray(value["triplets"]).reshape(-1, 3)
-        return coo_matrix((triplets[:, 2], (triplets[:, 0].astype(int), triplets[:, 1].astype(int))), shape=shape)
-    if issparse(value):
-        return value.tocoo()
-    dense = np.atleast_2d(np.asarray(value, dtype=float))
-    return None if dense.size == 0 else coo_matrix(dense)

@@ -178,11 +178,20 @@ def _asperity_at(h, inverse, level, table):
 @njit(cache=True)
 def asperity_pressure(H, sigma, level, table, P_out, slope_out):
     """Contact pressure ``level F(H / sigma)`` and its derivative with respect to H."""
-    n, m = H.shape
+    h, P, slope = H.reshape(-1), P_out.reshape(-1), slope_out.reshape(-1)
     inverse = 1.0 / sigma
-    for i in range(n):
-        for j in range(m):
-            P_out[i, j], slope_out[i, j] = _asperity_at(H[i, j], inverse, level, table)
+    reach = REACH * sigma
+    last = reach
+    p = p_h = 0.0
+    for k in range(h.size):
+        if h[k] >= reach:
+            P[k] = slope[k] = 0.0
+            continue
+        if h[k] != last:  # an aligned journal has one gap per column
+            last = h[k]
+            p, p_h = _asperity_at(last, inverse, level, table)
+        P[k] = p
+        slope[k] = p_h
 
 
 @njit(cache=True)

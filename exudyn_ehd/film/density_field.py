@@ -18,8 +18,8 @@ from exudyn_ehd.film.viscosity import hermite_fourth_at
 # Change of dp/dq, as a share, up to which Taylor's polynomial about a known value is the law: to 1e-14 in the density, which the balance is
 # solved with, 3e-13 in p and 1e-10 in their slopes.
 NEAR = 5e-4
-# Tension, Pa, at which the law for p >= 0 and its continuation below still agree to rounding (for any coefficients below the largest).
-AMBIENT = 1e-2
+# Tension times the density's coefficient, of a p, up to which five terms of exp(a p) are the exponential to rounding.
+WEAK = 1e-3
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -95,7 +95,7 @@ def _taylor(x, scale, lowest, highest, known, c):
 # Checks for a division by zero would keep the compiler from vectorising the next ones.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _ratio_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3, rho_out):
-    """Density ratio for p >= 0; returns how many are far from known pressures, and how many in tension."""
+    """Density ratio but for strong tension; returns how many are far from known pressures, and how many in such tension."""
     far = 0.0
     tense = 0.0
     for c in range(rho_out.size):
@@ -104,23 +104,30 @@ def _ratio_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3
         d = q - at[c]
         value = p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
         far += 0.0 if (abs(d * s_q[c]) <= NEAR * s[c]) & ((q > 0.0) == (at[c] > 0.0)) else 1.0
-        tense += 0.0 if value >= -AMBIENT else 1.0
-        rho_out[c] = 1.0 + share * a * value / (1.0 + b * value)
+        e = a * value
+        tense += 0.0 if e >= -WEAK else 1.0
+        # 1 / (1 + b p), or what follows from exp(a p) for p < 0
+        less = 1.0 / (1.0 + (b * value if e >= 0.0 else 0.0))
+        more = 1.0 + e * (0.5 + e * (1.0 / 6.0 + e * (1.0 / 24.0 + e * (1.0 / 120.0))))
+        rho_out[c] = 1.0 + share * e * (less if e >= 0.0 else more)
     return far, tense
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _slope_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3, rho_P_out):
-    """Derivative of the density ratio for p >= 0; returns how many are in tension."""
+    """Derivative of the density ratio but for strong tension; returns how many are in it."""
     tense = 0.0
     for c in range(rho_P_out.size):
         y = x[c] if x[c] > lowest else lowest
         d = (y if y < highest else highest) * scale - at[c]
         value = p[c] + d * (s[c] + d * (0.5 * s_q[c] + d * (s_qq[c] * (1.0 / 6.0) + d * s_3[c] * (1.0 / 24.0))))
         slope = s[c] + d * (s_q[c] + d * (0.5 * s_qq[c] + d * s_3[c] * (1.0 / 6.0)))
-        denser = 1.0 / (1.0 + b * value)
-        tense += 0.0 if value >= -AMBIENT else 1.0
-        rho_P_out[c] = share * a * scale * denser * denser * slope if (x[c] >= lowest) & (x[c] < highest) else 0.0
+        e = a * value
+        tense += 0.0 if e >= -WEAK else 1.0
+        less = 1.0 / (1.0 + (b * value if e >= 0.0 else 0.0))
+        more = 1.0 + e * (1.0 + e * (0.5 + e * (1.0 / 6.0 + e * (1.0 / 24.0))))
+        by_pressure = share * a * scale * slope * (less * less if e >= 0.0 else more)
+        rho_P_out[c] = by_pressure if (x[c] >= lowest) & (x[c] < highest) else 0.0
     return tense
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.direct import PAD
-from exudyn_ehd.film.elrod import _add_entry
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _unsigned: Any = np.uint64
@@ -32,23 +31,6 @@ class Balance(NamedTuple):
     kept: np.ndarray
     area: np.ndarray
     fixed: np.ndarray
-
-
-class Buffers(NamedTuple):
-    """Arrays that a solution works on: numbering, factor (`dense_band`), right-hand side, fields (8, n, m) and residual (n, m).
-
-    The fields are transformed pressures at which the law is known, p, s and its derivatives there (`density.density_of_transformed`), and rho and
-    rho_P at the pressures of the last balance.
-    """
-
-    order: np.ndarray
-    number: np.ndarray
-    lower: np.ndarray
-    upper: np.ndarray
-    inv_diag: np.ndarray
-    x: np.ndarray
-    fields: np.ndarray
-    residual: np.ndarray
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -111,76 +93,91 @@ def full_balance(P, rho, film, out):
     _gather_flows(area, r, grow, across[1:], across[:size], along[m:], along[:size], q)
 
 
-@njit(cache=True)
-def _add_link(a, b, full_a, full_b, k, f, fill_a, fill_b, rho_a, rho_b, by_a, by_b, lower, upper):
-    """Derivatives of the flux over one link a -> b into the rows of its ends; a, b are unknowns or -1."""
-    mean = 0.5 * (rho_a + rho_b)
-    up = fill_a if f >= 0.0 else fill_b
-    if a >= 0:
-        if full_a:
-            d = k + 0.5 * f * up * by_a
-        else:
-            d = f * mean if f >= 0.0 else 0.0
-        upper[a, 0] += d
-        if b >= 0:
-            _add_entry(lower, upper, b, a, -d)
-    if b >= 0:
-        if full_b:
-            d = -k + 0.5 * f * up * by_b
-        else:
-            d = f * mean if f < 0.0 else 0.0
-        upper[b, 0] -= d
-        if a >= 0:
-            _add_entry(lower, upper, a, b, d)
+@njit(cache=True, fastmath=_FAST)
+def _full_link_slopes(k, f, by_a, by_b, a_out, b_out):
+    """Derivatives of the mass flows of a full film over links a -> b to the pressures at a and b, flat."""
+    for c in range(a_out.size):
+        a_out[c] = k[c] + 0.5 * f[c] * by_a[c]
+        b_out[c] = 0.5 * f[c] * by_b[c] - k[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _link_slopes(k, f, full_a, full_b, fill_a, fill_b, rho_a, rho_b, by_a, by_b, a_out, b_out):
+    """Derivatives of the mass flows over links a -> b to the unknowns at a and b, pressures or fills, flat."""
+    for c in range(a_out.size):
+        mean = 0.5 * f[c] * (rho_a[c] + rho_b[c])
+        half = 0.5 * f[c] * (fill_a[c] if f[c] >= 0.0 else fill_b[c])
+        forth = mean if f[c] >= 0.0 else 0.0
+        back = 0.0 if f[c] >= 0.0 else mean
+        a_out[c] = k[c] + half * by_a[c] if full_a[c] else forth
+        b_out[c] = half * by_b[c] - k[c] if full_b[c] else back
+
+
+@njit(cache=True, fastmath=_FAST)
+def _storage_slopes(area, full, fill, rho, by, grow, known, out):
+    """Derivatives of the storage to the unknowns, flat."""
+    for c in range(out.size):
+        out[c] = area[c] * (by[c] * (grow[c] * fill[c] + known[c]) if full[c] else rho[c] * grow[c])
 
 
 @njit(cache=True)
-def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, width, lower, upper):
-    """Newton's matrix of the numbered vertices into the two bands."""
+def assemble_compressible(fill, rho, rho_P, film, full, number, order, count, lower, upper):
+    """Newton's matrix of the numbered vertices into dense bands (count, stride); unknowns are pressures where ``full``, else fills."""
     n, m = rho.shape
-    kx, kz, fx, fz, area = film.kx, film.kz, film.fx, film.fz, film.area
-    grow, known = film.grow, film.known
-    for r in range(count):
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a = number[i, j]
-            b = number[nxt, j]
-            if (a >= 0 or b >= 0) and kx[i, j] != 0.0:
-                _add_link(
-                    a, b, full[i, j], full[nxt, j], kx[i, j], fx[i, j], fill[i, j], fill[nxt, j], rho[i, j],
-                    rho[nxt, j], rho_P[i, j], rho_P[nxt, j], lower, upper,
-                )  # fmt: skip
-            if j + 1 < m:
-                b = number[i, j + 1]
-                if a >= 0 or b >= 0:
-                    _add_link(
-                        a, b, full[i, j], full[i, j + 1], kz[i, j], fz[i, j], fill[i, j], fill[i, j + 1],
-                        rho[i, j], rho[i, j + 1], rho_P[i, j], rho_P[i, j + 1], lower, upper,
-                    )  # fmt: skip
-            if a >= 0:
-                if full[i, j]:
-                    store = rho_P[i, j] * (grow[i, j] * fill[i, j] + known[i, j])
-                else:
-                    store = rho[i, j] * grow[i, j]
-                upper[a, 0] += area[i, j] * store
+    size = n * m
+    last = size - m
+    share, sides, r, by = fill.reshape(-1), full.reshape(-1), rho.reshape(-1), rho_P.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    slopes = np.empty((5, size))
+    slopes[2:4, -1] = 0.0
+    _link_slopes(
+        kx[:last], fx[:last], sides[:last], sides[m:], share[:last], share[m:], r[:last], r[m:], by[:last], by[m:],
+        slopes[0, :last], slopes[1, :last],
+    )  # fmt: skip
+    _link_slopes(
+        kx[last:], fx[last:], sides[last:], sides[:m], share[last:], share[:m], r[last:], r[:m], by[last:], by[:m],
+        slopes[0, last:], slopes[1, last:],
+    )  # fmt: skip
+    _link_slopes(
+        kz[:-1], fz[:-1], sides[:-1], sides[1:], share[:-1], share[1:], r[:-1], r[1:], by[:-1], by[1:],
+        slopes[2, :-1], slopes[3, :-1],
+    )  # fmt: skip
+    _storage_slopes(
+        film.area.reshape(-1), sides, share, r, by, film.grow.reshape(-1), film.known.reshape(-1), slopes[4]
+    )
+    _fill_bands(kx, kz, slopes, number, order, count, lower, upper)
 
 
 @njit(cache=True)
 def assemble_full(rho_P, film, number, order, count, lower, upper):
-    """As `assemble_compressible` where every unknown is a pressure and every film full, into dense bands (count, stride).
+    """As `assemble_compressible` where every unknown is a pressure, every film full and nothing kept."""
+    n, m = number.shape
+    size = n * m
+    last = size - m
+    by = rho_P.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    slopes = np.empty((5, size))
+    slopes[2:4, -1] = 0.0
+    _full_link_slopes(kx[:last], fx[:last], by[:last], by[m:], slopes[0, :last], slopes[1, :last])
+    _full_link_slopes(kx[last:], fx[last:], by[last:], by[:m], slopes[0, last:], slopes[1, last:])
+    _full_link_slopes(kz[:-1], fz[:-1], by[:-1], by[1:], slopes[2, :-1], slopes[3, :-1])
+    area, grow, store = film.area.reshape(-1), film.grow.reshape(-1), slopes[4]
+    for c in range(size):
+        store[c] = area[c] * grow[c] * by[c]
+    _fill_bands(kx, kz, slopes, number, order, count, lower, upper)
+
+
+@njit(cache=True)
+def _fill_bands(kx, kz, slopes, number, order, count, lower, upper):
+    """Bands of the numbered vertices from the derivatives of the links' flows in theta and in z and of the storage: slopes (5, n m).
 
     Row by row with flat unsigned indices, which need no check of their sign.
     """
     n, m = number.shape
     size, rows = _unsigned(n * m), _unsigned(m)
     last = size - rows
-    by, places = rho_P.reshape(-1), number.reshape(-1)
-    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
-    area, grow = film.area.reshape(-1), film.grow.reshape(-1)
+    places = number.reshape(-1)
+    ax, bx, az, bz, store = slopes[0], slopes[1], slopes[2], slopes[3], slopes[4]
     low, up = lower.reshape(-1), upper.reshape(-1)
     stride = _unsigned(lower.shape[1])
     for q in range(low.size):
@@ -193,34 +190,26 @@ def assemble_full(rho_P, film, number, order, count, lower, upper):
         nxt = c + rows if c < last else c - last
         prv = c - rows if c >= rows else c + last
         # links in theta, then in z, where those at the film's ends conduct nothing
-        k, f, b = kx[c], 0.5 * fx[c], places[nxt]
-        diagonal = k
-        carried = area[c] * grow[c] + f
-        if k != 0.0 and b >= 0:
+        diagonal = store[c] + ax[c] - bx[prv] + az[c]
+        b = places[nxt]
+        if kx[c] != 0.0 and b >= 0:
             if b > r:
-                up[row * stride + _unsigned(b - r)] += f * by[nxt] - k
+                up[row * stride + _unsigned(b - r)] += bx[c]
             else:
-                low[_unsigned(b) * stride + _unsigned(r - b)] += f * by[nxt] - k
-        k, f, b = kx[prv], 0.5 * fx[prv], places[prv]
-        diagonal += k
-        carried -= f
-        if k != 0.0 and b >= 0:
+                low[_unsigned(b) * stride + _unsigned(r - b)] += bx[c]
+        b = places[prv]
+        if kx[prv] != 0.0 and b >= 0:
             if b > r:
-                up[row * stride + _unsigned(b - r)] -= f * by[prv] + k
+                up[row * stride + _unsigned(b - r)] -= ax[prv]
             else:
-                low[_unsigned(b) * stride + _unsigned(r - b)] -= f * by[prv] + k
-        k, f = kz[c], 0.5 * fz[c]
-        diagonal += k
-        carried += f
-        if k != 0.0 and places[c + _1] >= 0:
-            up[row * stride + _1] += f * by[c + _1] - k
+                low[_unsigned(b) * stride + _unsigned(r - b)] -= ax[prv]
+        if kz[c] != 0.0 and places[c + _1] >= 0:
+            up[row * stride + _1] += bz[c]
         if c > _0:
-            k, f = kz[c - _1], 0.5 * fz[c - _1]
-            diagonal += k
-            carried -= f
-            if k != 0.0 and places[c - _1] >= 0:
-                low[(row - _1) * stride + _1] -= f * by[c - _1] + k
-        up[row * stride] = diagonal + carried * by[c]
+            diagonal -= bz[c - _1]
+            if kz[c - _1] != 0.0 and places[c - _1] >= 0:
+                low[(row - _1) * stride + _1] -= az[c - _1]
+        up[row * stride] = diagonal
 
 
 @njit(cache=True)

@@ -46,8 +46,14 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
+    return number_along(active, kx, 1, order_out, number_out)
+
+
+@njit(cache=True)
+def number_along(active, kx, forth, order_out, number_out):
+    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1)."""
     n, m = active.shape
-    start = -1
+    first = -1
     for i in range(n):
         empty = True
         for j in range(m):
@@ -55,9 +61,9 @@ def number_cells(active, kx, order_out, number_out):
                 empty = False
                 break
         if empty:
-            start = i
+            first = (i + forth + n) % n
             break
-    if start < 0:
+    if first < 0:
         for i in range(n):
             linked = False
             for j in range(m):
@@ -65,12 +71,12 @@ def number_cells(active, kx, order_out, number_out):
                     linked = True
                     break
             if not linked:
-                start = i
+                first = (i + 1) % n if forth > 0 else i
                 break
     count = 0
     for s in range(n):
-        if start >= 0:
-            i = (start + 1 + s) % n
+        if first >= 0:
+            i = (first + forth * s + n) % n
         elif s % 2 == 0:
             i = s // 2
         else:
@@ -297,13 +303,68 @@ def solve_four(band, inv_diag, count, width, x):
 
 
 def solve_many(band, inv_diag, count, width, x):
-    """Solve for any number of right-hand sides x (k, count), C-contiguous, in place, four at a time."""
-    k = x.shape[0]
-    full = k - k % 4
-    for s in range(0, full, 4):
-        solve_four(band, inv_diag, count, width, x[s : s + 4])
-    for s in range(full, k):
-        solve_one(band, inv_diag, count, width, x[s])
+    """Solve for any number of right-hand sides x (k, count), C-contiguous, in place: by sixes, and what is left by four or one by one."""
+    k, s = x.shape[0], 0
+    while k - s > 4:
+        solve_six(band, inv_diag, count, width, x[s : s + 6])
+        s += 6
+    if k - s == 4:
+        solve_four(band, inv_diag, count, width, x[s:])
+        return
+    for r in range(s, k):
+        solve_one(band, inv_diag, count, width, x[r])
+
+
+@njit(cache=True, fastmath={"contract", "nsz", "arcp"})
+def solve_six(band, inv_diag, count, width, x):
+    """As `solve_four_by_dots`, for five or six right-hand sides x (5 or 6, count) in place."""
+    u = band.reshape(-1)
+    stride = _unsigned(band.shape[1])
+    along = stride - _unsigned(1)
+    w = _unsigned(width)
+    size = _unsigned(count)
+    x0, x1, x2, x3, x4 = x[0], x[1], x[2], x[3], x[4]
+    x5 = x[5] if x.shape[0] > 5 else np.zeros(count)
+    for r in range(size):
+        reach = min(w, r)
+        k = r - reach
+        at = k * stride + reach
+        s0, s1, s2, s3, s4, s5 = x0[r], x1[r], x2[r], x3[r], x4[r], x5[r]
+        for _ in range(reach):
+            f = u[at]
+            s0 -= f * x0[k]
+            s1 -= f * x1[k]
+            s2 -= f * x2[k]
+            s3 -= f * x3[k]
+            s4 -= f * x4[k]
+            s5 -= f * x5[k]
+            at += along
+            k += _unsigned(1)
+        d = inv_diag[r]
+        x0[r], x1[r], x2[r], x3[r], x4[r], x5[r] = s0 * d, s1 * d, s2 * d, s3 * d, s4 * d, s5 * d
+    for q in range(size):
+        r = size - _unsigned(1) - q
+        reach = min(w, q)
+        at = r * stride + reach
+        k = r + reach
+        s0 = s1 = s2 = s3 = s4 = s5 = 0.0
+        for _ in range(reach):
+            f = u[at]
+            s0 += f * x0[k]
+            s1 += f * x1[k]
+            s2 += f * x2[k]
+            s3 += f * x3[k]
+            s4 += f * x4[k]
+            s5 += f * x5[k]
+            at -= _unsigned(1)
+            k -= _unsigned(1)
+        d = inv_diag[r]
+        x0[r] -= s0 * d
+        x1[r] -= s1 * d
+        x2[r] -= s2 * d
+        x3[r] -= s3 * d
+        x4[r] -= s4 * d
+        x5[r] -= s5 * d
 
 
 @njit(cache=True, fastmath={"contract", "nsz", "arcp"})

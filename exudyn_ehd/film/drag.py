@@ -18,7 +18,10 @@ Symbols: cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
+
+from exudyn_ehd.film.gap import contract_pose
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -34,9 +37,9 @@ def drag_sums(P, cx, HF, cz, gap_z, width_x, width_z, link_x, link_z):
         if link_x[i] != 0.0:
             for j in range(m):
                 along += (cx[i, j] - HF[i, j]) * width_z[j] * (P[i, j] - P[nxt, j])
+        wx = width_x[i]
         for j in range(m - 1):
-            if link_z[j] != 0.0:
-                across += (cz[i, j] - gap_z[i, j]) * width_x[i] * (P[i, j] - P[i, j + 1])
+            across += (wx if link_z[j] != 0.0 else 0.0) * (cz[i, j] - gap_z[i, j]) * (P[i, j] - P[i, j + 1])
     return along, across
 
 
@@ -44,20 +47,25 @@ def drag_sums(P, cx, HF, cz, gap_z, width_x, width_z, link_x, link_z):
 def drag_rhs(order, count, active, cx, HF, cz, gap_z, width_x, width_z, link_x, link_z, rows):
     """Add the unknown pressures' weights in E_x and E_z to rows (2, count); nothing where the pressure is clipped."""
     n, m = cx.shape
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        if not active[i, j]:
-            continue
+    along, across = np.empty((n, m)), np.empty((n, m))
+    for i in range(n):
         prv = i - 1 if i > 0 else n - 1
-        if link_x[i] != 0.0:
-            rows[0, r] += (cx[i, j] - HF[i, j]) * width_z[j]
-        if link_x[prv] != 0.0:
-            rows[0, r] -= (cx[prv, j] - HF[prv, j]) * width_z[j]
-        if j + 1 < m and link_z[j] != 0.0:
-            rows[1, r] += (cz[i, j] - gap_z[i, j]) * width_x[i]
-        if j > 0 and link_z[j - 1] != 0.0:
-            rows[1, r] -= (cz[i, j - 1] - gap_z[i, j - 1]) * width_x[i]
+        own = 1.0 if link_x[i] != 0.0 else 0.0
+        before = 1.0 if link_x[prv] != 0.0 else 0.0
+        for j in range(m):
+            along[i, j] = (own * (cx[i, j] - HF[i, j]) - before * (cx[prv, j] - HF[prv, j])) * width_z[j]
+        last = 0.0
+        for j in range(m - 1):
+            link = (width_x[i] if link_z[j] != 0.0 else 0.0) * (cz[i, j] - gap_z[i, j])
+            across[i, j] = link - last
+            last = link
+        across[i, m - 1] = -last
+    x, z, actives = along.reshape(-1), across.reshape(-1), active.reshape(-1)
+    for r in range(count):
+        at = order[r]
+        if actives[at]:
+            rows[0, r] += x[at]
+            rows[1, r] += z[at]
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -69,9 +77,25 @@ def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, 
         linked = 1.0 if link_x[i] != 0.0 else 0.0
         for j in range(m):
             face_out[i, j] = linked * (cx_h[i, j] - 1.0) * width_z[j] * (P[i, j] - P[nxt, j]) * face_slope[i, j]
-            cell_out[i, j] = 0.0
+        half = 0.5 * width_x[i]
+        last = 0.0
         for j in range(m - 1):
-            if link_z[j] != 0.0:
-                half = 0.5 * (cz_h[i, j] - 1.0) * width_x[i] * (P[i, j] - P[i, j + 1])
-                cell_out[i, j] += half * slope[i, j]
-                cell_out[i, j + 1] += half * slope[i, j + 1]
+            link = (half if link_z[j] != 0.0 else 0.0) * (cz_h[i, j] - 1.0) * (P[i, j] - P[i, j + 1])
+            cell_out[i, j] = (last + link) * slope[i, j]
+            last = link
+        cell_out[i, m - 1] = last * slope[i, m - 1]
+
+
+@njit(cache=True)
+def drag_pose_gradient(
+    P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, link_z, cos_x, sin_x, cos_f, sin_f, z, out
+):  # fmt: skip
+    """Add the gradients of `drag_gap_slopes` to the scaled pose to out (2, >= 4): of E_x and of E_z."""
+    face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
+    drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, link_z, face[0], cell[0])
+    along, across = np.zeros((1, 4)), np.zeros((1, 4))
+    contract_pose(face, cos_f, sin_f, z, along)
+    contract_pose(cell, cos_x, sin_x, z, across)
+    for q in range(4):
+        out[0, q] += along[0, q]
+        out[1, q] += across[0, q]

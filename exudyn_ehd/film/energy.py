@@ -116,19 +116,50 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
 
 
 @njit(cache=True)
-def exchange_sums(
-    P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, active, conserves, cavity
-):  # fmt: skip
-    """Sums over what `outside_flows` gives with the rates of `content_rate`, without fields in between.
+def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity):
+    """Sums over what `outside_flows` gives for cavitation models that do not conserve mass, without fields in between.
 
-    ``active`` (n, m) is the unbroken film of cavitation models that do not conserve mass (``conserves``), ``cavity`` the scaled
-    cavity pressure.
+    ``b`` (n, m) is the right-hand side of the film's equation, Couette inflow less squeeze, ``active`` (n, m) the unbroken film,
+    ``cavity`` the scaled cavity pressure.
 
     Returns
     -------
     leaving, work : float
         What leaves, and ``sum (P - cavity) inflow`` plus, with ``squeeze``, ``cavity sum area dH/dt``.
     """
+    n, m = q.shape
+    leaving = 0.0
+    work = 0.0
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            if not fixed[i, j]:
+                continue
+            inflow = 0.0
+            if j + 1 < m:
+                inflow += kz[i, j] * (q[i, j] - q[i, j + 1])
+            if j > 0:
+                inflow += kz[i, j - 1] * (q[i, j] - q[i, j - 1])
+            end = 1 if j == 0 else m - 2
+            if 0 < j < m - 1 or active[i, end] or fixed[i, end]:
+                inflow += kx[i, j] * (q[i, j] - q[nxt, j]) + kx[prv, j] * (q[i, j] - q[prv, j]) - b[i, j]
+            elif j == 0:
+                inflow += fz[i, j]
+            else:
+                inflow -= fz[i, j - 1]
+            leaving -= min(inflow, 0.0)
+            work += (P[i, j] - cavity) * inflow
+    if squeeze and cavity != 0.0:
+        work += _cavity_work(H_t, area, cavity)
+    return leaving, work
+
+
+@njit(cache=True)
+def exchange_sums_fill(
+    P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, cavity
+):  # fmt: skip
+    """As `exchange_sums`, for cavitation models that conserve mass, with the rates of `content_rate`."""
     n, m = H.shape
     leaving = 0.0
     work = 0.0
@@ -143,20 +174,25 @@ def exchange_sums(
                 inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
             if j > 0:
                 inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
-            end = 1 if j == 0 else m - 2
-            if (0 < j < m - 1) or conserves or active[i, end] or fixed[i, end]:
-                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
-                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
-                inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+            inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+            inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+            inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
     if squeeze and cavity != 0.0:
-        closing = 0.0
-        for i in range(n):
-            for j in range(m):
-                closing += area[i, j] * H_t[i, j]
-        work += cavity * closing
+        work += _cavity_work(H_t, area, cavity)
     return leaving, work
+
+
+@njit(cache=True)
+def _cavity_work(H_t, area, cavity):
+    """``cavity sum area dH/dt``."""
+    n, m = H_t.shape
+    closing = 0.0
+    for i in range(n):
+        for j in range(m):
+            closing += area[i, j] * H_t[i, j]
+    return cavity * closing
 
 
 @njit(cache=True)

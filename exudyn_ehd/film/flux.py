@@ -48,6 +48,10 @@ class LinkFlux:
         if self.carriers:
             self.cx[:], self.cz[:] = self.gap_x, self.gap_z
             self.cx_h[:] = self.cz_h[:] = 1.0
+        self.reset_speeds()
+
+    def reset_speeds(self) -> None:
+        """No dependence on the speed, where effects have left one."""
         if self.speeds:
             self.gx_v[:] = self.gz_v[:] = 0.0
 

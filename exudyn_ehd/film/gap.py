@@ -25,6 +25,23 @@ def rigid_gap(pose, cos_x, sin_x, z, base, H_out):
             H_out[i, j] = level - slope * z[j]
 
 
+@njit(cache=True, fastmath={"nnan", *_FAST})
+def add_to_gap(extra, extra_link, H, HF):
+    """Add to the gaps at vertices and links, all (n, m); returns the smallest gap."""
+    h, e = H.reshape(-1), extra.reshape(-1)
+    for k in range(h.size):
+        h[k] += e[k]
+    face, e_face = HF.reshape(-1), extra_link.reshape(-1)
+    for k in range(face.size):
+        face[k] += e_face[k]
+    smallest = np.inf
+    for k in range(h.size):
+        smallest = min(smallest, h[k])
+    for k in range(face.size):
+        smallest = min(smallest, face[k])
+    return smallest
+
+
 @njit(cache=True)
 def largest_eccentricity(pose, half_length):
     """Largest distance of the journal axis from the bearing axis, scaled by c; it is reached at one of the ends."""
@@ -59,3 +76,18 @@ def contract_pose(field, cos_x, sin_x, z, out):
         out[k, 1] += oy
         out[k, 2] += obx
         out[k, 3] += oby
+
+
+@njit(cache=True, fastmath=_FAST)
+def contract_ends(slope, lower, upper, cos_x, sin_x, z):
+    """`contract_pose` (4,) of a field (n, m) that is ``lower`` and ``upper`` times the slope (n, m) in the first and last column, else zero."""
+    last = z.size - 1
+    out = np.zeros(4)
+    for i in range(cos_x.size):
+        a, b = lower * slope[i, 0], upper * slope[i, last]
+        flat, tilt = a + b, a * z[0] + b * z[last]
+        out[0] -= flat * cos_x[i]
+        out[1] -= flat * sin_x[i]
+        out[2] -= tilt * cos_x[i]
+        out[3] -= tilt * sin_x[i]
+    return out

@@ -39,6 +39,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -76,6 +77,7 @@ TABLE_STEPS = 2048
 # The gap, in sigma, at the middle of the tables: half of the knots lie above, where factors fall off slowly.
 TABLE_MIDDLE = 8.0
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned: Any = np.uint64
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -244,8 +246,22 @@ class RoughFlow(FluxEffect):
         rough_flux(
             H, flux.gap_x, 1.0 / self.sigma, self.phi_x, self.phi_z, flux.gap_z, flux.gx, flux.gx_h, flux.gz, flux.gz_h
         )
-        flux.reset()
-        self._carry(flux, flux.gap_x, flux.gap_z)
+        if self.shear == 0.0:
+            flux.reset()
+            return
+        flux.reset_speeds()
+        rough_carriers(
+            flux.gap_x,
+            flux.gap_z,
+            1.0 / self.sigma,
+            self.psi_x,
+            self.psi_z,
+            self.shear,
+            flux.cx,
+            flux.cx_h,
+            flux.cz,
+            flux.cz_h,
+        )
 
     def _carry(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray) -> None:
         if self.shear != 0.0:
@@ -267,113 +283,147 @@ class RoughShear:
         rough_friction(H, 1.0 / self.sigma, self.table, ratio_out, ratio_h_out, ratio_v_out)
 
 
-@njit(cache=True, fastmath=_FAST)
+# Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand apart for the same reason.
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
     """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)); in place."""
     n, m = gap.shape
     scale = inverse_sigma / TABLE_MIDDLE
+    flat = table.reshape(-1)
+    if not _aligned(gap):
+        f, f_h = np.empty(gap.size), np.empty(gap.size)
+        look_up(gap.reshape(-1), scale, flat, f, f_h)
+        v, v_h = value.reshape(-1), value_h.reshape(-1)
+        for k in range(v.size):
+            factor = base + share * f[k]
+            v_h[k] = v_h[k] * factor + v[k] * (share * f_h[k])
+            v[k] *= factor
+        return
     for i in range(n):
-        uniform = True
-        for j in range(1, m):
-            uniform &= gap[i, j] == gap[i, 0]
-        if uniform:  # an aligned journal has one gap per column
-            f, f_h = _table_factor(gap[i, 0], scale, table, base, share)
-            for j in range(m):
-                value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
-                value[i, j] *= f
-        else:
-            for j in range(m):
-                f, f_h = _table_factor(gap[i, j], scale, table, base, share)
-                value_h[i, j] = value_h[i, j] * f + value[i, j] * f_h
-                value[i, j] *= f
+        one, one_h = _table_at(1.0 / (1.0 + gap[i, 0] * scale), scale, flat)
+        factor, factor_h = base + share * one, share * one_h
+        for j in range(m):
+            value_h[i, j] = value_h[i, j] * factor + value[i, j] * factor_h
+            value[i, j] *= factor
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, gz_h):
-    """`flux.plain_flux` times the tables' factors; loops are split, rows never sliced, and quotients taken first, for speed."""
+    """`flux.plain_flux` times the tables' factors."""
     n, m = H.shape
-    scale = inverse_sigma / TABLE_MIDDLE
     for i in range(n):
-        a, b = H[i, 0], HF[i, 0]
-        differing = 0
-        for j in range(1, m):
-            differing += (H[i, j] != a) | (HF[i, j] != b)
-        if differing == 0:  # an aligned journal has one gap per column
-            f, f_h = _table_at(1.0 / (1.0 + b * scale), scale, table_x)
-            g, g_h = b * b * b * f, b * b * (3.0 * f + b * f_h)
-            for j in range(m):
-                gx[i, j] = g
-            for j in range(m):
-                gx_h[i, j] = g_h
-            f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table_z)
-            g, g_h = a * a * a * f, a * a * (3.0 * f + a * f_h)
-            for j in range(m):
-                gz[i, j] = g
-            for j in range(m):
-                gz_h[i, j] = g_h
-            for j in range(m):
-                gap_z_out[i, j] = a
-        else:
-            for j in range(m - 1):
-                gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
-            gap_z_out[i, m - 1] = H[i, m - 1]
-            for j in range(m):
-                gx[i, j] = 1.0 / (1.0 + HF[i, j] * scale)
-            for j in range(m):
-                gz[i, j] = 1.0 / (1.0 + gap_z_out[i, j] * scale)
-            for j in range(m):
-                h = HF[i, j]
-                f, f_h = _table_at(gx[i, j], scale, table_x)
-                gx[i, j] = h * h * h * f
-                gx_h[i, j] = h * h * (3.0 * f + h * f_h)
-            for j in range(m):
-                h = gap_z_out[i, j]
-                f, f_h = _table_at(gz[i, j], scale, table_z)
-                gz[i, j] = h * h * h * f
-                gz_h[i, j] = h * h * (3.0 * f + h * f_h)
+        for j in range(m - 1):
+            gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
+        gap_z_out[i, m - 1] = H[i, m - 1]
+    _rough_conductance(HF, inverse_sigma / TABLE_MIDDLE, table_x.reshape(-1), gx, gx_h)
+    _rough_conductance(gap_z_out, inverse_sigma / TABLE_MIDDLE, table_z.reshape(-1), gz, gz_h)
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _rough_conductance(gap, scale, table, g_out, g_h_out):
+    """``gap^3 f`` and its derivative."""
+    n, m = gap.shape
+    if not _aligned(gap):
+        h, g, g_h = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1)
+        look_up(h, scale, table, g, g_h)
+        for k in range(h.size):
+            square = h[k] * h[k]
+            g_h[k] = square * (3.0 * g[k] + h[k] * g_h[k])
+            g[k] *= square * h[k]
+        return
+    for i in range(n):
+        a = gap[i, 0]
+        f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
+        f_h = a * a * (3.0 * f + a * f_h)
+        f *= a * a * a
+        for j in range(m):
+            g_out[i, j] = f
+        for j in range(m):
+            g_h_out[i, j] = f_h
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def rough_carriers(gap_x, gap_z, inverse_sigma, table_x, table_z, share, cx_out, cx_h_out, cz_out, cz_h_out):
+    """Carriers ``gap (1 + share table)`` of the links and their slopes."""
+    _rough_carrier(gap_x, inverse_sigma / TABLE_MIDDLE, table_x.reshape(-1), share, cx_out, cx_h_out)
+    _rough_carrier(gap_z, inverse_sigma / TABLE_MIDDLE, table_z.reshape(-1), share, cz_out, cz_h_out)
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _rough_carrier(gap, scale, table, share, c_out, c_h_out):
+    n, m = gap.shape
+    if not _aligned(gap):
+        h, c, c_h = gap.reshape(-1), c_out.reshape(-1), c_h_out.reshape(-1)
+        look_up(h, scale, table, c, c_h)
+        for k in range(h.size):
+            factor = 1.0 + share * c[k]
+            c_h[k] = factor + h[k] * share * c_h[k]
+            c[k] = h[k] * factor
+        return
+    for i in range(n):
+        a = gap[i, 0]
+        f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
+        f = 1.0 + share * f
+        f_h = f + a * share * f_h
+        f *= a
+        for j in range(m):
+            c_out[i, j] = f
+        for j in range(m):
+            c_h_out[i, j] = f_h
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def rough_friction(H, inverse_sigma, table, ratio_out, ratio_h_out, ratio_v_out):
     """The table's factor with its derivatives to the gap and to the speed, which is zero."""
     n, m = H.shape
     scale = inverse_sigma / TABLE_MIDDLE
+    flat = table.reshape(-1)
+    v = ratio_v_out.reshape(-1)
+    for k in range(v.size):
+        v[k] = 0.0
+    if not _aligned(H):
+        look_up(H.reshape(-1), scale, flat, ratio_out.reshape(-1), ratio_h_out.reshape(-1))
+        return
     for i in range(n):
-        a = H[i, 0]
+        f, f_h = _table_at(1.0 / (1.0 + H[i, 0] * scale), scale, flat)
+        for j in range(m):
+            ratio_out[i, j] = f
+        for j in range(m):
+            ratio_h_out[i, j] = f_h
+
+
+@njit(cache=True)
+def _aligned(gap):
+    """Whether there is one gap per column, as of an aligned journal."""
+    n, m = gap.shape
+    for i in range(n):
         differing = 0
         for j in range(1, m):
-            differing += H[i, j] != a
-        if differing == 0:
-            f, f_h = _table_at(1.0 / (1.0 + a * scale), scale, table)
-            for j in range(m):
-                ratio_out[i, j] = f
-            for j in range(m):
-                ratio_h_out[i, j] = f_h
-        else:
-            for j in range(m):
-                ratio_out[i, j] = 1.0 / (1.0 + H[i, j] * scale)
-            for j in range(m):
-                ratio_out[i, j], ratio_h_out[i, j] = _table_at(ratio_out[i, j], scale, table)
-        for j in range(m):
-            ratio_v_out[i, j] = 0.0
+            differing += gap[i, j] != gap[i, 0]
+        if differing > 0:
+            return False
+    return True
 
 
-@njit(cache=True, fastmath=_FAST, inline="always")
-def _table_factor(gap, scale, table, base, share):
-    """(f, df/dgap) of `multiply_by_table`."""
-    f, f_h = _table_at(1.0 / (1.0 + gap * scale), scale, table)
-    return base + share * f, share * f_h
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def look_up(gap, scale, table, f_out, f_h_out):
+    """`_table_at` for gaps (k,), with the quotients first."""
+    for k in range(gap.size):
+        f_out[k] = 1.0 / (1.0 + gap[k] * scale)
+    for k in range(gap.size):
+        f_out[k], f_h_out[k] = _table_at(f_out[k], scale, table)
 
 
-@njit(cache=True, fastmath=_FAST, inline="always")
+@njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
 def _table_at(y, scale, table):
-    """Value of the table at y, and its derivative by the gap."""
-    steps = table.shape[0]
+    """Value of a flat table at y, and its derivative by the gap."""
+    steps = table.size // 4
     u = y * steps
-    k = min(int(u), steps - 1)
-    u -= k
-    b = table[k, 1]
-    c2 = table[k, 2]
-    c3 = table[k, 3]
-    f = table[k, 0] + u * (b + u * (c2 + u * c3))
+    k = min(_unsigned(u), _unsigned(steps - 1))
+    u -= float(k)
+    k *= _unsigned(4)
+    b = table[k + _unsigned(1)]
+    c2 = table[k + _unsigned(2)]
+    c3 = table[k + _unsigned(3)]
+    f = table[k] + u * (b + u * (c2 + u * c3))
     return f, (b + u * (2.0 * c2 + u * 3.0 * c3)) * steps * (-y * y * scale)

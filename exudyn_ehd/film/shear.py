@@ -17,6 +17,7 @@ Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -27,6 +28,8 @@ from exudyn_ehd.status import InputError, require_number
 TABLE_INTERVALS = 2048
 TABLE_RATE = 50.0
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+_unsigned: Any = np.uint64
+_ONE, _TWO, _THREE, _FOUR, _FIVE, _SIX = (_unsigned(k) for k in range(1, 7))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +89,17 @@ class ShearThinning(FluxEffect):
         thin_conductance(gap_x, vx, k, law.exponent, law.residual, self.table, True, flux.gx, flux.gx_h, flux.gx_v)
         thin_conductance(gap_z, vx, k, law.exponent, law.residual, self.table, False, flux.gz, flux.gz_h, flux.gz_v)
 
+    def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
+        """Conductances with their factors in one pass."""
+        if flux.carriers:
+            super().start(flux, H, vx, vz)
+            return
+        law = self.law
+        thin_flux(
+            H, flux.gap_x, vx, self.per_speed, law.exponent, law.residual, self.table, flux.gap_z, flux.gx, flux.gx_h, flux.gx_v,
+            flux.gz, flux.gz_h, flux.gz_v,
+        )  # fmt: skip
+
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
     ) -> None:
@@ -113,69 +127,102 @@ def power_table(exponent: float) -> np.ndarray:
     return np.ascontiguousarray(np.array([f[:-1], d[:-1], e[:-1], c3, c4, c5]).T)
 
 
-@njit(cache=True, fastmath=_FAST)
-def power_from(table, e, g, b):
-    """``b^e`` with b = 1 + g^2 from the table of `power_table`; written out beyond its end."""
-    a = abs(g)
-    if a >= TABLE_RATE:
-        return np.exp(e * np.log(b))
-    t = a / (1.0 + a) * ((1.0 + TABLE_RATE) / TABLE_RATE * TABLE_INTERVALS)
-    k = min(int(t), TABLE_INTERVALS - 1)
-    t -= k
-    c = table[k]
-    return c[0] + t * (c[1] + t * (c[2] + t * (c[3] + t * (c[4] + t * c[5]))))
+# Checks for a division by zero would keep the compiler from vectorising the loops below; the table's gather stands apart for the same reason.
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def powers(gap, speed, e, table, out):
+    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end; gap, out (n, m)."""
+    h, p = gap.reshape(-1), out.reshape(-1)
+    coefficients = table.reshape(-1)
+    size = abs(speed)
+    scale = size * ((1.0 + TABLE_RATE) / TABLE_RATE * TABLE_INTERVALS)
+    for k in range(h.size):
+        p[k] = scale / (h[k] + size)
+    for k in range(h.size):
+        t = p[k]
+        if t < TABLE_INTERVALS:
+            at = _unsigned(t)
+            t -= float(at)
+            at *= _SIX
+            p[k] = coefficients[at] + t * (
+                coefficients[at + _ONE] + t * (
+                    coefficients[at + _TWO] + t * (
+                        coefficients[at + _THREE] + t * (coefficients[at + _FOUR] + t * coefficients[at + _FIVE])
+                    )
+                )
+            )  # fmt: skip
+        else:
+            g = size / h[k]
+            p[k] = np.exp(e * np.log(1.0 + g * g))
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def thin_viscosity(H, vx, per_speed, n, r_inf, table, ratio_out, ratio_h_out, ratio_v_out):
     """Carreau's ratio at gaps H with its derivatives to H and vx."""
-    rows, cols = H.shape
-    e = 0.5 * (n - 1.0)
     speed = per_speed * vx
-    last = 0.0
-    per_gap = g = power = slope = 0.0
-    for i in range(rows):
-        for j in range(cols):
-            if H[i, j] != last:  # an aligned journal has one gap per column
-                last = H[i, j]
-                per_gap = 1.0 / last
-                g = speed * per_gap
-                b = 1.0 + g * g
-                power = (1.0 - r_inf) * power_from(table, e, g, b)
-                slope = power / b * (n - 1.0) * g * per_gap
-            ratio_out[i, j] = r_inf + power
-            ratio_h_out[i, j] = -slope * g
-            ratio_v_out[i, j] = slope * per_speed
+    powers(H, speed, 0.5 * (n - 1.0), table, ratio_out)
+    h, r, r_h, r_v = H.reshape(-1), ratio_out.reshape(-1), ratio_h_out.reshape(-1), ratio_v_out.reshape(-1)
+    s = speed * speed
+    for k in range(h.size):
+        thin = (1.0 - r_inf) * r[k]
+        slope = (n - 1.0) * speed * thin / (h[k] * h[k] + s)
+        r[k] = r_inf + thin
+        r_h[k] = -slope * speed / h[k]
+        r_v[k] = slope * per_speed
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
+def _fluidity(h, power, speed, s, n, r_inf, tangent):
+    """1 / r, or 1 / r_t with ``tangent``, at a gap h with ``power`` = b^e and s = speed^2, and D with d/dh = D speed / h, d/dvx = -D per_speed."""
+    per_b = 1.0 / (h * h + s)  # over h^2
+    r = (1.0 - r_inf) * power
+    if tangent:
+        bend = (h * h + n * s) * per_b
+        slope = n + (0.5 * (n - 1.0) - 1.0) * bend
+        f = 1.0 / (r_inf + r * bend)
+    else:
+        slope = 0.5 * (n - 1.0)
+        f = 1.0 / (r_inf + r)
+    return f, 2.0 * speed * r * per_b * slope * f * f
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
 def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io, g_v_io):
     """Divide conductances by the (tangent) viscosity ratio at the links' gaps, derivatives to the gap and vx included."""
-    rows, cols = gap.shape
-    e = 0.5 * (n - 1.0)
     speed = per_speed * vx
-    last = 0.0
-    g = inverse = slope = 0.0
+    power = np.empty(gap.size)
+    powers(gap, speed, 0.5 * (n - 1.0), table, power)
+    h, g, g_h, g_v = gap.reshape(-1), g_io.reshape(-1), g_h_io.reshape(-1), g_v_io.reshape(-1)
+    s = speed * speed
+    for k in range(h.size):
+        f, d = _fluidity(h[k], power[k], speed, s, n, r_inf, tangent)
+        g_h[k] = g_h[k] * f + g[k] * d * speed / h[k]
+        g_v[k] = g_v[k] * f - g[k] * d * per_speed
+        g[k] *= f
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def thin_flux(
+    H, HF, vx, per_speed, n, r_inf, table, gap_z_out, gx_out, gx_h_out, gx_v_out, gz_out, gz_h_out, gz_v_out
+):  # fmt: skip
+    """`flux.plain_flux` over the viscosity ratios, with the derivatives of `thin_conductance`."""
+    rows, cols = H.shape
     for i in range(rows):
-        for j in range(cols):
-            if gap[i, j] != last:  # an aligned journal has one gap per column
-                last = gap[i, j]
-                per_gap = 1.0 / last
-                g = speed * per_gap
-                s = g * g
-                b = 1.0 + s
-                r = (1.0 - r_inf) * power_from(table, e, g, b)
-                per_b = 1.0 / b
-                slope = 2.0 * g * r * per_b
-                if tangent:
-                    bend = (1.0 + n * s) * per_b
-                    slope *= n + (e - 1.0) * bend
-                    r *= bend
-                else:
-                    slope *= e
-                inverse = 1.0 / (r_inf + r)
-                slope *= inverse * per_gap
-            c = g_io[i, j] * inverse
-            g_io[i, j] = c
-            g_h_io[i, j] = g_h_io[i, j] * inverse + c * slope * g
-            g_v_io[i, j] = g_v_io[i, j] * inverse - c * slope * per_speed
+        for j in range(cols - 1):
+            gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
+        gap_z_out[i, cols - 1] = H[i, cols - 1]
+    _thin_plain(HF, per_speed * vx, per_speed, n, r_inf, table, True, gx_out, gx_h_out, gx_v_out)
+    _thin_plain(gap_z_out, per_speed * vx, per_speed, n, r_inf, table, False, gz_out, gz_h_out, gz_v_out)
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _thin_plain(gap, speed, per_speed, n, r_inf, table, tangent, g_out, g_h_out, g_v_out):
+    """H^3 over the (tangent) viscosity ratio, with its derivatives to the gap and to vx."""
+    powers(gap, speed, 0.5 * (n - 1.0), table, g_out)
+    h, g, g_h, g_v = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1), g_v_out.reshape(-1)
+    s = speed * speed
+    for k in range(h.size):
+        f, d = _fluidity(h[k], g[k], speed, s, n, r_inf, tangent)
+        square = h[k] * h[k]
+        g[k] = square * h[k] * f
+        g_h[k] = square * (3.0 * f + d * speed)
+        g_v[k] = -square * h[k] * d * per_speed

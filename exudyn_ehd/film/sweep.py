@@ -47,7 +47,7 @@ def plain_link_derivatives(P, H, HF, vx, vz, flow_x, width_x, width_z, link_x, l
 def flux_link_derivatives(
     P, gx_h, gx_v, gz_h, gz_v, cx, cx_h, cz, cz_h, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ, SZX
 ):  # fmt: skip
-    """Derivatives for the coefficients of `flux.LinkFlux`."""
+    """Derivatives for the coefficients of `flux.LinkFlux`, in loops of one result."""
     n, m = cx.shape
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
@@ -57,12 +57,15 @@ def flux_link_derivatives(
         for j in range(m):
             drop = lx * (P[nxt, j] - P[i, j])
             DX[i, j] = (linked * vx * cx_h[i, j] - gx_h[i, j] * drop) * width_z[j]
+        for j in range(m):
+            drop = lx * (P[nxt, j] - P[i, j])
             SX[i, j] = (linked * cx[i, j] - gx_v[i, j] * drop) * width_z[j]
         for j in range(m - 1):
-            drop = link_z[j] * (P[i, j + 1] - P[i, j])
-            DZ[i, j] = (vz * cz_h[i, j] - gz_h[i, j] * drop) * wx
+            DZ[i, j] = (vz * cz_h[i, j] - gz_h[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
+        for j in range(m - 1):
             SZ[i, j] = cz[i, j] * wx
-            SZX[i, j] = -gz_v[i, j] * drop * wx
+        for j in range(m - 1):
+            SZX[i, j] = -gz_v[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -46,7 +47,7 @@ class ReynoldsTemperature:
 
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at temperatures in K; the density does not matter."""
-        return self.point[1] * np.exp(-self.coefficient * (np.asarray(temperature) - self.point[0]))
+        return self.point[1] * np.exp(-self.coefficient * (_kelvin(temperature) - self.point[0]))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +77,7 @@ class VogelTemperature:
                 "viscosity at its pole."
             )
 
-    @property
+    @cached_property
     def constants(self) -> tuple[float, float]:
         """(A in Pa s, B in K)."""
         (t1, mu1), (t2, mu2) = self.first, self.second
@@ -86,7 +87,7 @@ class VogelTemperature:
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at temperatures in K above the pole; the density does not matter."""
         A, B = self.constants
-        return A * np.exp(B / (np.asarray(temperature) - self.pole))
+        return A * np.exp(B / (_kelvin(temperature) - self.pole))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +122,7 @@ class WaltherTemperature:
                 f"WaltherTemperature.expansion must be below 0.01 1/K, got {self.expansion!r}; oils have 7e-4 1/K, 0.6278 / density."
             )
 
-    @property
+    @cached_property
     def constants(self) -> tuple[float, float]:
         """(a, b) for natural logarithms inside: ``ln ln(nu + 0.7) = a - b ln T``."""
         w1, w2 = (math.log(math.log(1e6 * nu + WALTHER_SHIFT)) for _, nu in (self.first, self.second))
@@ -132,12 +133,17 @@ class WaltherTemperature:
     def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
         """Dynamic viscosity, Pa s, at temperatures in K, for a density at 15 degrees Celsius in kg/m3."""
         a, b = self.constants
-        T = np.asarray(temperature)
+        T = _kelvin(temperature)
         mu = 1e-6 * (np.exp(np.exp(a - b * np.log(T))) - WALTHER_SHIFT) * density
         if self.expansion == 0.0:
             return mu
         x = self.expansion * (T - CELSIUS_15)
         return mu * np.exp(-x * (1.0 + 0.8 * x))
+
+
+def _kelvin(temperature: float | np.ndarray) -> float | np.ndarray:
+    """A float as it is, since one temperature of the whole film takes the law once a step; anything else as an array."""
+    return temperature if isinstance(temperature, float) else np.asarray(temperature)
 
 
 def _check_point(where: str, point: tuple[float, float], unit: str) -> None:

@@ -64,4 +64,6 @@ class WearDepth:
 
     def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
         """Scaled depth (n, m) after ``step`` (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
-        return self.depth(wear) + self.rate * step * abs(speed) * contact_pressure
+        grown: np.ndarray = contact_pressure * (self.rate * step * abs(speed))
+        grown += self.depth(wear)
+        return grown

@@ -12,7 +12,7 @@ from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.joint.audit_indicators import INDICATORS, Case, Finding, Indicator
 from exudyn_ehd.joint.audit_states import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.build import build_study_model
-from exudyn_ehd.joint.model import BearingModel
+from exudyn_ehd.joint.model import MOTION_SIZE, BearingModel
 from exudyn_ehd.status import FilmError, InputError, Status
 
 __all__ = ["Audit", "Finding", "audit_record", "audit_states"]
@@ -102,7 +102,7 @@ def audit_states(
     """
     if liner is not None and not isinstance(liner, ElasticLiner):
         raise InputError(f"audit: liner must be ElasticLiner(...) or None, got {liner!r}.")
-    samples = take_samples(model, states)
+    samples = take_samples(model, states, record)
     if not samples:
         raise FilmError(
             "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result of `steady`."
@@ -135,14 +135,16 @@ def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[Film
     """Share of the time of evaluations with tangent that goes into an effect; None if no film does without it."""
     assert indicator.without is not None
     plain = build_study_model(indicator.without(model.bearing), float(model.grid.x[0]))
-    # a history serves both: a model without an effect does not read what belongs to it
-    both = [s for s in states if all(s.evaluate(m).status is Status.CONVERGED for m in (model, plain))]
+    # a history serves both: a model without an effect does not read what belongs to it; a rigid bore has no coordinates
+    rigid = not plain.bore_fields()
+    pairs = [(s, replace(s, motion=s.motion[:MOTION_SIZE]) if rigid else s) for s in states]
+    both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
     if not both:
         return None
     with_it, without_it = math.inf, math.inf
     for _ in range(ROUNDS):
-        with_it = min(with_it, sum(_seconds(model, state) for state in both))
-        without_it = min(without_it, sum(_seconds(plain, state) for state in both))
+        with_it = min(with_it, sum(_seconds(model, state) for state, _ in both))
+        without_it = min(without_it, sum(_seconds(plain, state) for _, state in both))
     return max(0.0, 1.0 - without_it / with_it)
 
 

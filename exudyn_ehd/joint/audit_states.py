@@ -32,8 +32,8 @@ class RecordedSteps:
         As in `exudyn_ehd.joint.model`.
     force : (n, 3) array
         N, on the journal.
-    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature : (n,) arrays
-        m, Pa, W, m3/s, N, K.
+    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature, bore_displacement : (n,) arrays
+        m, Pa, W, m3/s, N, K, m.
     """
 
     time: np.ndarray
@@ -45,13 +45,16 @@ class RecordedSteps:
     leakage: np.ndarray
     contact_load: np.ndarray
     film_temperature: np.ndarray
+    bore_displacement: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
-        """Steps with the thinnest film, highest pressure, loss and speed, largest tilt and strongest squeeze; sorted."""
+        """Steps with the thinnest film, highest pressure, loss and speed, largest tilt, strongest squeeze and the bore's largest share; sorted."""
         tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
         squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
         speed = np.abs(self.motion[:, 8])
-        keys = (-self.minimum_gap, self.peak_pressure, np.abs(self.power_loss), self.contact_load, tilt, squeeze, speed)
+        given_way = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
+        loss = np.abs(self.power_loss)
+        keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, given_way)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
 
     def largest_advance(self, length: float) -> float:
@@ -66,12 +69,13 @@ class RecordedSteps:
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`."""
+    """Arguments of one `BearingModel.evaluate`, with a flexible bore's coordinates and rates in the motion, and the step of a record."""
 
     motion: np.ndarray
     history: History | None = None
     step: float = 0.0
     spin: float = 0.0
+    recorded: int | None = None
 
     def evaluate(self, model: BearingModel) -> Evaluation:
         """The film at this state."""
@@ -79,24 +83,43 @@ class FilmState:
 
 
 def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
-    """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero)."""
+    """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
+
+    Flexible bores, which a record does not hold, settle under their films.
+    """
     intervals = np.diff(record.time)
     turns = 0.5 * (record.motion[1:, 8] + record.motion[:-1, 8]) * intervals
     spin = np.concatenate([[0.0], np.cumsum(turns)])
-    if not model.remembers:
-        return [FilmState(record.motion[k], spin=float(spin[k])) for k in record.worst(model.bearing)]
-    states = []
+    flexible = bool(model.bore_fields())
+    motions = _differenced(record) if flexible else record.motion
+    replayed = REPLAYED if model.remembers else 0
+    states: list[FilmState] = []
+    reached, history, step = -1, None, 0.0
     for k in record.worst(model.bearing):
-        first = max(0, k - REPLAYED)
-        history = _first_history(model, record, first)
-        step = 0.0
-        for i in range(first + 1, k + 1):
+        first = max(0, k - replayed)
+        if reached < first:
+            reached, history, step = first, _first_history(model, record, first), 0.0
+        for i in range(reached, k):
             if step > 0.0:
-                passed = model.evaluate(record.motion[i - 1], history, step, float(spin[i - 1]))
+                passed = model.evaluate_steady(motions[i], history, step, float(spin[i]))
                 history = passed.history() if passed.status is Status.CONVERGED else history
-            step = float(intervals[i - 1])
-        states.append(FilmState(record.motion[k], history, step, float(spin[k])))
+            step = float(intervals[i])
+        reached, motion = k, motions[k]
+        if flexible:
+            motion = model.evaluate_steady(motion, history, step, float(spin[k])).motion
+        states.append(FilmState(motion, history, step, float(spin[k]), recorded=k))
     return states
+
+
+def _differenced(record: RecordedSteps) -> np.ndarray:
+    """Motions (n, 10) with the rates of the steps' own differences.
+
+    Rates that an integrator leaves behind on a flexible bore alternate, those of the journal with those of the bore, which a record
+    does not hold.
+    """
+    motions = record.motion.copy()
+    motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
+    return motions
 
 
 def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> History | None:
@@ -188,10 +211,29 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     )
 
 
-def take_samples(model: BearingModel, states: Iterable[FilmState]) -> list[Sample]:
-    """Samples of all states that have a film."""
-    samples = (take_sample(model, state) for state in states)
-    return [sample for sample in samples if sample is not None]
+def take_samples(model: BearingModel, states: Iterable[FilmState], record: RecordedSteps | None = None) -> list[Sample]:
+    """Samples of all states that have a film; on a flexible bore with what the record knows of it in motion."""
+    samples = []
+    for state in states:
+        sample = take_sample(model, state)
+        if sample is not None and record is not None and state.recorded is not None and model.bore_fields():
+            sample = _as_recorded(sample, record, state.recorded)
+        if sample is not None:
+            samples.append(sample)
+    return samples
+
+
+def _as_recorded(sample: Sample, record: RecordedSteps, k: int) -> Sample:
+    """The sample of a settled bore with the numbers of the bore in motion."""
+    return replace(
+        sample,
+        minimum_gap=max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
+        peak_pressure=float(record.peak_pressure[k]),
+        load=math.hypot(record.force[k, 0], record.force[k, 1]),
+        contact_load=float(record.contact_load[k]),
+        power_loss=float(record.power_loss[k]),
+        deflection=float(record.bore_displacement[k]),
+    )
 
 
 def _largest(values: np.ndarray) -> float:

@@ -69,43 +69,50 @@ class DenseElasticity:
         return np.linalg.solve(self.stiffness - softening, rhs)
 
 
-def settle(model: ElasticBearingModel, motion: np.ndarray, history: History | None) -> ElasticEvaluation:
+def settle(
+    model: ElasticBearingModel, motion: np.ndarray, history: History | None, step: float = 0.0, spin: float = 0.0
+) -> ElasticEvaluation:
     """Evaluate with the bore in equilibrium; the eccentricity is approached in parts where the rigid surfaces would touch.
 
-    Starts from the model's last coordinates if they leave a gap, else from the undeformed bore. The status of the evaluation is
+    ``history``, ``step`` and ``spin`` as for `BearingModel.evaluate`. Starts from the model's last coordinates if they leave a gap, else from the undeformed bore. The status of the evaluation is
     NOT_CONVERGED if no equilibrium was found.
     """
     q = model.coordinates.copy()
     model.settling_steps = 0
-    found = _newton(model, motion, history, q, 1.0)
+    film = history, step, spin
+    found = _newton(model, motion, film, q, 1.0)
     if found is None and q.any():
-        found = _newton(model, motion, history, np.zeros_like(q), 1.0)
+        found = _newton(model, motion, film, np.zeros_like(q), 1.0)
     if found is not None:
         return found
     reached, part, q = 0.0, 0.5, np.zeros_like(q)
     while part > SMALLEST_PART:
         target = min(1.0, reached + part)
-        found = _newton(model, motion, history, q, target)
+        found = _newton(model, motion, film, q, target)
         if found is None:
             part *= 0.5
             continue
         if target == 1.0:
             return found
         reached, q = target, model.coordinates.copy()
-    evaluation = model.evaluate(motion, history)
+    evaluation = model.evaluate(motion, *film)
     if evaluation.status is Status.CONVERGED:
         evaluation.status = model.status = Status.NOT_CONVERGED
     return evaluation
 
 
 def _newton(
-    model: ElasticBearingModel, motion: np.ndarray, history: History | None, q: np.ndarray, part: float
+    model: ElasticBearingModel,
+    motion: np.ndarray,
+    film: tuple[History | None, float, float],
+    q: np.ndarray,
+    part: float,
 ) -> ElasticEvaluation | None:
     """Newton on q with the pose scaled by ``part``; steps are halved until the gap stays open and the residual falls."""
     elasticity, k = model.elasticity, model.bore.size
     full = np.concatenate((motion[:MOTION_SIZE], q, np.zeros(k)))
     full[:4] *= part
-    evaluation = model.evaluate(full, history)
+    evaluation = model.evaluate(full, *film)
     if evaluation.status is not Status.CONVERGED:
         return None
     scale = max(float(np.linalg.norm(evaluation.bore_load)), 1e-300)
@@ -120,7 +127,7 @@ def _newton(
         last = error
         for _ in range(12):
             full[MOTION_SIZE : MOTION_SIZE + k] = q + step
-            evaluation = model.evaluate(full, history)
+            evaluation = model.evaluate(full, *film)
             model.settling_steps += 1
             if evaluation.status is Status.CONVERGED:
                 residual = evaluation.bore_load - elasticity.force(q + step)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.drag import drag_gap_slopes, drag_rhs, drag_sums
+from exudyn_ehd.film.drag import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
+from exudyn_ehd.film.gap import contract_pose
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
@@ -41,6 +42,22 @@ def drag_by_gap(model: BearingModel) -> tuple[np.ndarray, np.ndarray]:
     c = film.columns
     face, cell = _slopes(model, ones, c.link)
     return face[None], np.stack((_ends(face) * c.D_r, cell * c.H_r))
+
+
+def add_drag_by_pose(model: BearingModel, gradient: np.ndarray) -> None:
+    """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
+    if model.compliant is not None:
+        face, cell = drag_by_gap(model)
+        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, gradient[:1, :4])
+        contract_pose(cell[1:], model.cos_x, model.sin_x, model.grid.z, gradient[1:, :4])
+        contract_pose(cell[:1], model.cos_x, model.sin_x, model.grid.z, gradient[:1, :4])
+        return
+    f, g, ones, limited = _flux(model), model.grid, model.solver.ones, model.limited
+    slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+    drag_pose_gradient(
+        model.P, f.cx_h, f.cz_h, slope, face_slope, g.width_x, g.width_z, g.link_x, g.link_z, model.cos_x, model.sin_x,
+        model.cos_f, model.sin_f, g.z, gradient,
+    )  # fmt: skip
 
 
 def drag_by_deflection(model: BearingModel, film: CompliantFilmSolver) -> np.ndarray:

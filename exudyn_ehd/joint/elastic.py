@@ -224,9 +224,11 @@ class ElasticBearingModel(BearingModel):
             base.status, base.motion, base.wrench, base.iterations, base._model, base._serial, self.bore_load
         )
 
-    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> ElasticEvaluation:
-        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0."""
-        return settle(self, motion, history)
+    def evaluate_steady(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
+        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0; the rest as for `evaluate`."""
+        return settle(self, motion, history, step, spin)
 
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of the last evaluation; nan without a film."""

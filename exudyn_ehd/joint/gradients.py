@@ -20,12 +20,12 @@ from exudyn_ehd.film.contact_loads import (
     contact_weights,
     couette_gradient_ratio,
 )
-from exudyn_ehd.film.gap import contract_pose
+from exudyn_ehd.film.gap import contract_ends, contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.stencil import integral_weights
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
-from exudyn_ehd.joint.drag import add_drag_rows, drag_by_deflection, drag_by_gap
+from exudyn_ehd.joint.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
@@ -93,10 +93,7 @@ def _integral_gradients(model: BearingModel, gradient: np.ndarray) -> tuple[np.n
     if has_extra_rows(model):
         extra = gradient[at : at + 2]
     if model.effects.uneven_drag:
-        face, cell = drag_by_gap(model)
-        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, extra[:1, :4])
-        contract_pose(cell[1:], model.cos_x, model.sin_x, model.grid.z, extra[1:, :4])
-        contract_pose(cell[:1], model.cos_x, model.sin_x, model.grid.z, extra[:1, :4])
+        add_drag_by_pose(model, extra)
     return gradient[:4], dc, extra
 
 
@@ -309,10 +306,5 @@ def _end_gradient(model: BearingModel) -> np.ndarray:
     """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a liner's contact acts on the gap."""
     slope = _film_gap_slope(model)
     assert slope is not None
-    field = np.zeros((1, *model.grid.shape))
-    step = model.grid.width_x[0]
-    field[0, :, -1] = model.end_pressures[1] * step * slope[:, -1]
-    field[0, :, 0] = -model.end_pressures[0] * step * slope[:, 0]
-    out = np.zeros((1, 4))
-    contract_pose(field, model.cos_x, model.sin_x, model.grid.z, out)
-    return out[0]
+    lower, upper = (model.end_pressures * model.grid.width_x[0]).tolist()
+    return contract_ends(slope, -lower, upper, model.cos_x, model.sin_x, model.grid.z)

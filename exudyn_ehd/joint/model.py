@@ -14,6 +14,7 @@ at the start of the step and the time since, and ``evaluation.history()`` is the
 from __future__ import annotations
 
 import math
+from operator import is_
 
 import numpy as np
 
@@ -22,7 +23,7 @@ from exudyn_ehd.film.choice import film_grid, film_solver, liner_film_solver
 from exudyn_ehd.film.compliant import CompliantFilmSolver
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.contact_loads import contact_wrench, couette_integral_law
-from exudyn_ehd.film.gap import largest_eccentricity, rigid_gap
+from exudyn_ehd.film.gap import add_to_gap, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.liner import LinerFilmSolver
 from exudyn_ehd.film.loads import (
     couette_integral,
@@ -114,6 +115,7 @@ class BearingModel:
             self.known = self.effects.pressure_law.transform(
                 np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
             )
+        self.known_ends = np.array(bearing.end_pressures)
         self.set_viscosity_ratio(1.0)
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
         self.remembers_density = (
@@ -135,7 +137,7 @@ class BearingModel:
         self.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale = self.pressure_scale * R**2
         self.shear_scale = mu * R**2 / c
-        self.end_pressures = np.array(b.end_pressures) / self.pressure_scale
+        self.end_pressures = self.known_ends / self.pressure_scale
         self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
         if self.liner_solver is not None and self.effects.liner is not None:
             self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
@@ -199,7 +201,10 @@ class BearingModel:
         assert self.contact_fields is not None
         history, step = self.start
         speed = math.hypot(self.grid.reference_length * self.omega, self.axial_speed)
-        return wear.grown(None if history is None else history.wear, np.sum(self.contact_fields.P, axis=0), speed, step)
+        pressure, *others = self.contact_fields.P
+        for other in others:
+            pressure = pressure + other
+        return wear.grown(None if history is None else history.wear, pressure, speed, step)
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -276,14 +281,12 @@ class BearingModel:
         """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
-        if self.extra is None or self.extra_link is None or any(a is not b for a, b in zip(fields, self.gap_fields)):
+        if self.extra is None or self.extra_link is None or not all(map(is_, fields, self.gap_fields)):
             self.gap_fields = fields
             self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
             self.extra_link, self.extra_slope_x, self.extra_slope_z = (np.empty(g.shape) for _ in range(3))
             gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
-        s.H += self.extra
-        s.HF += self.extra_link
-        return min(float(s.H.min()), float(s.HF.min()))
+        return float(add_to_gap(self.extra, self.extra_link, s.H, s.HF))
 
     def _solve(self, history: History | None, step: float) -> Status:
         if not all(map(math.isfinite, self.motion.tolist())):
@@ -404,9 +407,11 @@ class BearingModel:
             return np.full((6, MOTION_SIZE), np.nan)
         return wrench_tangent(self, slow_motion)
 
-    def evaluate_steady(self, motion: np.ndarray, history: History | None = None) -> Evaluation:
-        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it."""
-        return self.evaluate(motion, history)
+    def evaluate_steady(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> Evaluation:
+        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it. The rest as for `evaluate`."""
+        return self.evaluate(motion, history, step, spin)
 
     def shape(self) -> np.ndarray | None:
         """Scaled height of profile and wear (n, m), of undeformed surfaces, at the last evaluation; None for cylinders."""

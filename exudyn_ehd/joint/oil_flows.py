@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.energy import content_rate, end_section, exchange_sums, film_flows, outside_flows
+from exudyn_ehd.film.energy import (
+    content_rate,
+    end_section,
+    exchange_sums,
+    exchange_sums_fill,
+    film_flows,
+    outside_flows,
+)
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.model import BearingModel
@@ -85,15 +92,18 @@ def heat_and_leakage(model: BearingModel) -> tuple[float, float]:
     if model.compressible is not None:
         work, leaving = _compressible_work(model, model.compressible)
         return model.power_loss() + model.pressure_scale * model.flow_scale * work, leaving
-    s, y, g, b = model.solver, model.solver.system, model.grid, model.bearing
-    conserves = s.closure.conserves_mass
-    cavity = b.cavitation.cavity_pressure / model.pressure_scale
-    stepped = conserves and y.inverse_step > 0.0 and not s.instant
-    leaving, work = exchange_sums(
-        model.P, s.pressure, s.H, s.H_t, s.fill if conserves else s.ones, y.mass_old if stepped else s.H,
-        y.inverse_step if stepped else 0.0, s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, s.work.active, conserves,
-        cavity if math.isfinite(cavity) else 0.0,
-    )  # fmt: skip
+    s, y, g = model.solver, model.solver.system, model.grid
+    cavity = model.cavity_pressure if math.isfinite(model.cavity_pressure) else 0.0
+    if s.closure.conserves_mass:
+        stepped = y.inverse_step > 0.0 and not s.instant
+        leaving, work = exchange_sums_fill(
+            model.P, s.pressure, s.H, s.H_t, s.fill, y.mass_old if stepped else s.H, y.inverse_step if stepped else 0.0,
+            s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, cavity,
+        )  # fmt: skip
+    else:
+        leaving, work = exchange_sums(
+            model.P, s.pressure, y.kx, y.kz, y.fz, y.b, s.H_t, s.area, g.fixed, s.work.active, s.squeeze, cavity
+        )
     if model.axial_speed != 0.0:
         work += model.axial_speed / g.reference_length * end_section(model.P, s.H, g.width_x)
     return model.power_loss() + model.pressure_scale * model.flow_scale * work, leaving

@@ -40,7 +40,8 @@ def quantities(model: BearingModel) -> dict[str, float]:
         contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
         by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
         of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
-        ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K).
+        ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K), with a liner or a flexible
+        bore ``bore_displacement`` (m, the largest).
     """
     out = {
         "minimum_gap": model.minimum_gap,
@@ -77,13 +78,14 @@ def quantities(model: BearingModel) -> dict[str, float]:
         out["supply_flow"] = float(supply_flows(model).sum())
     if model.effects.thermal is not None:
         out |= model.effects.thermal.quantities()
+    if model.liner_solver is not None:
+        out["bore_displacement"] = float(np.abs(model.liner_solver.deflection).max()) * model.bearing.radial_clearance
     return out
 
 
 def power_loss(model: BearingModel) -> float:
     """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
-    x_t, y_t, bx_t, by_t = model.motion[4:8].tolist()
-    bx, by = model.motion[2:4].tolist()
+    bx, by, x_t, y_t, bx_t, by_t = model.motion[2:8].tolist()
     fx, fy, fz, mx, my, _ = model.wrench.tolist()
     along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
     power = fx * x_t + fy * y_t - mx * by_t + my * bx_t

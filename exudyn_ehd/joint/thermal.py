@@ -26,12 +26,18 @@ STAGNANT = 1e-14
 NO_FLOW = 1e-11
 
 
-def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float) -> np.ndarray:
-    """mu(T) / mu at the lubricant's own temperature."""
+def reference_viscosity(lubricant: Lubricant) -> float:
+    """Of the lubricant's temperature law at the lubricant's own temperature, Pa s."""
     law = lubricant.temperature_law
     assert law is not None
-    T = np.asarray(temperature, dtype=float)
-    return law.viscosity(T, lubricant.density) / law.viscosity(np.asarray(lubricant.temperature), lubricant.density)
+    return float(law.viscosity(float(lubricant.temperature), lubricant.density))
+
+
+def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float, reference: float) -> np.ndarray:
+    """mu(T) / mu at the lubricant's own temperature, ``reference`` of the law there."""
+    law = lubricant.temperature_law
+    assert law is not None
+    return law.viscosity(temperature, lubricant.density) / reference
 
 
 class LumpedTemperature:
@@ -46,6 +52,7 @@ class LumpedTemperature:
     def __init__(self, spec: LumpedThermal, bearing: JournalBearing) -> None:
         self.spec = spec
         self.lubricant = oil = bearing.lubricant
+        self.reference = reference_viscosity(oil)
         supply = spec.supply_temperature
         self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
         self.housing = supply if spec.housing_temperature is None else spec.housing_temperature
@@ -63,7 +70,7 @@ class LumpedTemperature:
         T = self.initial if history is None or history.temperature is None else float(history.temperature)
         if self.temperature != T:
             self.temperature = T
-            model.set_viscosity_ratio(float(viscosity_ratio(self.lubricant, T)))
+            model.set_viscosity_ratio(float(viscosity_ratio(self.lubricant, T, self.reference)))
 
     def _rates(self, model: BearingModel) -> tuple[float, float]:
         """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
@@ -151,6 +158,7 @@ class FilmTemperature:
         self.spec = spec
         self.field = field
         self.lubricant = oil = bearing.lubricant
+        self.reference = reference_viscosity(oil)
         supply = spec.supply_temperature
         self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
         bush = supply if spec.bush_temperature is None else spec.bush_temperature
@@ -174,7 +182,7 @@ class FilmTemperature:
         T = np.asarray(history.temperature) if known else self.initial_temperature(model)  # type: ignore[union-attr]
         if T is not self.temperature:
             self.temperature = T
-            self.field.set(viscosity_ratio(self.lubricant, T))
+            self.field.set(viscosity_ratio(self.lubricant, T, self.reference))
 
     def advance(self, model: BearingModel) -> np.ndarray:
         """Temperatures at the end of the step that was evaluated last (n, m)."""
@@ -287,7 +295,9 @@ class FilmTemperature:
 
     def _thinning(self) -> np.ndarray:
         """-d ln(mu) / dT at the film's temperatures, 1/K (n, m)."""
-        thicker, thinner = (viscosity_ratio(self.lubricant, self.temperature + d) for d in (-0.05, 0.05))
+        thicker, thinner = (
+            viscosity_ratio(self.lubricant, self.temperature + d, self.reference) for d in (-0.05, 0.05)
+        )
         return np.log(thicker / thinner) / 0.1
 
     def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ bearing3d  pressure around the bore with the journal in it
 orbit      orbit in the clearance circle
 load       polar diagram of the load on the bush
 traces     quantities over time or angle
+bush       deformed bushes with contours of a nodal field
 animation  orbit and pressure as gif or mp4
 vtk        film and bush as files for ParaView
 """

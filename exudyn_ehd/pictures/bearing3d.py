@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.data import Film
 from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
-from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, open_axes, styled
+from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError
 
@@ -76,7 +76,7 @@ def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: A
         _draw_arrows(ax, film, z)
         _finish_axes(ax, z, 1.0 + HILL, _camera(peak) if camera is None else camera)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
-        figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02)
+        style_ticks(figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02).ax)
         if own:
             R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
             ax.set_title(f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale", y=0.98)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.pictures.data import Film
-from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, styled
+from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import Unit, label, unit_for
 from exudyn_ehd.status import InputError
 
@@ -134,7 +134,7 @@ def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -
     with styled():
         figure, ax = open_axes(ax, SIZE)
         image = draw_map(ax, film, field, unit)
-        figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02)
+        style_ticks(figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02).ax)
         ax.set_title(_extreme(film, field, values, unit))
         return finish(figure, path)
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any
 
 import matplotlib
@@ -29,13 +30,12 @@ PALETTE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 COLUMN, PAGE = 3.5, 7.2
 RESOLUTION = 200
 
+# Type of pictures in column or page width, pt; ticks and legends are set an eighth smaller.
+TYPE_SIZE = 8.0
+
 RC = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 8.0,
-    "axes.titlesize": 8.0,
-    "figure.titlesize": 8.0,
-    "axes.labelsize": 8.0,
     "axes.linewidth": 0.6,
     "axes.prop_cycle": cycler(color=list(PALETTE)),
     "axes.grid": False,
@@ -43,22 +43,45 @@ RC = {
     "grid.color": "#D0D0D0",
     "lines.linewidth": 1.1,
     "lines.markersize": 4.0,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
     "xtick.major.width": 0.6,
     "ytick.major.width": 0.6,
-    "legend.fontsize": 7.0,
     "legend.frameon": False,
     "savefig.facecolor": "white",
     "figure.facecolor": "white",
 }
+TEXT = (
+    "font.size",
+    "axes.titlesize",
+    "axes.labelsize",
+    "figure.titlesize",
+    "figure.labelsize",
+    "legend.title_fontsize",
+)
+SMALL_TEXT = ("xtick.labelsize", "ytick.labelsize", "legend.fontsize")
+
+_type_size: ContextVar[float] = ContextVar("type size of the styled context", default=TYPE_SIZE)
 
 
 @contextmanager
-def styled() -> Iterator[None]:
-    """Context in which everything drawn has the style; the user's own settings come back after it."""
-    with matplotlib.rc_context(RC):
-        yield
+def styled(type_size: float | None = None) -> Iterator[None]:
+    """Context, or decorator of a function, in which everything drawn has the style; the user's own settings come back after it.
+
+    It sets all sizes of type, whatever others have left in matplotlib's settings: Exudyn's ``mbs.PlotSensor`` leaves large ones.
+
+    Parameters
+    ----------
+    type_size : float, optional
+        Type of titles and labels, pt; by default that of the styled context around this one, or `TYPE_SIZE`. Figures wider than a
+        page take more.
+    """
+    size = _type_size.get() if type_size is None else type_size
+    sizes = dict.fromkeys(TEXT, size) | dict.fromkeys(SMALL_TEXT, 0.875 * size)
+    token = _type_size.set(size)
+    try:
+        with matplotlib.rc_context(RC | sizes):
+            yield
+    finally:
+        _type_size.reset(token)
 
 
 def open_axes(ax: Any, size: tuple[float, float], **options: Any) -> tuple[Any, Any]:
@@ -80,8 +103,9 @@ def open_axes(ax: Any, size: tuple[float, float], **options: Any) -> tuple[Any, 
 
 
 def style_ticks(ax: Any) -> None:
-    """Give the ticks their style now: matplotlib makes most of them when it draws, outside of `styled`."""
-    ax.tick_params(labelsize=RC["xtick.labelsize"], width=RC["xtick.major.width"])
+    """Give the ticks their style now, inside of `styled`: matplotlib makes most of them when it draws, outside of it."""
+    ax.tick_params(which="both", labelsize=matplotlib.rcParams["xtick.labelsize"])
+    ax.tick_params(width=RC["xtick.major.width"])
 
 
 def finish(figure: Any, path: str | pathlib.Path | None) -> Any:

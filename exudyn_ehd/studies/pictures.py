@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, styled
+from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, style_ticks, styled
 from exudyn_ehd.studies.front import cheapest, pareto_front
 from exudyn_ehd.studies.table import Row, format_seconds
 
@@ -42,6 +42,7 @@ def work_precision(rows: Sequence[Row], title: str, per: str) -> Figure:
         figure = Figure(figsize=(7.2, 5.2), layout="constrained")
         axes = figure.add_subplot()
         draw_points(axes, rows, per)
+        style_ticks(axes)
         axes.set_title(title)
         # labels need the final place of the axes
         figure.draw_without_rendering()

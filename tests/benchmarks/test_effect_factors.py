@@ -1,15 +1,19 @@
 """Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table of factors.
 
 Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
-Targets: roughness
-and asperities 1.1, both 1.15, liner 2, laws of the oil 1.5; limits are these plus a tenth, others what was measured plus a fifth, those of
-laws and heat the target plus 15 %.
+Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state 1.25, of density 1.5, lumped heat
+1.05, field of heat 2.5), for others what
+was measured plus a twentieth, all times 1.02: so far do two runs on a shared machine differ.
 """
+
+import math
+import time
 
 import numpy as np
 import pytest
 
 from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.effects import Effects
 from exudyn_ehd.studies import effect_costs
 from exudyn_ehd.studies.costs import format_costs
 from exudyn_ehd.studies.growth import plain_bearing
@@ -17,15 +21,16 @@ from exudyn_ehd.studies.growth import plain_bearing
 pytestmark = pytest.mark.benchmark
 
 EVALUATION_LIMITS = {
-    "`VogelTemperature`": 1.1, "`PatirCheng`": 1.2, "`GreenwoodTripp`": 1.2, "`PatirCheng`, `GreenwoodTripp`": 1.25, "`Crown`": 1.5,
-    "`GreenwoodTripp`, `ArchardWear`": 1.65, "`ElasticLiner`": 2.1, "`RegularisedWall`": 1.45, "`squeeze=False`": 1.1,
+    "`VogelTemperature`": 1.05, "`PatirCheng`": 1.1, "`GreenwoodTripp`": 1.15, "`PatirCheng`, `GreenwoodTripp`": 1.2, "`Crown`": 1.1,
+    "`GreenwoodTripp`, `ArchardWear`": 1.25, "`ElasticLiner`": 2.0, "`RegularisedWall`": 1.1, "`squeeze=False`": 1.05,
+    "`PatirCheng`, unequally rough": 1.35, "`BarusPressure`": 1.2, "`RoelandsPressure`": 1.2, "`CarreauShear`": 1.2,
 }  # fmt: skip
 # Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
 STEP_LIMITS = {
-    "`BarusPressure`": 1.5, "`RoelandsPressure`": 1.5, "`CarreauShear`": 1.5, "`DowsonHigginson`": 1.5,
+    "`BarusPressure`": 1.25, "`RoelandsPressure`": 1.25, "`CarreauShear`": 1.25, "`DowsonHigginson`": 1.5,
     "`DowsonHigginson`, `BarusPressure`": 1.5, "`LumpedThermal`": 1.05, "`FilmEnergy`": 2.5,
 }  # fmt: skip
-MARGIN = 1.15
+MARGIN = 1.02
 SMALLER = {"journal_radius": 0.025, "length": 0.05, "radial_clearance": 25e-6, "end_pressures": (1e5, 1e5)}
 AT_REST = np.tile([13e-6, 5e-6, 1e-4, -1.5e-4, 1e-3, -1e-3, 0.05, 0.02, 250.0, 0.3], (3, 1))
 
@@ -36,7 +41,7 @@ def test_effects_on_the_orbit():
     factors = {cost.what: cost.factor for cost in found if cost.per == effect_costs.EVALUATION}
     assert not [cost for cost in found if cost.failure]
     for name, limit in EVALUATION_LIMITS.items():
-        assert factors[name] < limit, name
+        assert factors[name] < MARGIN * limit, name
 
 
 @pytest.mark.parametrize("name", STEP_LIMITS)
@@ -65,3 +70,28 @@ def test_reduced_films(benchmark, name, tangent):
                 evaluation.tangent()
 
     benchmark.pedantic(run, rounds=8, warmup_rounds=1)
+
+
+def test_impedance_map_in_microseconds():
+    """Target 5 us per evaluation, with its tangent."""
+    model = build_model(plain_bearing(**effect_costs.CASES["`ImpedanceMap`"].options))
+    states = effect_costs.orbit()
+    best = math.inf
+    for _ in range(8):
+        start = time.process_time()
+        for state in states:
+            model.evaluate(state).tangent()
+        best = min(best, (time.process_time() - start) / len(states))
+    print(f"{1e6 * best:.2f} us per evaluation with tangent")
+    assert best < 5e-6
+
+
+def test_off_costs_nothing():
+    """A bearing that spells every option out as None against a model without effects: noise of a few per cent at most."""
+    off = dict.fromkeys(("contact", "asperity", "roughness", "wear", "profile", "thermal", "bush"))
+    described = build_model(plain_bearing(**off, supply=()))
+    models = {"described": described, "bare": type(described)(described.bearing, effects=Effects())}
+    times = effect_costs.block(models, effect_costs.orbit(), 40)
+    ratio = times["described"][0] / times["bare"][0]
+    print(f"{ratio:.3f}")
+    assert abs(ratio - 1.0) < 0.03

@@ -33,6 +33,7 @@ EFFECTS = {
     },
 }
 CLOSURES = {
+    "full": ehd.FullSommerfeld(),
     "gumbel": ehd.Gumbel(cavity_pressure=-5e4),
     "swift": ehd.SwiftStieber(cavity_pressure=-5e4),
     "elrod": ehd.ElrodAdams(cavity_pressure=-5e4),

@@ -4,7 +4,9 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 import toy
-from exudyn.utilities import InertiaCuboid
+from exudyn.utilities import InertiaCuboid, InertiaCylinder
+
+import exudyn_ehd as ehd
 
 NODE_TYPES = {
     "EP": exu.NodeType.RotationEulerParameters,
@@ -45,6 +47,22 @@ def add_body(mbs, node, position=(0, 0, 0), matrix=None, velocity=(0, 0, 0), spi
         **kind,
         **options,
     )
+
+
+def loaded_journal(bearing, load, speed=300.0):
+    """A steel journal on ground under a constant load, axially held; returns mbs, not yet assembled, and joint."""
+    mbs = new_system()
+    journal = mbs.CreateRigidBody(
+        inertia=InertiaCylinder(density=7800.0, length=0.1, outerRadius=bearing.journal_radius, axis=2),
+        initialAngularVelocity=[0.0, 0.0, speed],
+        nodeType=exu.NodeType.RotationRotationVector,
+    )
+    mbs.CreateForce(itemNumber=journal, loadVector=list(load))
+    joint = ehd.CreateLubricatedJoint(
+        mbs, name="bearing", itemNumbers=[mbs.CreateGround(), journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing,
+        axial=ehd.Held(),
+    )  # fmt: skip
+    return mbs, joint
 
 
 def settings(end_time, steps, tolerance=1e-10, full_newton=True):

@@ -172,11 +172,11 @@ def rod(housing, bush=BUSH):
     return mbs, joint
 
 
-def total(mbs, modes=()):
-    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position."""
+def total(mbs, modes=(), matrix=None):
+    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position, ``matrix`` the `SystemMatrix`."""
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
-    for part in SystemMatrix.of(mbs).parts:
+    for part in (SystemMatrix.of(mbs) if matrix is None else matrix).parts:
         rows, columns, values = (np.asarray(a) for a in part(mbs, 1.0, 0.0, 0.0))
         own = (rows < n) & (columns < n)
         np.add.at(flow, rows[own], values[own] * q_t[columns[own]])

@@ -4,11 +4,9 @@ import math
 import sys
 import xml.etree.ElementTree as ET
 
-import exudyn as exu
 import numpy as np
 import pytest
 import scenes
-from exudyn.utilities import InertiaCylinder
 from PIL import Image
 
 import exudyn_ehd as ehd
@@ -22,8 +20,6 @@ RADIUS, LENGTH, CLEARANCE = 0.025, 0.05, 25e-6
 
 
 def rotor(bush=None, **options):
-    """A journal on ground under a constant load."""
-    mbs = scenes.new_system()
     bearing = ehd.JournalBearing(
         journal_radius=RADIUS,
         length=LENGTH,
@@ -33,23 +29,7 @@ def rotor(bush=None, **options):
         bush=bush,
         **options,
     )
-    journal = mbs.CreateRigidBody(
-        inertia=InertiaCylinder(density=7800.0, length=0.1, outerRadius=RADIUS, axis=2),
-        initialAngularVelocity=[0.0, 0.0, 300.0],
-        nodeType=exu.NodeType.RotationRotationVector,
-    )
-    mbs.CreateForce(itemNumber=journal, loadVector=[600.0, -1800.0, 0.0])
-    ground = mbs.CreateGround()
-    joint = ehd.CreateLubricatedJoint(
-        mbs,
-        name="b",
-        itemNumbers=[ground, journal],
-        position=[0, 0, 0],
-        axis=[0, 0, 1],
-        bearing=bearing,
-        axial=ehd.Held(),
-    )
-    return mbs, joint
+    return scenes.loaded_journal(bearing, (600.0, -1800.0, 0.0))
 
 
 def run(mbs, end_time=2e-3, steps=20):
@@ -116,7 +96,7 @@ def test_what_can_not_be_recorded_is_refused(make_bearing):
     with pytest.raises(InputError, match="record_films: frames must be an integer >= 2"):
         joint.record_films(frames=1)
     with pytest.raises(
-        InputError, match=r"no films of joint 'b' were kept; call joint.record_films\(\) before the run"
+        InputError, match=r"no films of joint 'bearing' were kept; call joint.record_films\(\) before the run"
     ):
         joint.animate("a.gif")
 

@@ -398,6 +398,39 @@ def test_memory_advances_on_accepted_steps_only(solver, rejecting):
         assert history.force[k, 0] == pytest.approx(film.law(motion)[0][0] - film.extra * memory, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.parametrize("solver", [exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.RK44], ids=str)
+def test_later_run_from_the_old_initial_values_remembers_nothing(solver):
+    """Without ``updateInitialValues`` Exudyn starts anew, whatever the start time: so do memory and record."""
+    film = LaggingFilm(lambda m: False)
+    mbs, joint, _ = scene(film)
+    mbs.Assemble()
+    settings = scenes.settings(0.001, 20)
+    mbs.SolveDynamic(settings, solverType=solver)
+    first = joint.history
+    settings.timeIntegration.startTime, settings.timeIntegration.endTime = 0.001, 0.002
+    mbs.SolveDynamic(settings, solverType=solver)
+    again = joint.history
+    assert len(again.time) == len(first.time)
+    # times that sum up differently
+    np.testing.assert_allclose(again.time - 0.001, first.time, rtol=0, atol=1e-15)
+    np.testing.assert_allclose(again.force, first.force, rtol=0, atol=1e-9 * np.abs(first.force).max())
+
+
+def test_a_joint_that_does_not_move_goes_on():
+    """Nothing but its memory has changed: the same coordinates are the end of the run and its start."""
+    film = LaggingFilm(lambda m: False)
+    mbs = scenes.new_system()
+    items = [scenes.add_body(mbs, "ground"), scenes.add_body(mbs, "Rxyz")]
+    mbs.CreateGenericJoint(itemNumbers=items, position=[0, 0, 0], constrainedAxes=[1, 1, 1, 1, 1, 1])
+    joint = toy.attach(mbs, items, film, position=[0, 0, 0.0], name="held")
+    mbs.Assemble()
+    settings = scenes.settings(0.001, 10)
+    mbs.SolveDynamic(settings, updateInitialValues=True)
+    settings.timeIntegration.startTime, settings.timeIntegration.endTime = 0.001, 0.002
+    mbs.SolveDynamic(settings, updateInitialValues=True)
+    assert len(joint.history.time) == 21
+
+
 def test_static_solve_asks_for_the_steady_film():
     film = LaggingFilm(lambda m: False)
     mbs, joint, journal = scene(film)

@@ -2,6 +2,7 @@
 
 import math
 
+import elastic_scene
 import exudyn.itemInterface as eii
 import numpy as np
 import pytest
@@ -109,6 +110,33 @@ def test_contact_is_counted_over_the_steps():
     _run(mbs)
     share = joint.audit(measure_time=True)["contact"].time_share
     assert share is not None and 0.0 <= share < 1.0
+
+
+ALUMINIUM = ehd.SaintVenantKirchhoff(youngs_modulus=7e10, poisson_ratio=0.3, density=2700.0)
+FLEXIBLE = {
+    "modal": ehd.ModalBush(mesh=elastic_scene.CYLINDER, material=ALUMINIUM, tolerance=0.2),
+    "nodal": ehd.ANCFBush(mesh=elastic_scene.CYLINDER, material=ALUMINIUM),
+}
+
+
+@pytest.mark.parametrize(
+    "cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], ids=["swift", "elrod"]
+)
+@pytest.mark.parametrize("kind", FLEXIBLE)
+def test_a_flexible_bore_is_audited_as_deformed(kind, cavitation):
+    """Against the films that the run kept. Indicators of the field are those of a settled bore, the others those of the run."""
+    scene = elastic_scene.Scene(elastic_scene.bearing(FLEXIBLE[kind], cavitation=cavitation))
+    joint = scene.joint
+    joint.record_films(period=0.0)
+    scene.run(scenes.settings(4e-3, 40, tolerance=1e-7), ehd.SolveDynamicSparse if kind == "nodal" else None)
+    found, history = joint.audit(measure_time=True), joint.history
+    largest = [float(np.abs(film.bore_displacement).max()) for film in joint.films]
+    np.testing.assert_allclose(history.bore_displacement, largest, rtol=1e-3)
+    value = float(np.max(history.bore_displacement / history.minimum_gap))
+    assert value > 0.1 and found["elasticity"].matters
+    assert found["elasticity"].value == pytest.approx(value, rel=1e-12)
+    assert found["piezoviscosity"].value == pytest.approx(2e-8 * np.max(history.peak_pressure), rel=1e-12)
+    assert 0.0 < found["elasticity"].time_share < 1.0
 
 
 def test_a_liner_can_be_asked_about():

@@ -126,6 +126,20 @@ def test_without_memory_the_run_is_another():
     assert np.abs(joint.history.motion[-1, :2] - whole.motion[-1, :2]).max() > 1e-6 * CLEARANCE
 
 
+@pytest.mark.parametrize("what", ["oil content", "temperature", "wear"])
+def test_later_run_from_the_old_initial_values_is_the_first_one_again(what):
+    """Under a load that lasts, a run from the same initial values at a later time has the same film."""
+    mbs, joint = system(BEARINGS[what])
+    mbs.SetLoadParameter(0, "loadVectorUserFunction", 0)
+    mbs.SetLoadParameter(0, "loadVector", [300.0, -1500.0, 0.0])
+    ehd.SolveDynamic(mbs, settings(0, HALF))
+    first = joint.history
+    ehd.SolveDynamic(mbs, settings(HALF, 2 * HALF))
+    again = joint.history
+    assert again.time[0] == pytest.approx(HALF * STEP)
+    assert_same(dataclasses.replace(first, time=again.time), again, 1e-9)
+
+
 def test_explicit_solver_goes_on():
     kind = {"solverType": exu.DynamicSolverType.RK44}
     mbs, joint = system(PLAIN)

@@ -1,10 +1,8 @@
 """What a joint has computed: its film at the last accepted state, pictures."""
 
-import exudyn as exu
 import numpy as np
 import pytest
 import scenes
-from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
@@ -14,25 +12,7 @@ SPEED = 300.0
 
 
 def rotor(bearing):
-    """A journal on ground under a constant load, axially held; returns mbs and joint."""
-    mbs = scenes.new_system()
-    ground = mbs.CreateGround()
-    journal = mbs.CreateRigidBody(
-        inertia=InertiaCylinder(density=7800.0, length=0.1, outerRadius=bearing.journal_radius, axis=2),
-        initialAngularVelocity=[0.0, 0.0, SPEED],
-        nodeType=exu.NodeType.RotationRotationVector,
-    )
-    mbs.CreateForce(itemNumber=journal, loadVector=[300.0, -800.0, 0.0])
-    joint = ehd.CreateLubricatedJoint(
-        mbs,
-        name="bearing",
-        itemNumbers=[ground, journal],
-        position=[0, 0, 0],
-        axis=[0, 0, 1],
-        bearing=bearing,
-        axial=ehd.Held(),
-    )
-    return mbs, joint
+    return scenes.loaded_journal(bearing, (300.0, -800.0, 0.0), SPEED)
 
 
 def run(mbs, end_time=2e-3, steps=20):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film import reynolds
+from exudyn_ehd.film.band_lu import PAD
 
 
 class Film(NamedTuple):
@@ -75,3 +76,29 @@ def dense_matrix() -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
         return A
 
     return build
+
+
+@pytest.fixture(scope="session")
+def banded() -> Callable[[int, int, int], np.ndarray]:
+    """A column diagonally dominant matrix with a full band, by size, width and seed."""
+
+    def make(count, width, seed):
+        A = -np.random.default_rng(seed).uniform(size=(count, count))
+        A[np.abs(np.subtract.outer(np.arange(count), np.arange(count))) > width] = 0.0
+        A[np.diag_indices(count)] = 1.1 + np.maximum(np.abs(A).sum(axis=0), np.abs(A).sum(axis=1))
+        return A
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def bands() -> Callable[[np.ndarray, int], tuple[np.ndarray, np.ndarray]]:
+    """Lower and upper band of a matrix in the solvers' storage."""
+
+    def make(A, width):
+        lower, upper = (np.zeros((len(A) + PAD, width + 1 + PAD)) for _ in range(2))
+        for d in range(min(width, len(A) - 1) + 1):
+            upper[: len(A) - d, d], lower[: len(A) - d, d] = np.diagonal(A, d), np.diagonal(A, -d)
+        return lower, upper
+
+    return make

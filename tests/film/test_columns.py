@@ -3,29 +3,14 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.band_lu import PAD, factor_lu
+from exudyn_ehd.film.band_lu import factor_lu
 from exudyn_ehd.film.columns import solve_columns
 from exudyn_ehd.film.direct import factor_band
 
 
-def banded(count, width, seed):
-    """A column diagonally dominant matrix with a full band."""
-    A = -np.random.default_rng(seed).uniform(size=(count, count))
-    A[np.abs(np.subtract.outer(np.arange(count), np.arange(count))) > width] = 0.0
-    A[np.diag_indices(count)] = 1.1 + np.maximum(np.abs(A).sum(axis=0), np.abs(A).sum(axis=1))
-    return A
-
-
-def bands(A, width):
-    lower, upper = (np.zeros((len(A) + PAD, width + 1 + PAD)) for _ in range(2))
-    for d in range(min(width, len(A) - 1) + 1):
-        upper[: len(A) - d, d], lower[: len(A) - d, d] = np.diagonal(A, d), np.diagonal(A, -d)
-    return lower, upper
-
-
 @pytest.mark.parametrize("count, width", [(1, 1), (3, 2), (7, 3), (30, 5), (41, 12)])
 @pytest.mark.parametrize("sides", [1, 9])
-def test_twins(count, width, sides):
+def test_twins(banded, bands, count, width, sides):
     b, inverse = np.random.default_rng(1).normal(size=(count, sides)), np.zeros(count)
     A = banded(count, width, count)
     lower, upper = bands(A, width)

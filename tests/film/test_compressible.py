@@ -15,6 +15,7 @@ from exudyn_ehd.film.density_matrix import (
     full_balance,
 )
 from exudyn_ehd.film.direct import number_cells
+from exudyn_ehd.joint.build import build_model
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
 DENSITY = ehd.DowsonHigginson()
@@ -148,11 +149,60 @@ def test_matrix_of_a_full_film_equals_the_general_one(count):
     film = Balance(*fields, ~full)
     order, number = np.zeros(n * m, dtype=np.int64), np.zeros((n, m), dtype=np.int64)
     unknowns, width = number_cells(full, film.kx, order, number)
-    found, expected = np.full((2, unknowns, width + 5), np.nan), np.zeros((2, n * m, 2 * m + 8))
+    found, expected = np.full((2, 2, unknowns, width + 5), np.nan)
     assemble_full(rho_P, film, number, order, unknowns, *found)
-    assemble_compressible(np.ones((n, m)), rho, rho_P, film, full, number, order, unknowns, width, *expected)
-    for band, twin, first in zip(found, expected, (1, 0)):
-        np.testing.assert_allclose(band[:, first : width + 1], twin[:unknowns, first : width + 1], atol=1e-14)
+    assemble_compressible(np.ones((n, m)), rho, rho_P, film, full, number, order, unknowns, *expected)
+    np.testing.assert_allclose(found, expected, atol=1e-14)
+
+
+@pytest.mark.parametrize("case", ["full", "partly", "cut", "across a cavity", "history"])
+def test_matrix_is_the_derivative_of_the_balance(case):
+    """Central differences, which are exact as the balance is linear in every unknown; signs of the Couette fluxes at random."""
+    rng = np.random.default_rng(6)
+    n, m = 8, 5
+    P, rho, rho_P = 1.0 + rng.random((3, n, m))
+    fill = rng.random((n, m))
+    fields = rng.random(size=(8, n, m))
+    fields[2:4] -= 0.5
+    if case == "cut":
+        fields[0, 3] = fields[2, 3] = 0.0
+    fields[1, :, -1] = fields[3, :, -1] = 0.0
+    if case != "history":
+        fields[5:7] = 0.0
+    fixed = np.zeros((n, m), dtype=bool)
+    fixed[:, 0] = True
+    full = ~fixed & (rng.random((n, m)) < 0.5) if case in ("partly", "cut", "history") else ~fixed
+    numbered = ~fixed
+    if case == "across a cavity":
+        numbered = full = ~fixed & (np.arange(n) < 5)[:, None] & (rng.random((n, m)) < 0.8)
+    fill[full | fixed] = 1.0
+    film = Balance(*fields, fixed)
+    order, number = np.zeros(n * m, dtype=np.int64), np.zeros((n, m), dtype=np.int64)
+    count, width = number_cells(numbered, film.kx, order, number)
+    lower, upper = np.full((2, count, width + 5), np.nan)
+    assemble_compressible(fill, rho, rho_P, film, full, number, order, count, lower, upper)
+    A = np.zeros((count, count))
+    for r in range(count):
+        for d in range(min(width, count - 1 - r) + 1):
+            A[r, r + d] = upper[r, d]
+            if d:
+                A[r + d, r] = lower[r, d]
+    assert np.all(lower[:, width + 1 :] == 0.0) and np.all(upper[:, width + 1 :] == 0.0)
+    expected = np.zeros((count, count))
+    for q in range(count):
+        at = divmod(order[q], m)
+        sides = []
+        for h in (0.5, -0.5):
+            p, f, d, out = P.copy(), fill.copy(), rho.copy(), np.empty((n, m))
+            if full[at]:
+                p[at] += h
+                d[at] += h * rho_P[at]
+            else:
+                f[at] += h
+            compressible_balance(p, f, d, film, out)
+            sides.append(out.ravel()[order[:count]])
+        expected[:, q] = sides[0] - sides[1]
+    np.testing.assert_allclose(A, expected, atol=1e-13)
 
 
 @pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
@@ -167,3 +217,23 @@ def test_warm_start_and_cold_start_agree(closure):
 def test_oil_beyond_the_law_has_no_pressure():
     with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
         slider(60, ehd.BarusPressure(coefficient=3e-8))
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_journal_in_the_centre_but_for_rounding(closure):
+    """The pressures are rounding themselves: no step becomes a small share of them, and vertices change sides for nothing."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.02, length=0.02, radial_clearance=25e-6, cavitation=closure, film=ehd.FiniteLength(n_theta=45, n_z=4),
+        lubricant=ehd.Lubricant(viscosity=0.015, density_law=DENSITY),
+    )  # fmt: skip
+    model, rng = build_model(bearing), np.random.default_rng(0)
+    for _ in range(40):
+        motion = np.zeros(10)
+        motion[:2] = rng.normal(size=2) * 10.0 ** rng.uniform(-22, -17)
+        motion[4:6] = rng.normal(size=2) * 10.0 ** rng.uniform(-20, -14)
+        motion[8] = rng.uniform(-300, 300)
+        model.forget()
+        found = model.evaluate(motion, model.initial_history(motion))
+        assert found.status is ehd.Status.CONVERGED
+        # 500 N at an eccentricity ratio of one half
+        assert np.abs(found.wrench[:2]).max() < 1e-6

@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.density_field import NEAR, density_at, density_slope_at, look_up, pressure_at, viscosity_at
+from exudyn_ehd.film.density_field import NEAR, WEAK, density_at, density_slope_at, look_up, pressure_at, viscosity_at
 
 PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
 VISCOSITIES = {
@@ -88,6 +88,17 @@ def asked(P, scale, floor, law, share, known):
     density_at(P, scale, floor, law.kernel_table, share, known, rho)
     density_slope_at(P, scale, floor, law.kernel_table, share, known, rho_P)
     return rho, rho_P
+
+
+def test_weak_and_strong_tension():
+    """The exponential's series and the exponential, across the tension where they take turns."""
+    density = ehd.DowsonHigginson()
+    law = density.bound(None)
+    p = np.array([[-1e-3, -1e5, -0.99 * WEAK / 0.6e-9, 0.0, 1e6]])
+    for strong in (p, np.append(p, [[-1.01 * WEAK / 0.6e-9, -1e8]], axis=1)):
+        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, 1.0, np.full((6, strong.size), np.nan))
+        np.testing.assert_allclose(rho, density.ratio(strong), rtol=2e-15)
+        np.testing.assert_allclose(rho_P, density.ratio_slope(strong) / density.ratio(strong), rtol=1e-10)
 
 
 def test_density_kernel_equals_its_twin():

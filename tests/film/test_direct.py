@@ -143,7 +143,7 @@ def test_known_neighbours_move_to_the_right(make_film, dense_matrix):
     np.testing.assert_allclose(rhs, expected, rtol=1e-12, atol=1e-13)
 
 
-@pytest.mark.parametrize("count_rhs", (1, 3, 4, 5, 8, 9))
+@pytest.mark.parametrize("count_rhs", (1, 3, 4, 5, 6, 8, 9, 10))
 def test_many_right_hand_sides(make_film, dense_matrix, count_rhs):
     f = make_film(7, 14, 6)
     active = _active_sets(14, 6, 7)["ring"]

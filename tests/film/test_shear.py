@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.shear import power_from, power_table, thin_conductance, thin_viscosity
+from exudyn_ehd.film.shear import power_table, powers, thin_conductance, thin_flux, thin_viscosity
 
 LAW = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)
 TABLE = power_table(-0.2)
@@ -23,8 +23,10 @@ def test_table_of_powers(n):
     """Quintic Hermite on 2048 intervals, up to a rate of 50 / lambda and beyond."""
     e = 0.5 * (n - 1.0)
     table = power_table(e)
-    for g in np.concatenate(([0.0], np.geomspace(1e-6, 1e4, 4001))):
-        assert power_from(table, e, -g, 1.0 + g * g) == pytest.approx((1.0 + g * g) ** e, rel=1e-12)
+    speed, gap = -2.0, np.append(1e300, 2.0 / np.geomspace(1e-6, 1e4, 4001))[None]
+    found = np.empty_like(gap)
+    powers(gap, speed, e, table, found)
+    np.testing.assert_allclose(found, (1.0 + (speed / gap) ** 2) ** e, rtol=1e-12)
 
 
 @pytest.mark.parametrize("vx", [0.0, 40.0, -150.0])
@@ -69,6 +71,22 @@ def test_conductance_kernel(tangent):
     np.testing.assert_allclose(
         g_v, (conductance(H, vx + s)[0] - conductance(H, vx - s)[0]) / (2 * s), rtol=1e-6, atol=1e-9
     )
+
+
+@pytest.mark.parametrize("vx", [0.0, 150.0, -4e4])
+def test_conductances_from_scratch(vx):
+    """`thin_flux` is H^3 and its derivatives through `thin_conductance`, also beyond the table's end (a rate of 50 / lambda)."""
+    gap_x, H = np.random.default_rng(5).uniform(0.2, 2.0, (2, 5, 4))
+    gap_z, *found = (np.empty_like(H) for _ in range(7))
+    law = (vx, 2e-3, 0.6, 0.2, TABLE)
+    thin_flux(H, gap_x, *law, gap_z, *found)
+    np.testing.assert_array_equal(gap_z, np.column_stack((0.5 * (H[:, :-1] + H[:, 1:]), H[:, -1])))
+    for gap, tangent, (g, g_h, g_v) in ((gap_x, True, found[:3]), (gap_z, False, found[3:])):
+        expected = gap**3, 3.0 * gap**2, np.zeros_like(gap)
+        thin_conductance(gap, *law, tangent, *expected)
+        np.testing.assert_allclose(g, expected[0], rtol=1e-14)
+        np.testing.assert_allclose(g_h, expected[1], rtol=1e-13)
+        np.testing.assert_allclose(g_v, expected[2], rtol=1e-13)
 
 
 def test_couette_shear_of_a_bearing_is_the_law():

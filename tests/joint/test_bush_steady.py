@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.build import build_model
@@ -99,16 +100,17 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
     reduced, full = (solve(b, tilt=tilt, film=FINE_FILM, cavitation=cavitation) for b in bushes)
-    # what the default tolerance promises for steel; a bush three times as soft shares three times the error, less what the film evens
-    error = 0.01 if modulus > 1e11 else 0.015
+    # what the default tolerance promises for steel; a bush three times as soft misses its peak by 1.1 % when aligned
+    error = 0.01 if modulus > 1e11 else 0.012
     assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=error)
     assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=error)
     assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=error)
 
 
-def test_many_modes_are_within_a_thousandth_of_the_nodes():
-    bushes = modal(2.1e10, FINE, tolerance=5e-3, tilted=False), nodal(2.1e10, FINE)
-    reduced, full = (solve(b, film=FINE_FILM) for b in bushes)
+@pytest.mark.parametrize(("modulus", "tilt"), [(2.1e10, 0.0), (2.1e11, 1e-4)], ids=["soft, aligned", "steel, tilted"])
+def test_many_modes_are_within_a_thousandth_of_the_nodes(modulus, tilt):
+    bushes = modal(modulus, FINE, tolerance=5e-3, tilted=tilt > 0.0), nodal(modulus, FINE)
+    reduced, full = (solve(b, film=FINE_FILM, tilt=(0.0, tilt)) for b in bushes)
     assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=1e-3)
     assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=1e-3)
 
@@ -172,6 +174,44 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
     rigid = ehd.equilibrium(dataclasses.replace(bearing, bush=None), speed=SPEED, load=load)
     assert eq.stiffness[1, 1] < rigid.stiffness[1, 1]
     assert eq.eccentricity_ratio > rigid.eccentricity_ratio
+
+
+def test_damping_is_that_of_a_bore_that_follows_slowly():
+    """K q = Q with the rates of journal and bore: dq/dx by differences of steady films, the balance by scipy, force by differences."""
+    bearing = make_bearing(modal(7e10, tolerance=0.1, tilted=False))
+    eq = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -20e3))
+    model = build_model(bearing)
+    h, v = 1e-4 * C, 1e-5
+
+    def settled(x, y):
+        model.evaluate_steady(np.array([x, y, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
+        return model.coordinates.copy()
+
+    x, y = eq.position
+    at_rest = settled(x, y)
+    follow = np.stack(
+        [(settled(x + h, y) - settled(x - h, y)) / (2 * h), (settled(x, y + h) - settled(x, y - h)) / (2 * h)]
+    )
+
+    def force(velocity):
+        def motion(q):
+            return np.concatenate(([x, y, 0, 0, *velocity, 0, 0, SPEED, 0.0], q, velocity @ follow))
+
+        def lack(scaled):
+            q = scaled * C
+            return (model.evaluate(motion(q)).bore_load - model.elasticity.force(q)) / 20e3 / C
+
+        found = root(lack, at_rest / C, tol=1e-12)
+        assert np.abs(found.fun).max() * C < 1e-6
+        return model.evaluate(motion(found.x * C)).wrench[:2].copy()
+
+    for i, axis in enumerate(np.eye(2)):
+        damping = -(force(v * axis) - force(-v * axis)) / (2 * v)
+        # the active set may change by a vertex within the differences
+        assert np.allclose(eq.damping[:, i], damping, rtol=0, atol=2e-3 * abs(eq.damping).max())
+    rigid = ehd.equilibrium(dataclasses.replace(bearing, bush=None), speed=SPEED, load=(0.0, -20e3))
+    # without the bore's part it would be another
+    assert abs(eq.damping - rigid.damping).max() > 0.05 * abs(rigid.damping).max()
 
 
 @pytest.mark.parametrize(

@@ -156,11 +156,11 @@ def test_equal_shares_call_nothing(monkeypatch):
     def forbidden(*_):
         raise AssertionError("called for equally rough surfaces")
 
-    for name in ("drag_integrals", "add_drag_rows", "drag_by_gap"):
+    for name in ("drag_integrals", "add_drag_rows", "drag_by_gap", "add_drag_by_pose"):
         monkeypatch.setattr(f"exudyn_ehd.joint.drag.{name}", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.model.drag_integrals", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.gradients.add_drag_rows", forbidden)
-    monkeypatch.setattr("exudyn_ehd.joint.gradients.drag_by_gap", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.gradients.add_drag_by_pose", forbidden)
     model_of(0.5).evaluate(at(0.5)).tangent()
     with pytest.raises(AssertionError):
         model_of(0.8).evaluate(at(0.5))

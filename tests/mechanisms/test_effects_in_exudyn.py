@@ -57,8 +57,10 @@ def compare(run, measured, request):
             for name in ("motion", "force", "moment", "minimum_gap", "peak_pressure", "friction_torque", "power_loss"):
                 assert np.all(np.isfinite(getattr(history, name))), name
         print(f"{request.node.name}: {steps:.2f} Newton iterations per step, plain film {plain_steps:.2f}")
-        # the exact tangent: one iteration more at most, for effects that make the film more nonlinear
-        measured("Newton iterations per step", steps, plain_steps + 1.0)
+        # the exact tangent: a quarter of an iteration more at most, where surfaces touch (0.20) or cavities refill (0.09)
+        measured("Newton iterations per step", steps, plain_steps + 0.25)
+        # as the guide says
+        assert 1.1 < steps < 2.6
         return on, off
 
     return compare
@@ -110,9 +112,17 @@ def test_elrod_adams_conserves_oil(compare):
     assert on.minimum_gap.min() > 0.0
 
 
-def test_groove_feeds_the_film(compare):
-    groove = ehd.AxialGroove(angle=0.5 * np.pi, width_angle=0.5, length=0.01, pressure=2e5)
-    on, off = compare(bearing(supply=(groove,)), bearing())
+@pytest.mark.parametrize(
+    "area",
+    [
+        ehd.AxialGroove(angle=0.5 * np.pi, width_angle=0.5, length=0.01, pressure=2e5),
+        ehd.Hole(angle=0.5 * np.pi, diameter=0.006, pressure=2e5),
+        ehd.Pocket(angle=0.5 * np.pi, width_angle=0.5, length=0.006, pressure=2e5),
+    ],
+    ids=lambda area: type(area).__name__,
+)
+def test_supply_feeds_the_film(compare, area):
+    on, off = compare(bearing(supply=(area,)), bearing())
     assert np.all(on.supply_flow[10:] > 0.0) and np.all(np.isnan(off.supply_flow))
     # what is pressed in leaves at the ends
     assert on.leakage[-1] > off.leakage[-1]
@@ -151,6 +161,12 @@ def test_wear_deepens_the_bore(compare):
 def test_crown_costs_film(compare):
     on, off = compare(bearing(profile=ehd.Crown(drop=3e-6)), bearing())
     assert on.minimum_gap.min() < off.minimum_gap.min()
+
+
+def test_oval_bore_costs_film_under_its_short_axis(compare):
+    # less deep by 2 um on the y axis, along which the load acts
+    on, off = compare(bearing(profile=ehd.OutOfRound(order=2, amplitude=2e-6)), bearing())
+    assert 0.0 < off.minimum_gap.min() - on.minimum_gap.min() < 2e-6
 
 
 def test_liner_lowers_the_peak(compare):

@@ -11,9 +11,13 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
+from exudyn_ehd.pictures.style import style_ticks, styled
 from exudyn_ehd.solid.hex20 import face_shapes
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
+
+# Type of a figure of several panels, pt.
+TYPE_SIZE = 10.0
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,24 +77,25 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     view = View() if view is None else view
     columns = min(3, int(np.ceil(np.sqrt(len(frames)))))
     rows = -(-len(frames) // columns)
-    figure = Figure(figsize=(3.4 * columns + 1.0, 3.3 * rows), layout="constrained")
     low = min(float(np.min(frame.values)) for frame in frames)
     high = max(float(np.max(frame.values)) for frame in frames)
     norm = Normalize(low, high if high > low else low + 1.0)
     colours = matplotlib.colormaps["viridis"]
     box = _box(mesh, frames, view)
     plots = []
-    for i, frame in enumerate(frames):
-        axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
-        _draw(axes, mesh, frame, view, norm, colours)
-        axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
-        axes.set_box_aspect(np.ptp(box, axis=1), zoom=1.1)
-        axes.view_init(elev=view.elevation, azim=view.azimuth)
-        axes.set_axis_off()
-        axes.set_title(frame.title, y=1.0)
-        plots.append(axes)
-    bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
-    figure.colorbar(bar, ax=plots, label=label, shrink=0.8, pad=0.02)
+    with styled(TYPE_SIZE):
+        figure = Figure(figsize=(3.4 * columns + 1.0, 3.3 * rows), layout="constrained")
+        for i, frame in enumerate(frames):
+            axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
+            _draw(axes, mesh, frame, view, norm, colours)
+            axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
+            axes.set_box_aspect(np.ptp(box, axis=1), zoom=1.1)
+            axes.view_init(elev=view.elevation, azim=view.azimuth)
+            axes.set_axis_off()
+            axes.set_title(frame.title, y=1.0)
+            plots.append(axes)
+        bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
+        style_ticks(figure.colorbar(bar, ax=plots, label=label, shrink=0.8, pad=0.02).ax)
     return figure
 
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from exudyn_ehd.pictures.bush import Frame, View, contour_figure
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.picture import Frame, View, contour_figure
 from exudyn_ehd.status import InputError
 
 MESH = HollowCylinder(inner_radius=0.2, thickness=0.05, length=0.2, axial=1, radial=1, circumferential=8).mesh()

@@ -1,0 +1,171 @@
+"""What is off is not called: nothing of an effect's modules runs in a film without it, and with it something does.
+
+Every function, kernel and method of the modules that belong to an effect alone is replaced by one that raises, wherever it is
+bound. Films then give the bits that they gave before.
+"""
+
+import importlib
+import inspect
+import pathlib
+import sys
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.build import build_model
+
+C = 25e-6
+MOTION = np.array([11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3])
+ALIGNED = np.array([1, 1, 0, 0, 1, 1, 0, 0, 1, 1])
+STEP = 1e-4
+CLOSURES = {
+    "full": ehd.FullSommerfeld(),
+    "gumbel": ehd.Gumbel(),
+    "swift": ehd.SwiftStieber(),
+    "elrod": ehd.ElrodAdams(cavity_pressure=-1e5),
+}
+HOT = ehd.Lubricant(temperature_law=ehd.ReynoldsTemperature(point=(325.0, 0.02), coefficient=0.03), temperature=325.0)
+ASPERITY = ehd.GreenwoodTripp(composite_roughness=3e-6, composite_modulus=1e9)
+LINER = ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)
+
+
+def oil(**laws):
+    return {"lubricant": ehd.Lubricant(viscosity=0.02, **laws)}
+
+
+# Modules that belong to an effect alone, and options that must call each of them.
+EFFECTS = {
+    "contact": (("film.contact",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "contact loads": (("film.contact_loads",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "asperity": (("film.asperity", "film.average_gap"), {"asperity": ASPERITY}),
+    "roughness": (("film.roughness",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
+    "wear": (("film.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
+    "profile": (("film.profile",), {"profile": ehd.Crown(drop=2e-6)}),
+    "pressure law": (("film.viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
+    "shear law": (("film.shear",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
+    "link flux": (("film.flux",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
+    "density law": (
+        ("film.density", "film.density_field", "film.density_newton", "film.density_sweep", "film.compressible"),
+        oil(density_law=ehd.DowsonHigginson()),
+    ),
+    "lumped": (("joint.thermal",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
+    "energy": (("film.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
+    "liner": (("film.liner", "film.liner_newton"), {"bush": LINER}),
+    "liner in contact": (
+        ("film.compliant", "film.compliant_columns", "film.compliant_iteration", "film.compliant_links", "film.compliant_newton", "film.compliant_start"),
+        {"bush": LINER, "asperity": ASPERITY},
+    ),
+    "bush": (
+        ("joint.bore", "joint.elastic", "joint.elastic_tangent", "joint.bore_settle", "solid.reduce"),
+        {
+            "bush": ehd.ModalBush(
+                mesh=ehd.HollowCylinder(
+                    inner_radius=0.025, thickness=0.01, length=0.05, axial=2, radial=1, circumferential=12
+                ),
+                material=ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0),
+                tolerance=0.2,
+            )
+        },
+    ),
+    "classic": (("film.classic",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
+    "long bearing": (
+        ("film.long_bearing",),
+        {"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3),), "end_pressures": (0.0, 0.0)},
+    ),
+    "impedance map": (
+        ("film.impedance", "joint.impedance"),
+        {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
+    ),
+    "mass conservation": (("film.elrod", "film.transport", "film.transport_transposed"), {"cavitation": CLOSURES["elrod"]}),
+}  # fmt: skip
+
+
+# Modules that every film uses, that describe a scene, or (the last line) whose kernels only other kernels of their effect call.
+SHARED = {
+    "band_lu", "cavitation", "choice", "columns", "direct", "drag", "folding", "gap", "grid", "loads", "lubricant", "oils",
+    "reynolds", "solver", "steps", "stencil", "supply", "sweep", "temperature", "thermal", "tiles",
+    "density_matrix",
+}  # fmt: skip
+
+
+def bearing(**options):
+    values = oil() | {
+        "journal_radius": 0.025, "length": 0.05, "radial_clearance": C, "end_pressures": (1e5, 2e5),
+        "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }  # fmt: skip
+    return ehd.JournalBearing(**(values | options))
+
+
+def forbidden(*_, **__):
+    raise AssertionError("an absent effect was called")
+
+
+def forbid(patch, *names):
+    """Let everything that these modules define raise; classes keep their names, for questions of type."""
+    for name in names:
+        module = importlib.import_module(f"exudyn_ehd.{name}")
+        own = [item for item in vars(module).values() if getattr(item, "__module__", None) == module.__name__]
+        for item in own:
+            if inspect.isclass(item):
+                if not getattr(item, "_is_protocol", False):
+                    forbid_class(patch, item)
+            elif callable(item):
+                forbid_function(patch, item)
+
+
+def forbid_class(patch, kind):
+    for name, member in list(vars(kind).items()):
+        if inspect.isfunction(member) and (name == "__init__" or not name.startswith("__")):
+            patch.setattr(kind, name, forbidden)
+        elif isinstance(member, property):
+            patch.setattr(kind, name, property(forbidden))
+
+
+def forbid_function(patch, function):
+    for name, module in list(sys.modules.items()):
+        if name.startswith("exudyn_ehd") and module is not None:
+            for key, value in list(vars(module).items()):
+                if value is function:
+                    patch.setattr(module, key, forbidden)
+
+
+def use(made):
+    """All that a joint asks of a film over two steps."""
+    model = build_model(made)
+    motion = MOTION * ALIGNED if isinstance(made.film, ehd.ImpedanceMap) else MOTION
+    history, out = model.initial_history(motion), []
+    for _ in range(2):
+        evaluation = model.evaluate(motion, history, STEP)
+        out += [evaluation.wrench, evaluation.tangent(), np.array(list(evaluation.quantities().values()))]
+        history = evaluation.history()
+    return out
+
+
+def test_every_module_of_the_film_is_asked_about():
+    found = {path.stem for path in pathlib.Path(ehd.__file__).parent.glob("film/[!_]*.py")}
+    assert found == SHARED | {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
+
+
+@pytest.mark.parametrize("closure", CLOSURES)
+def test_a_plain_film_calls_no_effect(closure, monkeypatch):
+    made = bearing(cavitation=CLOSURES[closure])
+    expected = use(made)
+    for name, (modules, _) in EFFECTS.items():
+        if not (name == "mass conservation" and closure == "elrod"):
+            forbid(monkeypatch, *modules)
+    for a, b in zip(use(made), expected, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+@pytest.mark.parametrize("name", EFFECTS)
+def test_every_module_of_an_effect_is_called_with_it(name, monkeypatch):
+    """Else the test above would prove nothing."""
+    modules, options = EFFECTS[name]
+    made = bearing(**options)
+    use(made)
+    for module in modules:
+        with monkeypatch.context() as patch:
+            forbid(patch, module)
+            with pytest.raises(AssertionError, match="an absent effect was called"):
+                use(made)

@@ -1,0 +1,63 @@
+"""Newton's iterations and Jacobians on every bore, in the runs of the table of bush costs: within two of the rigid bore's, under either Newton."""
+
+from __future__ import annotations
+
+import exudyn as exu
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.studies import bush_costs
+
+# iterations and Jacobians per step, as the guide gives them
+FULL = {
+    "rigid": (4.0, 4.0),
+    "rigid, tilted": (4.1, 4.1),
+    "`ElasticLiner`": (2.4, 2.4),
+    "`ModalBush`": (4.1, 4.1),
+    "`ModalBush`, tilted": (4.5, 4.5),
+}
+MODIFIED = {
+    "rigid": (8.4, 2.4),
+    "rigid, tilted": (8.5, 2.5),
+    "`ElasticLiner`": (7.2, 0.3),
+    "`ModalBush`": (9.0, 3.2),
+    "`ModalBush`, tilted": (9.2, 3.3),
+}
+
+
+def counts(name, modified, steps=60):
+    case = bush_costs.CASES[name]
+    mbs = bush_costs.scene(case.bush, bush_costs.OFFSET if case.tilted else 0.0)
+    settings = bush_costs.settings(steps, case.solver)
+    settings.timeIntegration.newton.useModifiedNewton = modified
+    if case.sparse:
+        settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+        run = ehd.SolveDynamicSparse(mbs, settings)
+        return run.iterations / steps, run.jacobians / steps
+    mbs.SolveDynamic(settings)
+    done = mbs.sys["dynamicSolver"].it
+    return done.newtonStepsCount / steps, done.newtonJacobiCount / steps
+
+
+@pytest.mark.parametrize(("modified", "stated"), [(False, FULL), (True, MODIFIED)], ids=["full", "modified"])
+def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, stated):
+    found = {name: counts(name, modified) for name in stated}
+    for name, (iterations, jacobians) in found.items():
+        print(f"{name}: {iterations:.2f} iterations, {jacobians:.2f} Jacobians per step")
+        base = bush_costs.CASES[name].base
+        if base:
+            assert iterations < found[base][0] + 2.0 and jacobians < found[base][1] + 2.0
+        # half an iteration for other processors' rounding
+        assert iterations == pytest.approx(stated[name][0], abs=0.5)
+        assert jacobians == pytest.approx(stated[name][1], abs=0.5)
+
+
+@pytest.mark.slow
+def test_iterations_and_factors_of_nodal_bores():
+    """`SolveDynamicSparse` keeps the mesh's factor while it serves: full Newton's iterations with a factor in every other step."""
+    rigid = counts("rigid, tilted", False, 20)[0]
+    for name in ("`ANCFBush`, 4 x 1 x 24 elements", "`ANCFBush`, 4 x 2 x 40 elements"):
+        iterations, factors = counts(name, False, 20)
+        print(f"{name}: {iterations:.2f} iterations, {factors:.2f} factors per step, rigid {rigid:.2f}")
+        assert iterations < rigid + 2.0
+        assert factors <= 1.0
