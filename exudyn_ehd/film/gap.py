@@ -76,3 +76,18 @@ def contract_pose(field, cos_x, sin_x, z, out):
         out[k, 1] += oy
         out[k, 2] += obx
         out[k, 3] += oby
+
+
+@njit(cache=True, fastmath=_FAST)
+def contract_ends(slope, lower, upper, cos_x, sin_x, z):
+    """`contract_pose` (4,) of a field (n, m) that is ``lower`` and ``upper`` times the slope (n, m) in the first and last column, else zero."""
+    last = z.size - 1
+    out = np.zeros(4)
+    for i in range(cos_x.size):
+        a, b = lower * slope[i, 0], upper * slope[i, last]
+        flat, tilt = a + b, a * z[0] + b * z[last]
+        out[0] -= flat * cos_x[i]
+        out[1] -= flat * sin_x[i]
+        out[2] -= tilt * cos_x[i]
+        out[3] -= tilt * sin_x[i]
+    return out

@@ -128,27 +128,29 @@ def couette_integral_ratio(H, weight, ratio, share, whole):
     return total, unbroken
 
 
-@njit(cache=True)
+@njit(cache=True, error_model="numpy")
 def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
     """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills: rhs_out (count,).
 
     ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
     """
-    m = H.shape[1]
+    w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
+    p, f = by_pressure.reshape(-1), by_fill.reshape(-1)
     for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        rhs_out[r] = weight[i, j] / H[i, j] * (by_pressure[i, j] if active[i, j] else by_fill[i, j])
+        at = order[r]
+        rhs_out[r] = w[at] / h[at] * (p[at] if known[at] else f[at])
 
 
 @njit(cache=True)
 def weigh_rows(order, count, factor, rows):
     """Multiply rows (k, count) of the unknowns by a field (n, m), in place."""
     flat = factor.reshape(-1)
+    own = np.empty(count)
     for r in range(count):
-        f = flat[order[r]]
-        for k in range(rows.shape[0]):
-            rows[k, r] *= f
+        own[r] = flat[order[r]]
+    for k in range(rows.shape[0]):
+        for r in range(count):
+            rows[k, r] *= own[r]
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -22,7 +22,7 @@ class Lubricant:
     """Lubricant: Newtonian and of constant viscosity unless laws are named.
 
     When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear law for
-    multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a half to the time of a film evaluation; a
+    multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a fifth to the time of a film evaluation; a
     density law a quarter with `ElrodAdams`, and more than the whole again with the other closures, whose matrix it makes non-symmetric.
 
     Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at ``temperature``, at

@@ -15,7 +15,7 @@ from __future__ import annotations
 import abc
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numba import njit
@@ -27,6 +27,8 @@ TABLE_INTERVALS = 4096
 # The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
 LARGEST_RATIO = 1e7
 LARGEST_PRESSURE = 5e9
+_unsigned: Any = np.uint64
+_ONE, _ROW = _unsigned(1), _unsigned(7)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
@@ -267,27 +269,43 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
     ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval at the
     start of each of b equal parts of q.
     """
-    n, m = q.shape
-    for i in range(n):
-        for j in range(m):
-            if not q[i, j] < q_table[-1]:
-                return False
-            p_out[i, j], ratio_out[i, j], ratio_q_out[i, j] = hermite_at(
-                q[i, j], alpha, q_table, table, bucket, bucket_scale
-            )
+    x, p, r, r_q = q.reshape(-1), p_out.reshape(-1), ratio_out.reshape(-1), ratio_q_out.reshape(-1)
+    c = table.reshape(-1)
+    end = q_table[-1]
+    last = _unsigned(bucket.size - 2)
+    for k in range(x.size):
+        v = x[k]
+        if v == 0.0:
+            p[k], r[k], r_q[k] = 0.0, 1.0, alpha
+        elif v < 0.0:
+            s = 1.0 / (1.0 - alpha * v)
+            p[k], r[k], r_q[k] = -np.log1p(-alpha * v) / alpha, s, alpha * s * s
+        elif v < end:
+            at = min(_unsigned(v * bucket_scale), last)
+            low = _unsigned(bucket[at])
+            high = _unsigned(bucket[at + _ONE]) + _ONE
+            while high - low > _ONE:
+                middle = (low + high) >> _ONE
+                if q_table[middle] <= v:
+                    low = middle
+                else:
+                    high = middle
+            i = low * _ROW
+            w = c[i]
+            t = (v - q_table[low]) * w
+            c1, c2, c3 = c[i + _ONE], c[i + _unsigned(2)], c[i + _unsigned(3)]
+            c4, c5, c6 = c[i + _unsigned(4)], c[i + _unsigned(5)], c[i + _unsigned(6)]
+            p[k] = c1 + t * (c2 + t * (c3 + t * (c4 + t * (c5 + t * c6))))
+            r[k] = w * (c2 + t * (2.0 * c3 + t * (3.0 * c4 + t * (4.0 * c5 + t * 5.0 * c6))))
+            r_q[k] = w * w * (2.0 * c3 + t * (6.0 * c4 + t * (12.0 * c5 + t * 20.0 * c6)))
+        else:
+            return False
     return True
 
 
 @njit(cache=True, inline="always")
-def hermite_at(x, alpha, q_table, table, bucket, bucket_scale):
-    """p, dp/dq and d2p/dq2 of `hermite_inverse` at one x below the table's end."""
-    p, r, r_q, _, _ = hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale)
-    return p, r, r_q
-
-
-@njit(cache=True, inline="always")
 def hermite_fourth_at(x, alpha, q_table, table, bucket, bucket_scale):
-    """As `hermite_at`, with the third and the fourth derivative."""
+    """p(q) of `hermite_inverse` and its first four derivatives at one x below the table's end."""
     if x == 0.0:
         return 0.0, 1.0, alpha, 2.0 * alpha**2, 6.0 * alpha**3
     if x < 0.0:

@@ -45,7 +45,7 @@ def apply_laws(model: BearingModel) -> Status:
             return Status.NO_PRESSURE
         model.P /= model.pressure_scale
         ratio_q *= model.pressure_scale
-        model.P_q = ratio.copy()
+        model.P_q = ratio
     if model.effects.shear_factor is not None:
         factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
         model.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)

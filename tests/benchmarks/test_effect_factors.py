@@ -1,9 +1,9 @@
 """Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table of factors.
 
 Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
-Targets: roughness
-and asperities 1.1, both 1.15, liner 2, laws of the oil 1.5; limits are these plus a tenth, others what was measured plus a fifth, those of
-laws and heat the target plus 15 %.
+Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state 1.25, of density 1.5, lumped heat
+1.05, field of heat 2.5), for others what
+was measured plus a twentieth, all times 1.02: so far do two runs on a shared machine differ.
 """
 
 import math
@@ -21,15 +21,16 @@ from exudyn_ehd.studies.growth import plain_bearing
 pytestmark = pytest.mark.benchmark
 
 EVALUATION_LIMITS = {
-    "`VogelTemperature`": 1.1, "`PatirCheng`": 1.2, "`GreenwoodTripp`": 1.2, "`PatirCheng`, `GreenwoodTripp`": 1.25, "`Crown`": 1.5,
-    "`GreenwoodTripp`, `ArchardWear`": 1.65, "`ElasticLiner`": 2.1, "`RegularisedWall`": 1.45, "`squeeze=False`": 1.1,
+    "`VogelTemperature`": 1.05, "`PatirCheng`": 1.1, "`GreenwoodTripp`": 1.15, "`PatirCheng`, `GreenwoodTripp`": 1.2, "`Crown`": 1.1,
+    "`GreenwoodTripp`, `ArchardWear`": 1.25, "`ElasticLiner`": 2.0, "`RegularisedWall`": 1.1, "`squeeze=False`": 1.05,
+    "`PatirCheng`, unequally rough": 1.35, "`BarusPressure`": 1.2, "`RoelandsPressure`": 1.2, "`CarreauShear`": 1.2,
 }  # fmt: skip
 # Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
 STEP_LIMITS = {
-    "`BarusPressure`": 1.5, "`RoelandsPressure`": 1.5, "`CarreauShear`": 1.5, "`DowsonHigginson`": 1.5,
+    "`BarusPressure`": 1.25, "`RoelandsPressure`": 1.25, "`CarreauShear`": 1.25, "`DowsonHigginson`": 1.5,
     "`DowsonHigginson`, `BarusPressure`": 1.5, "`LumpedThermal`": 1.05, "`FilmEnergy`": 2.5,
 }  # fmt: skip
-MARGIN = 1.15
+MARGIN = 1.02
 SMALLER = {"journal_radius": 0.025, "length": 0.05, "radial_clearance": 25e-6, "end_pressures": (1e5, 1e5)}
 AT_REST = np.tile([13e-6, 5e-6, 1e-4, -1.5e-4, 1e-3, -1e-3, 0.05, 0.02, 250.0, 0.3], (3, 1))
 
@@ -40,7 +41,7 @@ def test_effects_on_the_orbit():
     factors = {cost.what: cost.factor for cost in found if cost.per == effect_costs.EVALUATION}
     assert not [cost for cost in found if cost.failure]
     for name, limit in EVALUATION_LIMITS.items():
-        assert factors[name] < limit, name
+        assert factors[name] < MARGIN * limit, name
 
 
 @pytest.mark.parametrize("name", STEP_LIMITS)

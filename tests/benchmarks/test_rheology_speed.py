@@ -17,9 +17,9 @@ ROELANDS, CARREAU = (
     ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2),
 )
 CASES = {
-    "barus": ({"pressure_law": ehd.BarusPressure(coefficient=1e-8)}, None, 1.5),
-    "roelands": ({"pressure_law": ROELANDS}, None, 1.5),
-    "carreau": ({"shear_law": CARREAU}, None, 1.5),
+    "barus": ({"pressure_law": ehd.BarusPressure(coefficient=1e-8)}, None, 1.25),
+    "roelands": ({"pressure_law": ROELANDS}, None, 1.25),
+    "carreau": ({"shear_law": CARREAU}, None, 1.25),
     "density": ({"density_law": ehd.DowsonHigginson()}, None, 1.5),
     "density and barus": (
         {"density_law": ehd.DowsonHigginson(), "pressure_law": ehd.BarusPressure(coefficient=1e-8)},

@@ -6,6 +6,7 @@ bound. Films then give the bits that they gave before.
 
 import importlib
 import inspect
+import pathlib
 import sys
 
 import numpy as np
@@ -45,14 +46,14 @@ EFFECTS = {
     "shear law": (("film.shear",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
     "link flux": (("film.flux",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
     "density law": (
-        ("film.density", "film.density_newton", "film.compressible"),
+        ("film.density", "film.density_field", "film.density_newton", "film.density_sweep", "film.compressible"),
         oil(density_law=ehd.DowsonHigginson()),
     ),
     "lumped": (("joint.thermal",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
     "liner": (("film.liner", "film.liner_newton"), {"bush": LINER}),
     "liner in contact": (
-        ("film.compliant", "film.compliant_newton", "film.compliant_start"),
+        ("film.compliant", "film.compliant_columns", "film.compliant_iteration", "film.compliant_links", "film.compliant_newton", "film.compliant_start"),
         {"bush": LINER, "asperity": ASPERITY},
     ),
     "bush": (
@@ -76,7 +77,15 @@ EFFECTS = {
         ("film.impedance", "joint.impedance"),
         {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
     ),
-    "mass conservation": (("film.elrod", "film.transport"), {"cavitation": CLOSURES["elrod"]}),
+    "mass conservation": (("film.elrod", "film.transport", "film.transport_transposed"), {"cavitation": CLOSURES["elrod"]}),
+}  # fmt: skip
+
+
+# Modules that every film uses, that describe a scene, or (the last line) whose kernels only other kernels of their effect call.
+SHARED = {
+    "band_lu", "cavitation", "choice", "columns", "direct", "drag", "folding", "gap", "grid", "loads", "lubricant", "oils",
+    "reynolds", "solver", "steps", "stencil", "supply", "sweep", "temperature", "thermal", "tiles",
+    "density_matrix",
 }  # fmt: skip
 
 
@@ -131,6 +140,11 @@ def use(made):
         out += [evaluation.wrench, evaluation.tangent(), np.array(list(evaluation.quantities().values()))]
         history = evaluation.history()
     return out
+
+
+def test_every_module_of_the_film_is_asked_about():
+    found = {path.stem for path in pathlib.Path(ehd.__file__).parent.glob("film/[!_]*.py")}
+    assert found == SHARED | {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
 
 
 @pytest.mark.parametrize("closure", CLOSURES)
