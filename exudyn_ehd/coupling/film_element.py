@@ -26,6 +26,7 @@ from exudyn_ehd.coupling.sides import MarkerSide, Side, read_state
 from exudyn_ehd.coupling.step_control import GapWatch
 from exudyn_ehd.joint import ringing
 from exudyn_ehd.joint.fields import FilmFields, film_fields
+from exudyn_ehd.joint.settle import HOTTEST, WAY_OUT, is_too_hot
 from exudyn_ehd.status import FilmError, Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -281,6 +282,17 @@ class FilmElement:
             "a StepControl if the step has overshot."
         )
 
+    def _heat_message(self, t: float, trial: Trial) -> str:
+        contact = (
+            "with the friction of asperities: they heat spots through which hardly any oil flows; "
+            if getattr(self.model.bearing, "asperity", None) is not None
+            else ""
+        )
+        return (
+            f"LubricatedJoint '{self.name}' at t = {t:.9g} s: the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial)}its heat has no "
+            f"way out; {WAY_OUT}"
+        )
+
     # --- accepted steps -------------------------------------------------------------------------------------------
 
     def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
@@ -302,6 +314,8 @@ class FilmElement:
                 self._memory, self._start = self._resumed[1], start
             elif not goes_on:
                 self._record.clear()
+                if self.recorder is not None:
+                    self.recorder.begin_anew()
             self._resumed = None
         elif start < self._start:
             self._memory = None
@@ -324,6 +338,8 @@ class FilmElement:
                 assert trial.evaluation is not None
                 self._memory = trial.evaluation.history()
                 self._trial = None
+                if is_too_hot(self._memory.temperature):
+                    raise FilmError(self._heat_message(start, trial))
         last, self._start = self._start, start
         if row is not None and self._is_pressed_through(trial):
             raise FilmError(self._through_message(start, trial))

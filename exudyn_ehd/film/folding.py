@@ -6,6 +6,9 @@ With z -> -z the rows of a grid with m vertices along z mirror each other: row j
     S^T f = S_even^T (f_j + f_mirror) + S_odd^T (f_j - f_mirror),
 
 half the work and half the memory of the whole. ``mirrored = 0`` folds nothing: every shape counts as even and has all m rows.
+
+Along z a bush moves as its mesh does, by a few polynomials (nine with four quadratic elements, five of them even). With a basis N of these courses
+every shape is N C at each column in theta, and fields that meet N first meet C in place of S in the large products.
 """
 
 from __future__ import annotations
@@ -17,6 +20,32 @@ from exudyn_ehd.film.stencil import put_rows
 from exudyn_ehd.film.tiles import TILE
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+# Singular values of the shapes' courses along z, over the largest one, that count as rounding.
+ROUNDING = 1e-13
+# Rows of a column that are combined at once.
+BLOCK = 8
+
+
+def courses(half: np.ndarray, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Basis along z and coordinates of half shapes (n rows, k) on n columns in theta.
+
+    Returns
+    -------
+    basis : (u, >= rows) array
+        N^T with zeros behind the rows up to BLOCK; the identity if the shapes have as many courses as rows.
+    coordinates : (n u, k) array
+        C: shape = N C at every column.
+    """
+    rows, k = len(half) // n, half.shape[1]
+    if not half.size:
+        return np.zeros((0, BLOCK)), np.zeros((0, k))
+    shapes = half.reshape(n, rows, k)
+    directions, sizes, _ = np.linalg.svd(shapes.transpose(1, 0, 2).reshape(rows, n * k), full_matrices=False)
+    rank = int(np.count_nonzero(sizes > ROUNDING * sizes[0]))
+    along = directions[:, :rank].T if rank < rows else np.eye(rows)
+    basis = np.zeros((len(along), max(rows, BLOCK)))
+    basis[:, :rows] = along
+    return basis, np.ascontiguousarray(along @ shapes).reshape(n * len(along), k)
 
 
 @njit(cache=True)
@@ -127,61 +156,103 @@ def transpose_stencil(weight, numbers, first, columns, weight_out, row_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def fold_transposed(weight, row, columns, mirrored, fields, even_out, odd_out):
-    """Transposed stencil times fields, folded.
+def _fold_column(weight, row, column, m, mirrored, fields, sums_out, differences_out):
+    """Transposed stencil times fields (rows, TILE) in a column in theta, folded.
 
     Parameters
     ----------
     weight, row : (columns m, 5) arrays
         From `transpose_stencil`.
-    columns, mirrored : int
-    fields : (rows, TILE) array
-        At the unknowns: one tile, see `tiles.make_tiles`.
-    even_out, odd_out : (columns (m - mirrored), TILE) and (columns mirrored, TILE) arrays
-        ``odd_out`` without rows if the odd half is not wanted.
+    sums_out, differences_out : (>= m - mirrored, TILE) and (>= mirrored, TILE) arrays
+        ``differences_out`` without rows if the odd half is not wanted.
     """
-    m = weight.shape[0] // columns
-    upper = m - mirrored
     X = fields
-    for c in range(columns):
-        for j in range(upper):
-            v, e = c * m + j, c * upper + j
-            a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
-            i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
-            if j < mirrored:
-                v = c * m + m - 1 - j
-                b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
-                k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
-                if odd_out.shape[0] == 0:
-                    for q in range(TILE):
-                        a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
-                        b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
-                        even_out[e, q] = a + b
-                    continue
-                o = c * mirrored + j
-                for q in range(TILE):
-                    a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
-                    b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
-                    even_out[e, q] = a + b
-                    odd_out[o, q] = a - b
-            else:
-                for q in range(TILE):
-                    a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
-                    even_out[e, q] = a
+    for j in range(m - mirrored):
+        v = column * m + j
+        a0, a1, a2, a3, a4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+        i0, i1, i2, i3, i4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+        if j >= mirrored:
+            for q in range(TILE):
+                a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                sums_out[j, q] = a
+            continue
+        v = column * m + m - 1 - j
+        b0, b1, b2, b3, b4 = weight[v, 0], weight[v, 1], weight[v, 2], weight[v, 3], weight[v, 4]
+        k0, k1, k2, k3, k4 = row[v, 0], row[v, 1], row[v, 2], row[v, 3], row[v, 4]
+        if differences_out.shape[0] == 0:
+            for q in range(TILE):
+                a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+                b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
+                sums_out[j, q] = a + b
+            continue
+        for q in range(TILE):
+            a = a0 * X[i0, q] + a1 * X[i1, q] + a2 * X[i2, q] + a3 * X[i3, q] + a4 * X[i4, q]
+            b = b0 * X[k0, q] + b1 * X[k1, q] + b2 * X[k2, q] + b3 * X[k3, q] + b4 * X[k4, q]
+            sums_out[j, q] = a + b
+            differences_out[j, q] = a - b
+
+
+@njit(cache=True, fastmath=_FAST)
+def _combine(basis, rows, known, first, out):
+    """``basis rows`` for a basis (u, >= BLOCK) of ``known`` rows among (>= BLOCK, TILE) into out from row ``first`` on."""
+    if len(basis) == known:  # the identity
+        for s in range(known):
+            for q in range(TILE):
+                out[first + s, q] = rows[s, q]
+        return
+    for s in range(len(basis)):
+        c, t = basis[s], first + s
+        a0, a1, a2, a3, a4, a5, a6, a7 = c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]
+        for q in range(TILE):
+            a = a0 * rows[0, q] + a1 * rows[1, q] + a2 * rows[2, q] + a3 * rows[3, q]
+            out[t, q] = a + a4 * rows[4, q] + a5 * rows[5, q] + a6 * rows[6, q] + a7 * rows[7, q]
+        for j in range(BLOCK, c.size):
+            a0 = c[j]
+            for q in range(TILE):
+                out[t, q] += a0 * rows[j, q]
 
 
 @njit(cache=True)
-def fold_adjoints(weight, places, shape, mirrored, odd_too, fields):
-    """`fold_transposed` where it is not zero, on a grid of this shape: first column in theta, even and odd half (empty unless ``odd_too``)."""
+def stencil_by_vertices(weight, places, shape):
+    """`transpose_stencil` where it is not empty, on a grid of this shape: first column in theta, weights and unknowns (columns m, 5)."""
     m = shape[1]
     numbers = np.empty(shape, dtype=np.int64)
     number_vertices(places, numbers)
     first, columns = touched_columns(numbers)
     by_vertex, row = np.empty((columns * m, 5)), np.empty((columns * m, 5), dtype=np.int64)
     transpose_stencil(weight, numbers, first, columns, by_vertex, row)
-    even, odd = np.empty((columns * (m - mirrored), TILE)), np.empty((columns * mirrored if odd_too else 0, TILE))
-    fold_transposed(by_vertex, row, columns, mirrored, fields, even, odd)
-    return first, even, odd
+    return first, by_vertex, row
+
+
+@njit(cache=True)
+def fold_adjoints(weight, row, shape, mirrored, along_even, along_odd, fields):
+    """Transposed stencil of `stencil_by_vertices` times fields, folded, in the bases along z.
+
+    Parameters
+    ----------
+    weight, row : (columns m, 5) arrays
+    shape : (n, m)
+        Of the grid.
+    mirrored : int
+    along_even, along_odd : (u, .) and (v, .) arrays
+        See `courses`.
+    fields : (rows, TILE) array
+        At the unknowns: one tile, see `tiles.make_tiles`.
+
+    Returns
+    -------
+    even, odd : (columns u, TILE) and (columns v, TILE) arrays
+    """
+    m, u, v = shape[1], len(along_even), len(along_odd)
+    columns = len(weight) // m
+    even, odd = np.empty((columns * u, TILE)), np.empty((columns * v, TILE))
+    # a basis reaches as far as its rows; what lies behind these is zero
+    sums, differences = np.zeros((along_even.shape[1], TILE)), np.zeros((along_odd.shape[1] if v else 0, TILE))
+    for c in range(columns):
+        _fold_column(weight, row, c, m, mirrored, fields, sums, differences)
+        _combine(along_even, sums, m - mirrored, c * u, even)
+        _combine(along_odd, differences, mirrored, c * v, odd)
+    return even, odd
 
 
 @njit(cache=True, fastmath=_FAST)

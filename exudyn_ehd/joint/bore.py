@@ -12,11 +12,13 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.folding import (
+    courses,
     fold_adjoints,
     folded_displacements,
     folded_loads,
     folded_rows,
     place_columns,
+    stencil_by_vertices,
 )
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.stencil import add_transposed, put_rows, sparse_product
@@ -103,6 +105,8 @@ class ModalBore:
         even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
         self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
         self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
+        self._along_even, self._even_courses = courses(self._even, n)
+        self._along_odd, self._odd_courses = courses(self._odd, n)
 
     @property
     def size(self) -> int:
@@ -137,24 +141,17 @@ class ModalBore:
         """X^T B S (size, k)."""
         if not len(places):
             return np.zeros((size, self.size))
-        upper, out = self.grid_shape[1] - self.mirrored, np.empty((size, self.size))
+        out = np.empty((size, self.size))
+        first, by_vertex, row = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
+        along = self._along_even, self._along_odd
         # one tile after the other: a tile's fields stay in the cache until they are multiplied
         for start in range(0, size, TILE):
             tile, rows = start // TILE, min(TILE, size - start)
-            first, even, odd = fold_adjoints(
-                weight, places[:, 0], self.grid_shape, self.mirrored, self._odd.shape[1] > 0, fields[tile]
-            )
-            by_even = self._product(even[:, :rows], self._even, first, upper)
-            by_odd = self._product(odd[:, :rows], self._odd, first, self.mirrored) if len(odd) else np.empty((rows, 0))
+            even, odd = fold_adjoints(by_vertex, row, self.grid_shape, self.mirrored, *along, fields[tile])
+            by_even = _cyclic_product(even[:, :rows], self._even_courses, first * len(along[0]))
+            by_odd = _cyclic_product(odd[:, :rows], self._odd_courses, first * len(along[1]))
             place_columns(by_even, by_odd, self.order, out[start : start + rows])
         return out
-
-    def _product(self, fields: np.ndarray, shapes: np.ndarray, first: int, rows: int) -> np.ndarray:
-        """Folded fields (columns rows, r), from column ``first`` in theta on, transposed times folded shapes (n rows, k): (r, k)."""
-        start, seam = first * rows, len(shapes) - first * rows
-        if len(fields) <= seam:
-            return fields.T @ shapes[start : start + len(fields)]
-        return fields[:seam].T @ shapes[start:] + fields[seam:].T @ shapes[: len(fields) - seam]
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
@@ -172,6 +169,14 @@ class ModalBore:
         out[split:, :split] = out[:split, split:].T
         back = np.argsort(self.order)
         return out[np.ix_(back, back)]
+
+
+def _cyclic_product(fields: np.ndarray, shapes: np.ndarray, start: int) -> np.ndarray:
+    """Fields (rows, r), transposed, times as many rows of shapes (n, k) from ``start`` on, the first one behind the last: (r, k)."""
+    seam = len(shapes) - start
+    if len(fields) <= seam:
+        return fields.T @ shapes[start : start + len(fields)]
+    return fields[:seam].T @ shapes[start:] + fields[seam:].T @ shapes[: len(fields) - seam]
 
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:

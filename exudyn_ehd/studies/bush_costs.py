@@ -2,15 +2,18 @@
 
 A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of 20 mm) under a
 load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6; tilted cases load it beside its middle. Runs of all
-bores take turns; times are process times, factors those of one turn.
+bores take turns in a process; times are process times, factors those of one process. Several processes, one after the other, tell how much these differ
+from one to the next: more than from turn to turn, since the products of modal bushes feel what else shares the processor's caches.
 """
 
 from __future__ import annotations
 
 import math
+import multiprocessing
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
 from typing import Any
 
 import exudyn as exu
@@ -174,58 +177,99 @@ def assembly_run(rule: Quadrature, *, parallel: bool = False) -> Callable[[], An
     return lambda: (solid.force(displacements), solid.tangent(displacements))
 
 
+@dataclass
+class Block:
+    """What one process has measured.
+
+    Attributes
+    ----------
+    steps, jacobians, assemblies : dict
+        Times by name, s.
+    iterations, modes : dict
+        Newton iterations per step; modes of the modal bushes.
+    failures : dict
+        What went wrong, by name.
+    """
+
+    steps: dict[str, float] = field(default_factory=dict)
+    jacobians: dict[str, float] = field(default_factory=dict)
+    assemblies: dict[str, float] = field(default_factory=dict)
+    iterations: dict[str, float] = field(default_factory=dict)
+    modes: dict[str, float] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
+
+
+def measure_block(cases: Mapping[str, Case], turns: int, share: float) -> Block:
+    """Every case in ``turns`` turns of ``share`` of its steps (time per step: mean over the turns), Jacobians and assemblies, here and now."""
+    out = Block()
+    for turn in range(turns + 1):
+        for name, case in cases.items():
+            if name in out.failures:
+                continue
+            # the first turn compiles and builds
+            steps = 3 if turn == 0 else max(3, round(share * case.steps))
+            try:
+                spent, iterations = run(case, steps)
+            except (EHDError, ValueError, RuntimeError) as error:
+                out.failures[name] = str(error).splitlines()[0]
+                out.steps.pop(name, None)
+                continue
+            if turn > 0:
+                out.steps[name] = out.steps.get(name, 0.0) + spent / turns
+                out.iterations[name] = iterations
+    modal_cases = {name: case for name, case in cases.items() if isinstance(case.bush, ModalBush)}
+    out.modes = {name: float(bore_modes(case.bush).count) for name, case in modal_cases.items()}
+    calls = {name: jacobian_run(case.bush)[1] for name, case in modal_cases.items() if case.solver == Case.solver}
+    out.jacobians = best_in_turns(calls, 40)
+    out.assemblies = best_in_turns({name: assembly_run(rule) for name, rule in ASSEMBLIES.items()}, 8)
+    return out
+
+
 def measure_bushes(
-    names: Mapping[str, Case] = CASES, *, turns: int = 5, share: float = 1.0, progress: Progress = print
+    names: Mapping[str, Case] = CASES,
+    *,
+    blocks: int = 5,
+    turns: int = 2,
+    share: float = 1.0,
+    progress: Progress = print,
 ) -> list[Cost]:
     """Cost of bores in a run, of the Jacobians of the modal ones, and of the elements' assembly.
 
     Parameters
     ----------
     names : mapping of `Case`
+    blocks : int
+        Processes, each of them new: scripts that call this must guard what they run by ``if __name__ == "__main__"``.
     turns : int
-        Timed runs of every case.
+        Timed runs of every case in a process.
     share : float
         Of every case's steps.
     progress : function
-        Gets a line per turn.
+        Gets a line per process.
     """
-    times: dict[str, list[float]] = {}
-    iterations: dict[str, float] = {}
-    failures: dict[str, str] = {}
-    for turn in range(turns + 1):
-        progress(f"bushes: turn {turn} of {turns}")
-        for name, case in names.items():
-            if name in failures:
-                continue
-            try:
-                spent, iterations[name] = run(case, max(3, round(share * case.steps)))
-            except (EHDError, ValueError, RuntimeError) as error:
-                failures[name] = str(error).splitlines()[0]
-                times.pop(name, None)
-                continue
-            # the first turn compiles and builds
-            if turn > 0:
-                times.setdefault(name, []).append(spent)
-    modes = {n: float(bore_modes(c.bush).count) for n, c in names.items() if isinstance(c.bush, ModalBush)}
+    found: list[Block] = []
+    for block in range(blocks):
+        progress(f"bushes: process {block + 1} of {blocks}")
+        with ProcessPoolExecutor(1, mp_context=multiprocessing.get_context("spawn")) as pool:
+            found.append(pool.submit(measure_block, dict(names), turns, share).result())
+    failures = {name: text for block in found for name, text in block.failures.items()}
+    last = found[-1]
     bases = {name: case.base for name, case in names.items() if case.base}
-    out = costs_of_blocks(STEP_TIME, times, bases, iterations=iterations, modes=modes)
+    times = {name: [block.steps[name] for block in found] for name in names if name not in failures}
+    out = costs_of_blocks(STEP_TIME, times, bases, iterations=last.iterations, modes=last.modes)
     out += [Cost(what=name, per=STEP_TIME, failure=text) for name, text in failures.items()]
-    calls = {n: jacobian_run(c.bush)[1] for n, c in names.items() if n in modes and c.solver == Case.solver}
-    out += costs_of_blocks(JACOBIAN, best_in_turns(calls, turns, 40), {}, modes=modes)
-    assemblies = {name: assembly_run(rule) for name, rule in ASSEMBLIES.items()}
-    return out + costs_of_blocks(ASSEMBLY, best_in_turns(assemblies, turns, 8), {})
+    times = {name: [block.jacobians[name] for block in found] for name in last.jacobians}
+    out += costs_of_blocks(JACOBIAN, times, {}, modes=last.modes)
+    times = {name: [block.assemblies[name] for block in found] for name in last.assemblies}
+    return out + costs_of_blocks(ASSEMBLY, times, {})
 
 
-def best_in_turns(calls: Mapping[str, Callable[[], Any]], blocks: int, rounds: int) -> dict[str, list[float]]:
-    """Best processor time of every call in ``rounds`` rounds that alternate between them, by block, s."""
-    out: dict[str, list[float]] = {name: [] for name in calls}
+def best_in_turns(calls: Mapping[str, Callable[[], Any]], rounds: int) -> dict[str, float]:
+    """Best processor time of every call in ``rounds`` rounds that alternate between them, s."""
+    best = dict.fromkeys(calls, math.inf)
     for name in calls:
         calls[name]()
-    for _ in range(blocks):
-        best = dict.fromkeys(calls, math.inf)
-        for _ in range(rounds):
-            for name, call in calls.items():
-                best[name] = min(best[name], seconds(call))
-        for name, found in best.items():
-            out[name].append(found)
-    return out
+    for _ in range(rounds):
+        for name, call in calls.items():
+            best[name] = min(best[name], seconds(call))
+    return best

@@ -4,11 +4,14 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.folding import (
+    BLOCK,
+    courses,
     fold_adjoints,
     folded_displacements,
     folded_loads,
     folded_rows,
     number_vertices,
+    stencil_by_vertices,
     touched_columns,
 )
 from exudyn_ehd.film.tiles import TILE, make_tiles
@@ -78,22 +81,45 @@ def test_transposed_stencil_of_adjoints(m, mirrored, evens, odds, columns):
     rng.shuffle(places)
     weight, vertices = stencil(places, m, 6)
     fields = rng.normal(size=(len(places), TILE))
-    first, even, odd = fold_adjoints(weight, places, (N, m), mirrored, True, fields)
+    first, by_vertex, row = stencil_by_vertices(weight, places, (N, m))
+    upper = m - mirrored
+    bases = [np.zeros((u, BLOCK)) for u in (2, mirrored)]
+    bases[0][:, :upper] = rng.normal(size=(2, upper))
+    # as many courses as rows: the rows themselves
+    bases[1][:, :mirrored] = np.eye(mirrored)
+    even, odd = fold_adjoints(by_vertex, row, (N, m), mirrored, *bases, fields)
     whole = np.zeros((N * m, TILE))
     np.add.at(whole, vertices.ravel(), (weight[:, :, None] * fields[:, None]).reshape(-1, TILE))
     whole = whole.reshape(N, m, TILE)
-    upper = m - mirrored
     expected = whole[:, :upper].copy()
     expected[:, :mirrored] += whole[:, ::-1][:, :mirrored]
-    count = len(even) // upper
+    count = len(even) // 2
     at = (first + np.arange(count)) % N
     assert not np.delete(whole, at, axis=0).any()
-    np.testing.assert_allclose(even.reshape(count, upper, TILE), expected[at], rtol=1e-12, atol=1e-13)
+    expected = bases[0][:, :upper] @ expected[at]
+    np.testing.assert_allclose(even.reshape(count, 2, TILE), expected, rtol=1e-12, atol=1e-12)
     expected = (whole - whole[:, ::-1])[at, :mirrored]
-    np.testing.assert_allclose(odd.reshape(count, mirrored, TILE), expected, rtol=1e-12, atol=1e-13)
-    alone = fold_adjoints(weight, places, (N, m), mirrored, False, fields)
-    np.testing.assert_allclose(alone[1], even, rtol=1e-12, atol=1e-13)
-    assert len(alone[2]) == 0
+    np.testing.assert_allclose(odd.reshape(count, mirrored, TILE), expected, rtol=1e-12, atol=1e-12)
+    alone = fold_adjoints(by_vertex, row, (N, m), mirrored, bases[0], np.zeros((0, BLOCK)), fields)
+    np.testing.assert_allclose(alone[0], even, rtol=1e-12, atol=1e-13)
+    assert len(alone[1]) == 0
+
+
+@pytest.mark.parametrize("rows, rank", [(9, 5), (9, 9), (3, 2), (12, 4)])
+def test_courses_along_z(rows, rank):
+    rng = np.random.default_rng(8)
+    shapes = rng.normal(size=(rows, rank)) @ rng.normal(size=(N, rank, 7))
+    basis, coordinates = courses(shapes.reshape(N * rows, 7), N)
+    assert basis.shape == (rank, max(rows, BLOCK)) and not basis[:, rows:].any()
+    again = basis[:, :rows].T @ coordinates.reshape(N, rank, 7)
+    np.testing.assert_allclose(again, shapes, rtol=1e-12, atol=1e-12)
+    if rank == rows:
+        np.testing.assert_array_equal(again, shapes)
+
+
+def test_courses_of_no_shapes():
+    basis, coordinates = courses(np.zeros((N * 4, 0)), N)
+    assert basis.shape == (0, BLOCK) and coordinates.shape == (0, 0)
 
 
 @pytest.mark.parametrize(

@@ -88,7 +88,7 @@ def test_bushes():
     # a liner as soft as rubber is pressed through its film
     soft = ehd.ElasticLiner(thickness=0.02, youngs_modulus=1e5)
     cases["soft"] = dataclasses.replace(cases["`ElasticLiner`"], bush=soft)
-    found = bush_costs.measure_bushes(cases, turns=1, share=0.05, progress=_silent)
+    found = bush_costs.measure_bushes(cases, blocks=1, turns=1, share=0.05, progress=_silent)
     known = {(cost.what, cost.per): cost for cost in found}
     for name in list(cases)[:3]:
         cost = known[name, bush_costs.STEP_TIME]
