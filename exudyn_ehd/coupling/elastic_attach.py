@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.carrier import initial_frame
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
 from exudyn_ehd.coupling.items import Item
-from exudyn_ehd.coupling.modal_inertia import ModalInertia
+from exudyn_ehd.coupling.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.film.cavitation import SwiftStieber
@@ -88,6 +88,7 @@ def attach_bush(
     mass = modes.mass if isinstance(modes, BoreModes) else None
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
+        require_heavy_housing(mbs, items[0].node, modes, name)
         element.inertia = ModalInertia(mbs, sides[0], modes)
         return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:

@@ -98,12 +98,16 @@ class ModalFilmElement(BoreFilmElement):
         super().__init__(model, housing, journal, nodes, name)
         self.stiffness = stiffness
         self.inertia: ModalInertia | None = None
+        self._weighed = False
 
     def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""
         assert self.inertia is not None
         if not self._bound:
             self._bind(mbs)
+        if not self._weighed:
+            self._weighed = True
+            self.inertia.warn_if_indefinite(self.model.bore.modes, self.name)  # type: ignore[attr-defined]
         n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
         whole = np.zeros((state.size, state.size))
         whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])

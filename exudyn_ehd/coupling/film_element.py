@@ -314,6 +314,8 @@ class FilmElement:
                 self._memory, self._start = self._resumed[1], start
             elif not goes_on:
                 self._record.clear()
+                if self.recorder is not None:
+                    self.recorder.begin_anew()
             self._resumed = None
         elif start < self._start:
             self._memory = None
