@@ -23,6 +23,8 @@ EVALUATION_LIMITS = {
     "`VogelTemperature`": 1.05, "`PatirCheng`": 1.1, "`GreenwoodTripp`": 1.15, "`PatirCheng`, `GreenwoodTripp`": 1.2, "`Crown`": 1.1,
     "`GreenwoodTripp`, `ArchardWear`": 1.25, "`ElasticLiner`": 2.0, "`RegularisedWall`": 1.1, "`squeeze=False`": 1.05,
     "`PatirCheng`, unequally rough": 1.35, "`BarusPressure`": 1.2, "`RoelandsPressure`": 1.2, "`CarreauShear`": 1.2,
+    "`DowsonHigginson`": 1.5, "`DowsonHigginson`, `BarusPressure`": 1.5, "`ElrodAdams`, `DowsonHigginson`": 1.5,
+    "`ElrodAdams`, `DowsonHigginson`, `BarusPressure`": 1.5,
 }  # fmt: skip
 # Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
 STEP_LIMITS = {
