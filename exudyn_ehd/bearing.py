@@ -23,6 +23,7 @@ from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
 from exudyn_ehd.film.roughness import PatirCheng
 from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
 from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.viscosity import RoelandsPressure
 from exudyn_ehd.film.wear import ArchardWear
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
@@ -266,6 +267,12 @@ def advice(status: Status, bearing: object) -> str:
             "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not give way: name "
             "contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the liner too, or reduce the load or the "
             "step size."
+        )
+    law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
+    if status is Status.NO_PRESSURE and isinstance(law, RoelandsPressure):
+        return (
+            "the pressure runs away: with RoelandsPressure, too, no finite pressure carries a film that is pressed together as fast as here; "
+            "reduce loads and speeds of approach (initial velocities), check the law's coefficient, or name an elastic liner or bush."
         )
     return status.advice
 

@@ -31,6 +31,11 @@ LAST_STEP = 1e-7
 # Steps without a limit; then the share of the way to the end of the law's range that one may cover, and steps in a row that may want more.
 WHOLE_STEPS = 16
 TO_THE_END = 0.9
+# Share of the pressure that a wedge as deep as the gap makes: below it a film without a solution so far is that of a journal in the centre but
+# for rounding, whose pressures are rounding too.
+ROUNDING_SHARE = 1e-6
+# Rounding of a vertex's balance, share of the largest flow, and of that wedge's pressure: no reason to change sides.
+ROUNDING = 1e-14
 MAX_CUT_STEPS = 16
 EXACT_RATIO = 1e-8
 FULL, CLIPPED, COMPLEMENTARY, FILLED = 0, 1, 2, 3
@@ -79,8 +84,25 @@ def _gather_negative(residual, order, count, x_out):
 
 
 @njit(cache=True)
-def _take(P, fill, full, order, count, x, pc, kind, end):
+def _wedge(film):
+    """Pressure that the Couette flow of a full gap builds up over a link, and that flow, the largest over the film."""
+    pressure = 0.0
+    flow = 0.0
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    for c in range(kx.size):
+        flow = max(flow, abs(fx[c]), abs(fz[c]))
+        if kx[c] > 0.0:
+            pressure = max(pressure, abs(fx[c]) / kx[c])
+        if kz[c] > 0.0:
+            pressure = max(pressure, abs(fz[c]) / kz[c])
+    return pressure, flow
+
+
+@njit(cache=True)
+def _take(P, fill, full, order, count, x, pc, kind, end, least):
     """Add the step x; returns its largest share of the peak pressure (or of a full film), the peak and how often the law's end cut it.
+
+    The peak counts as ``least`` at least.
 
     The density climbs ever more steeply towards ``end``, where the pressure has no bound (viscosity laws whose integral is finite), and is
     taken as constant beyond, so that whole steps across it can bounce back for ever. Cut steps cover nine tenths of the way.
@@ -88,7 +110,7 @@ def _take(P, fill, full, order, count, x, pc, kind, end):
     at, share, sides = P.reshape(-1), fill.reshape(-1), full.reshape(-1)
     cuts = 0
     reference = 0.0 if kind == FULL else pc
-    peak = 1e-300
+    peak = least
     by_pressure = 0.0
     by_fill = 0.0
     for r in range(count):
@@ -120,8 +142,11 @@ def _unsettled(P, r, fixed, full, floor):
 
 
 @njit(cache=True)
-def _select(P, fill, r, fixed, full, pc, kind, floor):
-    """Vertices change sides: pressures below ``floor``, films above 1 (or, without a fill, oil that piles up); returns their number."""
+def _select(P, fill, r, fixed, full, pc, kind, floor, piled):
+    """Vertices change sides: pressures below ``floor``, films above 1 (or, without a fill, oil that piles up); returns their number.
+
+    Oil piles up where the balance r is not above ``piled``.
+    """
     if kind != FILLED and _unsettled(P.reshape(-1), r.reshape(-1), fixed.reshape(-1), full.reshape(-1), floor) == 0.0:
         return 0
     n, m = P.shape
@@ -140,7 +165,7 @@ def _select(P, fill, r, fixed, full, pc, kind, floor):
                     full[i, j] = True
                     fill[i, j] = 1.0
                     changes += 1
-            elif r[i, j] <= 0.0:
+            elif r[i, j] <= piled:
                 full[i, j] = True
                 changes += 1
     return changes
@@ -188,6 +213,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     last = moved = 0.0
     fresh = not held
     end = law.highest / scale
+    least, slack, piled = 1e-300, 0.0, 0.0
     cut_steps = 0
     for step in range(MAX_NEWTON_STEPS):
         if fresh:
@@ -200,7 +226,12 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
             dense_band(b.lower, count, width), dense_band(b.upper, count, width), b.inv_diag, count, width,
             b.x.reshape(1, b.x.size),
         )  # fmt: skip
-        size, peak, cuts = _take(P, fill, full, b.order, count, b.x, pc, kind, end if step >= WHOLE_STEPS else np.inf)
+        if step == WHOLE_STEPS:
+            wedge, flow = _wedge(film)
+            least, slack, piled = max(least, ROUNDING_SHARE * wedge), 100.0 * ROUNDING * wedge, -ROUNDING * flow
+        size, peak, cuts = _take(
+            P, fill, full, b.order, count, b.x, pc, kind, end if step >= WHOLE_STEPS else np.inf, least
+        )
         if not size < 1e300:
             return False, step + 1, False, count, width
         if size <= ERROR_TOLERANCE:
@@ -210,7 +241,8 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
         _balance(P, fill, film, kind, b)
         changes = 0
         if kind >= COMPLEMENTARY:
-            changes = _select(P, fill, b.residual, film.fixed, full, pc, kind, pc - SET_TOLERANCE * peak)
+            lowest = pc - max(SET_TOLERANCE * peak, slack)
+            changes = _select(P, fill, b.residual, film.fixed, full, pc, kind, lowest, piled)
         if changes > 0:
             # those that left had the cavity's density already
             _balance(P, fill, film, kind, b)

@@ -15,6 +15,7 @@ SETTLED = 1e-11
 MAX_ROUNDS = 200
 # Differences of past rounds that the acceleration combines.
 DEPTH = 6
+# K; far beyond what any oil bears.
 HOTTEST = 2000.0
 LARGEST_CHANGE = 50.0
 # Largest change of a round, K, that the acceleration starts from, and rounds without progress before the damping grows.
@@ -60,12 +61,20 @@ def _target(
     return np.asarray(thermal.steady_temperature(model))
 
 
+WAY_OUT = (
+    "let oil flow through (end pressures, eccentricity, supply) or give the thermal effect heat transfer to the surfaces "
+    "(housing_conductance, bush_coefficient, journal_coefficient)."
+)
+
+
+def is_too_hot(temperature: float | np.ndarray | None) -> bool:
+    """Whether a film's temperature, K, is beyond `HOTTEST` somewhere, or no number; False without a thermal effect."""
+    return temperature is not None and not float(np.max(temperature)) < HOTTEST
+
+
 def _require_way_out(T: float) -> None:
-    if not T < HOTTEST:
-        raise FilmError(
-            "steady temperature: the heat of the film has no way out; let oil flow through (end pressures, eccentricity, supply) "
-            "or give the thermal effect heat transfer to the surfaces (housing_conductance, bush_coefficient, journal_coefficient)."
-        )
+    if is_too_hot(T):
+        raise FilmError(f"steady temperature: the heat of the film has no way out; {WAY_OUT}")
 
 
 def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float) -> History:

@@ -233,3 +233,36 @@ def test_static_solution_without_stiffness_says_what_is_missing():
     mbs.Assemble()
     with pytest.raises(ehd.RunError, match=r"SolveStatic: .*'still'.*no stiffness of their own: give speeds"):
         ehd.SolveStatic(mbs, settings())
+
+
+def test_a_film_that_heats_beyond_any_oil_ends_the_run():
+    """Asperities rub where hardly any oil flows, between adiabatic surfaces: a viscosity of nothing would follow without a sign."""
+    oil = ehd.oil("ISO VG 32", temperature=313.15)
+    made = dataclasses.replace(
+        BEARING, lubricant=oil, thermal=ehd.FilmEnergy(supply_temperature=313.15), film=ehd.FiniteLength(n_theta=48, n_z=4),
+        asperity=ehd.GreenwoodTripp(composite_roughness=8e-7, composite_modulus=2e10),
+    )  # fmt: skip
+    mbs, joint = system(made, load=lambda t: -40e3)
+    with pytest.raises(ehd.FilmError) as caught:
+        ehd.SolveDynamic(mbs, settings(500))
+    for part in ("'big end'", "t = ", "2000 K", "asperities", "eccentricity ratio", "bush_coefficient"):
+        assert part in str(caught.value), part
+    assert 313.0 < joint.history.peak_temperature.max() < 4000.0
+    cooled = dataclasses.replace(
+        made, thermal=ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e4, journal_coefficient=2e4)
+    )
+    mbs, joint = system(cooled, load=lambda t: -40e3)
+    ehd.SolveDynamic(mbs, settings(500))
+    assert joint.history.contact_load.max() > 10.0
+    assert joint.history.peak_temperature.max() < 1000.0
+
+
+def test_a_film_without_pressure_is_told_by_its_law():
+    for law, remedy in (
+        (ehd.BarusPressure(coefficient=2e-8), "use RoelandsPressure"),
+        (ehd.RoelandsPressure(coefficient=2e-8), "RoelandsPressure, too"),
+    ):
+        oil = ehd.Lubricant(viscosity=0.02, pressure_law=law)
+        mbs, _ = system(dataclasses.replace(BEARING, lubricant=oil), load=lambda t: -4e6)
+        with pytest.raises(ehd.FilmError, match=remedy):
+            ehd.SolveDynamic(mbs, settings())

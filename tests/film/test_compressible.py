@@ -15,6 +15,7 @@ from exudyn_ehd.film.density_matrix import (
     full_balance,
 )
 from exudyn_ehd.film.direct import number_cells
+from exudyn_ehd.joint.build import build_model
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
 DENSITY = ehd.DowsonHigginson()
@@ -216,3 +217,23 @@ def test_warm_start_and_cold_start_agree(closure):
 def test_oil_beyond_the_law_has_no_pressure():
     with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
         slider(60, ehd.BarusPressure(coefficient=3e-8))
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_journal_in_the_centre_but_for_rounding(closure):
+    """The pressures are rounding themselves: no step becomes a small share of them, and vertices change sides for nothing."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.02, length=0.02, radial_clearance=25e-6, cavitation=closure, film=ehd.FiniteLength(n_theta=45, n_z=4),
+        lubricant=ehd.Lubricant(viscosity=0.015, density_law=DENSITY),
+    )  # fmt: skip
+    model, rng = build_model(bearing), np.random.default_rng(0)
+    for _ in range(40):
+        motion = np.zeros(10)
+        motion[:2] = rng.normal(size=2) * 10.0 ** rng.uniform(-22, -17)
+        motion[4:6] = rng.normal(size=2) * 10.0 ** rng.uniform(-20, -14)
+        motion[8] = rng.uniform(-300, 300)
+        model.forget()
+        found = model.evaluate(motion, model.initial_history(motion))
+        assert found.status is ehd.Status.CONVERGED
+        # 500 N at an eccentricity ratio of one half
+        assert np.abs(found.wrench[:2]).max() < 1e-6
