@@ -9,7 +9,7 @@ import exudyn
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics
 from exudyn_ehd.coupling.bush_object import Mount, add_bush
 from exudyn_ehd.coupling.carrier import initial_frame
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
@@ -159,6 +159,6 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) 
         bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
     motion = np.empty(SIZE)
-    kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
+    joint_kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
     settled = film.evaluate_steady(motion).status is Status.CONVERGED
     return film.coordinates.copy() if settled else None

@@ -31,8 +31,6 @@ does not settle (`exudyn_ehd.film.compliant_start`).
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
@@ -58,6 +56,7 @@ from exudyn_ehd.film.compliant_links import (
     compliant_sensitivities,
     links_of,
 )
+from exudyn_ehd.film.compliant_parts import ColumnContact, ColumnLimiter, ColumnOil
 from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
 from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import FluxEffect, link_flux
@@ -71,40 +70,6 @@ from exudyn_ehd.status import Status
 
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
 NEARLY_SOLID = 0.9
-
-
-class ColumnContact(Protocol):
-    """What presses on a column beside the film; as `exudyn_ehd.joint.effects.Contact`."""
-
-    @property
-    def presses_below(self) -> float: ...
-
-    def settle(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None: ...
-
-
-class ColumnLimiter(Protocol):
-    """The gap that the film sees between touching surfaces; as `exudyn_ehd.joint.effects.GapLimiter`."""
-
-    @property
-    def limits_below(self) -> float: ...
-
-    def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None: ...  # fmt: skip
-
-
-class ColumnOil(Protocol):
-    """How pressure follows from the film's unknown; as `exudyn_ehd.joint.effects.PressureLaw`."""
-
-    @property
-    def largest_pressure(self) -> float: ...
-
-    def transform(self, p: np.ndarray) -> np.ndarray: ...
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
 
 
 class CompliantFilmSolver(FilmSolver):

@@ -9,11 +9,13 @@ import numpy as np
 from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, take_step
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.liner_newton import (
+    BALANCED,
     CLIPPED,
     COMPLEMENTARY,
     EXACT_STEP,
     FULL,
     LEAST_DEFLECTION,
+    ROUNDING,
     flow_rounding,
     select,
 )
@@ -122,6 +124,9 @@ def newton(
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
             rest = size * size / (SQUARE_TOLERANCE if fresh else left * min(max(last_size, 1e-300), 1.0))
+            if standing and kind == CLIPPED:
+                # suction without bounds makes any step a small one
+                standing = norm <= BALANCED * noise / ROUNDING
             if standing or (not borrowed and rest <= 1.0):
                 if not standing and extra == 0.0:
                     _polish(s, P, fill, conserves, complementary, opening)

@@ -2,8 +2,7 @@
 
 Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
 Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state 1.25, of density 1.5, lumped heat
-1.05, field of heat 2.5), for others what
-was measured plus a twentieth, all times 1.02: so far do two runs on a shared machine differ.
+1.05, field of heat 2.5), for others what was measured plus a twentieth, all times 1.02: so far do two runs on a shared machine differ.
 """
 
 import math

@@ -107,7 +107,9 @@ def solve(mbs, joints, simulation_settings, *, solver=None, fails=False, restart
     )
 
 
-_MAY_BE_ABSENT = ("supply_flow", "film_temperature", "peak_temperature", "peak_pressure", "leakage", "contact_torque")
+_MAY_BE_ABSENT = (
+    "supply_flow", "film_temperature", "peak_temperature", "peak_pressure", "leakage", "contact_torque", "bore_displacement",
+)  # fmt: skip
 
 
 def assert_finite(history):
