@@ -4,7 +4,7 @@ The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the pisto
 two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and the modes that its bore needs under an
 oil film. At the firing the mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
 narrow one carries the firing load in the middle of a thin eye that gives way beside it, so that the pressure gathers over the shank
-and the film gets less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the pressure
+and the film right after the firing is less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the pressure
 is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide shank is the heavier one: between
 firings its inertia asks for more force than that of the narrow one, whose mass the rigid rod has.)
 
@@ -258,7 +258,8 @@ def draw(cases: dict, rods: dict, path: Path) -> None:
 
 def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
     """Run all rods over the turn of a firing; with ``results`` write the picture there."""
-    turns, steps = (0.27, 240) if quick else (1.0, 360)
+    # at 360 steps per turn some are halved, and forces ring behind them
+    turns, steps = (0.27, 240) if quick else (1.0, 720)
     rods = {name: rod_fem(across, tolerance=0.03 if quick else 0.02) for name, across in SHANKS.items()}
     bearing = big_end(quick=quick)
 

@@ -9,13 +9,13 @@ import exudyn
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics
 from exudyn_ehd.coupling.bush_object import Mount, add_bush
 from exudyn_ehd.coupling.carrier import initial_frame
 from exudyn_ehd.coupling.elastic_film import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.fe_bore import FloatingBoreSide
 from exudyn_ehd.coupling.items import Item
-from exudyn_ehd.coupling.modal_inertia import ModalInertia
+from exudyn_ehd.coupling.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
 from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.film.cavitation import SwiftStieber
@@ -88,6 +88,7 @@ def attach_bush(
     mass = modes.mass if isinstance(modes, BoreModes) else None
     element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
     if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
+        require_heavy_housing(mbs, items[0].node, modes, name)
         element.inertia = ModalInertia(mbs, sides[0], modes)
         return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:
@@ -158,6 +159,6 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) 
         bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
     motion = np.empty(SIZE)
-    kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
+    joint_kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
     settled = film.evaluate_steady(motion).status is Status.CONVERGED
     return film.coordinates.copy() if settled else None

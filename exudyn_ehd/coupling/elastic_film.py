@@ -13,7 +13,7 @@ from typing import Any
 import exudyn
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics
 from exudyn_ehd.coupling.film_element import FilmElement, Trial
 from exudyn_ehd.coupling.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.sides import Side
@@ -74,7 +74,7 @@ class BoreFilmElement(FilmElement):
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
         housing, journal = self.sides
         out = np.empty((self.rigid_size, 6))
-        kinematics.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
+        joint_kinematics.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
         return out
 
 
@@ -98,12 +98,16 @@ class ModalFilmElement(BoreFilmElement):
         super().__init__(model, housing, journal, nodes, name)
         self.stiffness = stiffness
         self.inertia: ModalInertia | None = None
+        self._weighed = False
 
     def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""
         assert self.inertia is not None
         if not self._bound:
             self._bind(mbs)
+        if not self._weighed:
+            self._weighed = True
+            self.inertia.warn_if_indefinite(self.model.bore.modes, self.name)  # type: ignore[attr-defined]
         n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
         whole = np.zeros((state.size, state.size))
         whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])
@@ -120,9 +124,9 @@ class ModalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
         n, k = self.rigid_size, self.stiffness.size
-        kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        joint_kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
         force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
         if self.inertia is not None:
             on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
@@ -135,7 +139,7 @@ class ModalFilmElement(BoreFilmElement):
         T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
         whole = np.empty((n + k, n + k))
-        kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
+        joint_kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
         if self.inertia is not None:
             by_place, by_rate = self.inertia.derivatives(*self._inertia_state(trial))
             places = np.r_[: self.sides[0].size, n : n + k]

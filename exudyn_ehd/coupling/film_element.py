@@ -16,7 +16,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import advice
-from exudyn_ehd.coupling import kinematics, solvers
+from exudyn_ehd.coupling import joint_kinematics, solvers
 from exudyn_ehd.coupling.chatter import ChatterWatch
 from exudyn_ehd.coupling.contract import Evaluation, JointModel
 from exudyn_ehd.coupling.display import FilmDisplay
@@ -128,9 +128,9 @@ class FilmElement:
         """Q (n,) at the trial, to which the sides' arrays belong."""
         assert trial.evaluation is not None
         housing, journal = self.sides
-        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        joint_kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
+        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
         return force
 
     # --- evaluation -----------------------------------------------------------------------------------------------
@@ -167,7 +167,7 @@ class FilmElement:
         housing.update(mbs, qv[:n], qv_t[:n], configuration)
         journal.update(mbs, qv[n:], qv_t[n:], configuration)
         motion = np.empty(10)
-        kinematics.relative_motion(housing.frame, journal.frame, motion)
+        joint_kinematics.relative_motion(housing.frame, journal.frame, motion)
         return motion
 
     def _spin(self) -> float:
@@ -201,15 +201,15 @@ class FilmElement:
         housing, journal = self.sides
         n_h, n = housing.size, housing.size + journal.size
         q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
-        kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        joint_kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
         motion_q, motion_qt = np.empty((10, n)), np.empty((10, n))
-        kinematics.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
+        joint_kinematics.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
         stiffness, damping = np.zeros((n, n)), np.empty((n, n))
         housing.geometric(mbs, q[:n_h], self._loads[0], self._loads[1], stiffness[:n_h, :n_h])
         journal.geometric(mbs, q[n_h:], self._loads[2], self._loads[3], stiffness[n_h:, n_h:])
-        kinematics.tangent_matrices(
+        joint_kinematics.tangent_matrices(
             housing.frame,
             journal.frame,
             housing.jac,
@@ -314,6 +314,8 @@ class FilmElement:
                 self._memory, self._start = self._resumed[1], start
             elif not goes_on:
                 self._record.clear()
+                if self.recorder is not None:
+                    self.recorder.begin_anew()
             self._resumed = None
         elif start < self._start:
             self._memory = None

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics
 from exudyn_ehd.coupling.items import Item, resolve
 from exudyn_ehd.coupling.sides import Side
 from exudyn_ehd.status import InputError, require_vector
@@ -101,7 +101,7 @@ def check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, S
             raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
         side.update(None, item.initial_coordinates, item.initial_velocities, None)
     motion = np.empty(10)
-    cosine = kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
+    cosine = joint_kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
     clearance, length = bearing.radial_clearance, bearing.length
     tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
     if tilt * length >= 2.0 * clearance:

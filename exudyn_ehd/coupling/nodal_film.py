@@ -15,7 +15,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics
 from exudyn_ehd.coupling.bush_object import FlexibleBush
 from exudyn_ehd.coupling.elastic_film import SIZE, BoreFilmElement
 from exudyn_ehd.coupling.film_element import Trial
@@ -63,7 +63,7 @@ class NodalFilmElement(BoreFilmElement):
         """Nodal forces (count, 3, ...) of pressure and shear (count, 3, ...) and of the rest of minus the wrench (6, ...)."""
         x = self.arms @ self.sides[0].frame[:, :3]
         rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
-        return local + np.tensordot(kinematics.spread_matrix(x), rest, 1)
+        return local + np.tensordot(joint_kinematics.spread_matrix(x), rest, 1)
 
     def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
         """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
@@ -89,9 +89,9 @@ class NodalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
         n = self.rigid_size
-        kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        joint_kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
         force[: housing.size] = 0.0
         force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
         return force
@@ -192,7 +192,7 @@ class NodalTangent:
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
         self.turning = (self.frame[:, :2].T @ -_skew(omega)).T
         x = element.arms @ self.frame
-        self.spread, self.resultant = kinematics.spread_matrix(x).reshape(-1, 6), resultant(x)
+        self.spread, self.resultant = joint_kinematics.spread_matrix(x).reshape(-1, 6), resultant(x)
         if self.n_h:
             self.place, self.drift = element._housing_maps()
             self.turned = f_q * element._turning_forces(evaluation)

@@ -8,7 +8,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics, kinematics
 from exudyn_ehd.coupling.film_element import FilmElement
 from exudyn_ehd.coupling.sides import NodeSide, read_state
 from exudyn_ehd.joint.effects import History
@@ -74,7 +74,7 @@ def _motion(mbs: Any, element: FilmElement, q: np.ndarray, q_t: np.ndarray) -> n
     for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
         side.update(mbs, q[part], q_t[part], _INITIAL)
     motion = np.empty(10)
-    kinematics.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
+    joint_kinematics.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
     return motion
 
 

@@ -8,9 +8,10 @@ from typing import Any
 
 import exudyn
 import numpy as np
-from scipy.sparse import coo_matrix, csc_matrix, issparse
+from scipy.sparse import coo_matrix, csc_matrix
 
 from exudyn_ehd.coupling.nodal_film import NodalFilmElement
+from exudyn_ehd.coupling.object_mass import as_sparse, planar_mass, point_mass
 from exudyn_ehd.status import InputError
 
 # the index types exist at run time, but not in the type stubs
@@ -118,7 +119,7 @@ def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
         return value["function"] if isinstance(value, dict) else None
 
     def constant(name: str) -> coo_matrix | None:
-        matrix = _as_sparse(mbs.GetObjectParameter(item, name))
+        matrix = as_sparse(mbs.GetObjectParameter(item, name))
         return None if matrix is None or matrix.nnz == 0 else matrix
 
     jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
@@ -136,9 +137,9 @@ def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
         t = data.GetTime()
         terms = [(f, m) for f, m in ((fM, mass), (fK, stiffness), (fD, damping)) if m is not None]
         if jacobian is not None:
-            terms.append((1.0, _as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
+            terms.append((1.0, as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
         if mass_function is not None:
-            terms.append((fM, _as_sparse(mass_function(mbs, t, int(item), q, q_t))))
+            terms.append((fM, as_sparse(mass_function(mbs, t, int(item), q, q_t))))
         return tuple(
             np.concatenate(x)
             for x in (
@@ -162,7 +163,7 @@ def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) ->
     if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
         # Exudyn keeps these mass matrices sparse and can't return them
         terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
-        own_mass = _planar_mass(mbs, item) if object_type == "RigidBody2D" else _point_mass(mbs, item, len(places))
+        own_mass = planar_mass(mbs, item) if object_type == "RigidBody2D" else point_mass(mbs, item, len(places))
     for what, _ in terms:
         try:
             mbs.ComputeItem(item, what)
@@ -217,25 +218,6 @@ def _differences(mbs: Any, item: Any, places: np.ndarray, fK: float, fD: float) 
     return out
 
 
-def _point_mass(mbs: Any, item: Any, size: int) -> Callable:
-    """Mass matrix of a mass point: density times position Jacobian."""
-    mass = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
-    return lambda mbs: mass
-
-
-def _planar_mass(mbs: Any, item: Any) -> Callable:
-    """Mass matrix of a planar rigid body; density times position Jacobian are its first two rows, centre of mass off the node included."""
-    inertia = float(mbs.GetObjectParameter(item, "inertia"))
-
-    def mass(mbs: Any) -> np.ndarray:
-        out = np.zeros((3, 3))
-        out[:2] = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:2]
-        out[2, :2], out[2, 2] = out[:2, 2], inertia
-        return out
-
-    return mass
-
-
 def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
     """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
     data = mbs.systemData
@@ -248,17 +230,3 @@ def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
         return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
 
     return part
-
-
-def _as_sparse(value) -> coo_matrix | None:
-    """A matrix that a user function or an object holds, as triplets."""
-    if isinstance(value, exu.MatrixContainer):
-        value = value.GetPythonObject()
-    if isinstance(value, dict):
-        shape = (value["numberOfRows"], value["numberOfColumns"])
-        triplets = np.asarray(value["triplets"]).reshape(-1, 3)
-        return coo_matrix((triplets[:, 2], (triplets[:, 0].astype(int), triplets[:, 1].astype(int))), shape=shape)
-    if issparse(value):
-        return value.tocoo()
-    dense = np.atleast_2d(np.asarray(value, dtype=float))
-    return None if dense.size == 0 else coo_matrix(dense)

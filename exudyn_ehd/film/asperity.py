@@ -28,9 +28,9 @@ from exudyn_ehd.status import InputError, require_number
 
 REACH = 8.0
 STEPS_PER_SIGMA = 64
-# Of a column's gap: steps, and the last one as share of roughness and gap.
+# Of a column's gap: steps, and the last one as share of the roughness.
 MAX_COLUMN_STEPS = 60
-COLUMN_TOLERANCE = 1e-15
+COLUMN_TOLERANCE = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -142,9 +142,11 @@ class AsperityContact(AverageGap):
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         asperity_pressure(H, self.sigma, self.level, self.table, P_out, slope_out)
 
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
-        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
-        settle_asperities(X, compliance, self.sigma, self.level, self.table, G)
+    def settle(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `joint.effects.Contact`."""
+        settle_asperities(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
 
 
 @njit(cache=True)
@@ -193,10 +195,11 @@ def asperity_pressure(H, sigma, level, table, P_out, slope_out):
 
 
 @njit(cache=True)
-def settle_asperities(X, compliance, sigma, level, table, G):
+def settle_asperities(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
     """Gap on a column of liner that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
 
-    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
+    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it. With the pressure there,
+    and its derivative to G over ``scale``.
     """
     n, m = X.shape
     inverse = 1.0 / sigma
@@ -206,11 +209,18 @@ def settle_asperities(X, compliance, sigma, level, table, G):
             g = max(G[i, j], x)
             if x >= REACH * sigma:
                 G[i, j] = x
+                P_out[i, j] = 0.0
+                slope_out[i, j] = 0.0
                 continue
+            p = slope = 0.0
             for _ in range(MAX_COLUMN_STEPS):
                 p, slope = _asperity_at(g, inverse, level, table)
                 step = (x + compliance * p - g) / (1.0 - compliance * slope)
                 g += step
-                if abs(step) <= COLUMN_TOLERANCE * (sigma + abs(g) + abs(x)):
+                if abs(step) <= COLUMN_TOLERANCE * sigma:
+                    # what is left is of the order of step^2 / sigma
+                    p += slope * step
                     break
             G[i, j] = g
+            P_out[i, j] = p
+            slope_out[i, j] = slope / scale

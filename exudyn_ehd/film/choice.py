@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from exudyn_ehd.film.cavitation import Gumbel
 from exudyn_ehd.film.classic import ClassicSolver, ClassicSOR
-from exudyn_ehd.film.compliant import ColumnContact, ColumnLimiter, ColumnOil, CompliantFilmSolver
+from exudyn_ehd.film.compliant import CompliantFilmSolver
+from exudyn_ehd.film.compliant_parts import ColumnContact, ColumnLimiter, ColumnOil
 from exudyn_ehd.film.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.density import CompressibleLaw
 from exudyn_ehd.film.flux import FluxEffect

@@ -31,8 +31,6 @@ does not settle (`exudyn_ehd.film.compliant_start`).
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 
 from exudyn_ehd.film.band_lu import solve_lu_transposed
@@ -44,17 +42,21 @@ from exudyn_ehd.film.compliant_columns import (
     Columns,
     answer_columns,
     drive_columns,
-    gain_of_columns,
     move_columns,
     press_columns,
+    scale_load,
+    smallest_gap,
+    smallest_true_gap,
 )
 from exudyn_ehd.film.compliant_iteration import factor, newton
 from exudyn_ehd.film.compliant_links import (
     compliant_coefficients,
+    compliant_gradient,
     compliant_residual,
     compliant_sensitivities,
     links_of,
 )
+from exudyn_ehd.film.compliant_parts import ColumnContact, ColumnLimiter, ColumnOil
 from exudyn_ehd.film.compliant_start import cold_start, pseudo_transient
 from exudyn_ehd.film.elrod import _lu_buffers
 from exudyn_ehd.film.flux import FluxEffect, link_flux
@@ -68,40 +70,6 @@ from exudyn_ehd.status import Status
 
 # Share of an oil's largest pressure at which a film that was not found is on its way beyond.
 NEARLY_SOLID = 0.9
-
-
-class ColumnContact(Protocol):
-    """What presses on a column beside the film; as `exudyn_ehd.joint.effects.Contact`."""
-
-    @property
-    def presses_below(self) -> float: ...
-
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None: ...
-
-    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None: ...
-
-
-class ColumnLimiter(Protocol):
-    """The gap that the film sees between touching surfaces; as `exudyn_ehd.joint.effects.GapLimiter`."""
-
-    @property
-    def limits_below(self) -> float: ...
-
-    def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None: ...  # fmt: skip
-
-
-class ColumnOil(Protocol):
-    """How pressure follows from the film's unknown; as `exudyn_ehd.joint.effects.PressureLaw`."""
-
-    @property
-    def largest_pressure(self) -> float: ...
-
-    def transform(self, p: np.ndarray) -> np.ndarray: ...
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
 
 
 class CompliantFilmSolver(FilmSolver):
@@ -149,7 +117,7 @@ class CompliantFilmSolver(FilmSolver):
         shape = grid.shape
         self.rigid = np.ones((3, *shape))
         self.rigid_film, self.rigid_slope = np.ones(shape), np.ones(shape)
-        self.true_gap, self.true_link = np.ones(shape), np.ones(shape)
+        self.true_gap = np.ones(shape)
         self.contact_pressure, self.contact_slope = np.zeros(shape), np.zeros(shape)
         self.contact_G, self.bend = np.zeros(shape), np.zeros(shape)
         self.scratch = [np.zeros(shape) for _ in range(4)]
@@ -164,7 +132,7 @@ class CompliantFilmSolver(FilmSolver):
         self.flux_effects = flux_effects
         self.flux = link_flux(self.columns.HF, flux_effects) if flux_effects else None
         self.link_flux = links_of(self.flux)
-        self.gain, self.gain_P, self.gain_fill = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+        self.gain_P, self.gain_fill = np.zeros(shape), np.zeros(shape)
         self.residual = np.zeros(shape)
         self.full, self.trial_full = np.ones(shape, dtype=np.bool_), np.ones(shape, dtype=np.bool_)
         self.trial, self.trial_fill = np.zeros(shape), np.ones(shape)
@@ -173,6 +141,8 @@ class CompliantFilmSolver(FilmSolver):
         self.inverse = self.mass_inverse = self.deflection_inverse = 0.0
         self.with_rate = False
         self.exact = self.held = False
+        # whether the columns' derivatives are those of their present state
+        self.answered = False
         self.links = np.outer(grid.link_x, np.ones(shape[1]))
         if closure.clips:
             self.kind = CLIPPED
@@ -201,7 +171,7 @@ class CompliantFilmSolver(FilmSolver):
 
     def smallest_gap(self) -> float:
         """Smallest scaled gap of the deformed surfaces."""
-        return float(min(self.true_gap.min(), self.true_link.min()))
+        return smallest_true_gap(self.rigid, self.fields)
 
     def stored_power(self) -> float:
         """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
@@ -275,17 +245,12 @@ class CompliantFilmSolver(FilmSolver):
     def press(self, P: np.ndarray) -> bool:
         """Pressure on every column for the film's unknown P; False where the oil would be solid."""
         load, scale = self.load, self.pressure_scale
-        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load[DRIVE])
+        drive_columns(P, self.grid.fixed, self.system.cavity_pressure, self.kind == CLIPPED, load)
         if self.oil is None:
-            load[LOAD_P] = load[DRIVE]
             return True
         if not self.oil.inverse(load[DRIVE] * scale, load[LOAD_P], load[SLOPE], load[BEND]):
             return False
-        if not float(load[LOAD_P].max()) <= self.oil.largest_pressure:
-            return False
-        load[LOAD_P] *= 1.0 / scale
-        load[BEND] *= scale
-        return True
+        return scale_load(load, scale) <= self.oil.largest_pressure
 
     def push(self, P: np.ndarray) -> np.ndarray:
         """Deflection (n, m) that pseudo time counts, of settled columns: what is cut off counts as it stands."""
@@ -333,15 +298,14 @@ class CompliantFilmSolver(FilmSolver):
     def settle(self, P: np.ndarray) -> bool:
         """Every column under the film of the unknown P, with the gaps that the film sees; False where the oil has no pressure."""
         c, contact, limiter = self.columns, self.contact, self.limiter
+        self.answered = False
         if not self.press(P):
             return False
         x = self.true_gap if contact is None else self.scratch[0]
-        smallest = press_columns(self.rigid, self.load[LOAD_P], self.beta, x)
+        smallest = press_columns(self.rigid, self.load, self.beta, x)
         if contact is not None:
             if smallest < contact.presses_below:
-                contact.settle(x, self.beta / self.pressure_scale, self.true_gap)
-                contact.pressure(self.true_gap, self.contact_pressure, self.contact_G)
-                self.contact_G *= 1.0 / self.pressure_scale
+                contact.settle(x, self.beta, self.pressure_scale, self.true_gap, self.contact_pressure, self.contact_G)
                 self.apart = False
             else:
                 self.true_gap[:] = x
@@ -367,17 +331,15 @@ class CompliantFilmSolver(FilmSolver):
         g, pc = self.grid, self.system.cavity_pressure
         if not self.settle(P):
             return np.inf, -1.0
-        smallest = gain_of_columns(
-            self.fields, P, self.load, fill, self.rigid_film, self.area, self._times(extra), self.mass_old, extra_old,
-            conserves, self.beta, self.gain,
-        )  # fmt: skip
+        smallest = smallest_gap(self.fields)
         if not smallest > 0.0:
             return np.inf, smallest
         self._set_flux()
         complementary = self.kind == COMPLEMENTARY and not conserves
         norm = compliant_residual(
-            self.fields, self.link_flux, P, fill, self.gain, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z,
-            g.fixed, pc, complementary, self.residual,
+            self.fields, self.link_flux, P, self.load, fill, self.rigid_film, self.area, self._times(extra), self.mass_old,
+            extra_old, conserves, self.beta, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc,
+            complementary, self.residual,
         )  # fmt: skip
         return norm, smallest
 
@@ -391,6 +353,7 @@ class CompliantFilmSolver(FilmSolver):
             self.fields, P, self.load, fill, self.rigid_slope, self.contact_G, self.bend, self.area, self._times(extra),
             conserves, self.beta, self.inverse, self.gain_P, self.gain_fill,
         )  # fmt: skip
+        self.answered = True
 
     def _set_flux(self) -> None:
         """Conductances and carriers in the present gaps, which are open."""
@@ -414,12 +377,13 @@ class CompliantFilmSolver(FilmSolver):
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
         elif self.kind == FULL:
             np.logical_not(g.fixed, out=self.work.active)
-        self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
-        self.true_link[:] = self.rigid[1] + 0.5 * (c.D + np.roll(c.D, -1, axis=0))
+        if not self.answered:
+            self.answer(P, self.film_fill, self.closure.conserves_mass, 0.0)
         self.H[:], self.HF[:], self.H_t[:] = c.H, c.HF, c.rate
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
             self.H_t += c.rate_t * (c.D - self.deflection_old) * self.deflection_inverse
-        np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
+        if self.contact is not None:
+            np.multiply(self.contact_G * self.pressure_scale, 1.0 + c.D_r, out=self.contact_slope)
         compliant_coefficients(
             self.fields,
             self.link_flux,
@@ -456,9 +420,9 @@ class CompliantFilmSolver(FilmSolver):
         scatter(rhs, w.order, w.count, fields)
         return fields
 
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
-        g, c = self.grid, self.columns
+    def _gains(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of the storage to the undeformed gap and rate."""
+        c = self.columns
         by_gap, by_rate = self.area * c.rate_r, self.area * c.rate_t
         if self.closure.conserves_mass:
             content = self.area * self.film_fill
@@ -466,6 +430,30 @@ class CompliantFilmSolver(FilmSolver):
             by_rate = content * c.rate_t if self.with_rate else self.nothing
             if self.mass_inverse > 0.0 and not self.instant:
                 by_gap = by_gap + content * c.H_r * self.mass_inverse
+        return by_gap, by_rate
+
+    def pose_gradient(
+        self,
+        lam: np.ndarray,
+        cos_x: np.ndarray,
+        sin_x: np.ndarray,
+        cos_f: np.ndarray,
+        sin_f: np.ndarray,
+        gradient: np.ndarray,
+    ) -> None:
+        """`sensitivities` of the adjoint functionals lam (k, n, m), contracted with the pose: gradient (k, 10)."""
+        g = self.grid
+        by_gap, by_rate = self._gains()
+        compliant_gradient(
+            lam, self.fields, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap,
+            by_rate if self.squeeze else self.nothing, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, cos_x,
+            sin_x, cos_f, sin_f, g.z, gradient,
+        )  # fmt: skip
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
+        g = self.grid
+        by_gap, by_rate = self._gains()
         cell, face, rate = np.empty_like(lam), np.empty_like(lam), np.empty_like(lam)
         speed = np.empty((lam.shape[0], 2))
         compliant_sensitivities(

@@ -60,23 +60,40 @@ def columns_of(fields):
 
 
 @njit(cache=True, fastmath=_FAST)
-def drive_columns(P, fixed, pc, clips, drive_out):
-    """What drives the columns: the unknown, or where a film clips no less than pc."""
+def drive_columns(P, fixed, pc, clips, load):
+    """What drives the columns: the unknown, or where a film clips no less than pc; the pressure itself for an oil of constant viscosity."""
     n, m = P.shape
     for i in range(n):
         for j in range(m):
             p = P[i, j]
-            drive_out[i, j] = pc if clips and not fixed[i, j] and p < pc else p
+            if clips and not fixed[i, j] and p < pc:
+                p = pc
+            load[DRIVE, i, j] = p
+            load[LOAD_P, i, j] = p
 
 
 @njit(cache=True, fastmath=_FAST)
-def press_columns(rigid, p, beta, G_out):
+def scale_load(load, scale):
+    """Pressures (Pa) and their derivatives as an oil gives them, to the film's scale; returns the largest pressure, Pa."""
+    _, n, m = load.shape
+    largest = -np.inf
+    for i in range(n):
+        for j in range(m):
+            p = load[LOAD_P, i, j]
+            largest = max(largest, p)
+            load[LOAD_P, i, j] = p / scale
+            load[BEND, i, j] *= scale
+    return largest
+
+
+@njit(cache=True, fastmath=_FAST)
+def press_columns(rigid, load, beta, G_out):
     """Gap under the film's pressure alone; returns the smallest."""
-    n, m = p.shape
+    _, n, m = load.shape
     smallest = np.inf
     for i in range(n):
         for j in range(m):
-            g = rigid[0, i, j] + beta * p[i, j]
+            g = rigid[0, i, j] + beta * load[LOAD_P, i, j]
             G_out[i, j] = g
             smallest = min(smallest, g)
     return smallest
@@ -105,19 +122,16 @@ def move_columns(rigid, G, delta_old, inverse, columns):
 
 @njit(cache=True, fastmath=_FAST)
 def gain_of_columns(columns, P, load, fill, rigid_film, area, times, mass_old, extra_old, conserves, beta, gain_out):
-    """E of the columns, and what every vertex gains per time; returns the smallest film gap.
+    """E of the columns, and what every vertex gains per time.
 
     ``times`` holds the rates (1/s) of mass_inverse, of whether the gap's own rate takes part (1 or 0), and of pseudo time.
     """
     c = columns_of(columns)
     n, m = P.shape
     mass_inverse, with_rate, extra = times[0], times[1], times[2]
-    smallest = np.inf
     for i in range(n):
         for j in range(m):
-            h = c.H[i, j]
-            smallest = min(smallest, min(h, c.HF[i, j]))
-            c.E[i, j] = h - rigid_film[i, j]
+            c.E[i, j] = c.H[i, j] - rigid_film[i, j]
     if conserves:
         pull = mass_inverse + extra
         for i in range(n):
@@ -125,7 +139,7 @@ def gain_of_columns(columns, P, load, fill, rigid_film, area, times, mass_old, e
                 f = fill[i, j]
                 gain = f * (c.H[i, j] * pull + c.rate[i, j] * with_rate)
                 gain_out[i, j] = area[i, j] * (gain - mass_old[i, j] * mass_inverse - extra_old[i, j] * extra)
-        return smallest
+        return
     for i in range(n):
         for j in range(m):
             gain_out[i, j] = area[i, j] * c.rate[i, j]
@@ -134,7 +148,6 @@ def gain_of_columns(columns, P, load, fill, rigid_film, area, times, mass_old, e
             for j in range(m):
                 push = load[LOAD_P, i, j] + (P[i, j] - load[DRIVE, i, j])
                 gain_out[i, j] += area[i, j] * extra * (beta * push - extra_old[i, j])
-    return smallest
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -169,3 +182,29 @@ def answer_columns(
                 gain_fill[i, j] = w * (c.H[i, j] * pull + c.rate[i, j] * with_rate)
             else:
                 gain_P[i, j] = w * (turn * d + extra * beta * (1.0 if cut else load[SLOPE, i, j]))
+
+
+@njit(cache=True, fastmath=_FAST)
+def smallest_gap(columns):
+    """Smallest gap that the film sees."""
+    c = columns_of(columns)
+    n, m = c.H.shape
+    smallest = np.inf
+    for i in range(n):
+        for j in range(m):
+            smallest = min(smallest, min(c.H[i, j], c.HF[i, j]))
+    return smallest
+
+
+@njit(cache=True, fastmath=_FAST)
+def smallest_true_gap(rigid, columns):
+    """Smallest gap of the deformed surfaces, at vertices and links."""
+    c = columns_of(columns)
+    n, m = c.D.shape
+    smallest = np.inf
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            smallest = min(smallest, rigid[0, i, j] + c.D[i, j])
+            smallest = min(smallest, rigid[1, i, j] + 0.5 * (c.D[i, j] + c.D[nxt, j]))
+    return smallest

@@ -6,14 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, step_size, take_step
+from exudyn_ehd.film.compliant_newton import factor_compliant, newton_step, take_step
 from exudyn_ehd.film.elrod import LARGEST_DEFICIT, _lu_buffers
 from exudyn_ehd.film.liner_newton import (
+    BALANCED,
     CLIPPED,
     COMPLEMENTARY,
     EXACT_STEP,
     FULL,
     LEAST_DEFLECTION,
+    ROUNDING,
     flow_rounding,
     select,
 )
@@ -22,11 +24,15 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
 
 MAX_NEWTON_STEPS = 60
-# Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.
-ERROR_TOLERANCE = 1e-13
+# Shares of the peak pressure: the error at which the solution stands, what may be left after a step (after one with a fresh factor the step's
+# square tells, with some distance), and steps too small for the residual to fall any further.
+STANDING = 1e-13
+SQUARE_TOLERANCE, REST_TOLERANCE = 1e-14, 1e-12
 STEP_TOLERANCE = 1e-8
-# A factor serves as long as every step is so much shorter than the last.
-CONTRACTION = 0.2
+# Largest last step that is not worth another look at gaps and balances.
+POLISHING = 1e-10
+# Steps with a factor at hand that are not so much shorter than the last are not taken; one that leaves so much is the factor's last.
+CONTRACTION, SERVING = 0.2, 0.005
 
 
 def newton(
@@ -58,6 +64,8 @@ def newton(
     x = w.unknowns
     noise = flow_rounding(s.columns.H, s.columns.HF, s.rigid[2], s.vx, s.vz, g.width_x, g.width_z, g.link_x)
     lower, upper = _lu_buffers(w)
+    # oil is kept to more digits than pressure
+    left = STANDING if conserves else REST_TOLERANCE
     factored, last, last_size, moved = held, 0.0, 0.0, 0.0
     for step in range(1, MAX_NEWTON_STEPS + 1):
         fresh = not factored
@@ -68,16 +76,15 @@ def newton(
             if w.count == 0 or norm == 0.0:
                 s.exact, s.held = True, extra == 0.0
                 return True, step
-        newton_step(s.residual, w.order, w.count, w.width, lower, upper, w.inv_diag, x)
         opening = smallest / s.beta
-        error, size, peak, share = step_size(
-            P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, x, s.cavity_load, kind == CLIPPED,
-            LEAST_DEFLECTION * opening, opening,
+        error, size, peak, share = newton_step(
+            s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper,
+            w.inv_diag, s.cavity_load, kind == CLIPPED, LEAST_DEFLECTION * opening, opening, x,
         )  # fmt: skip
         if not error < 1e300:
             return False, step
         borrowed = held and step == 1
-        standing = error <= ERROR_TOLERANCE
+        standing = error <= STANDING
         if not fresh and not borrowed and not standing and error > CONTRACTION * last:
             factored = False
             continue
@@ -102,25 +109,59 @@ def newton(
         smallest = smallest_trial
         if not (smallest > 0.0 and norm < 1e300):
             return False, step
-        P[:], s.full[:] = s.trial, s.trial_full
+        P[:] = s.trial
         if conserves:
-            fill[:] = s.trial_fill
+            fill[:], s.full[:] = s.trial_fill, s.trial_full
         else:
             changes = select(P, s.residual, g.fixed, pc, kind, active) if complementary else 0
         moved += share * error
         if norm <= noise and not conserves:
             s.exact = s.held = factor(s, P, fill, active, conserves, extra)
             return s.exact, step
+        # a factor that leaves much of a step serves no more after it
+        serves = fresh or borrowed or error <= SERVING * last
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
-            rest = 10.0 * size * size if fresh else size * size / min(max(last_size, 1e-300), 1.0)
-            if standing or (not borrowed and rest <= ERROR_TOLERANCE):
+            rest = size * size / (SQUARE_TOLERANCE if fresh else left * min(max(last_size, 1e-300), 1.0))
+            if standing and kind == CLIPPED:
+                # suction without bounds makes any step a small one
+                standing = norm <= BALANCED * noise / ROUNDING
+            if standing or (not borrowed and rest <= 1.0):
+                if not standing and extra == 0.0:
+                    _polish(s, P, fill, conserves, complementary, opening)
                 s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
                 s.held = extra == 0.0
                 return not conserves or _sound(s, fill), step
+        factored = factored and serves
         last, last_size = error, size
     return False, MAX_NEWTON_STEPS
+
+
+def _polish(
+    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, conserves: bool, complementary: bool, opening: float
+) -> None:
+    """Add one more step to P and fill alone, for the balances where the gap is wide: what is left changes the gaps by next to nothing."""
+    s, w, pc = solver, solver.work, solver.system.cavity_pressure
+    lower, upper = _lu_buffers(w)
+    error, _, peak, _ = newton_step(
+        s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper, w.inv_diag,
+        s.cavity_load, False, LEAST_DEFLECTION * opening, opening, w.unknowns,
+    )  # fmt: skip
+    if not error <= POLISHING:
+        return
+    changes = take_step(
+        P, s.load, fill, s.full, w.order, w.count, w.unknowns, 1.0, pc, complementary, conserves, 1e-12 * peak, s.trial,
+        s.trial_fill, s.trial_full,
+    )  # fmt: skip
+    if changes > 0:
+        return
+    if not s.press(s.trial):
+        s.press(P)
+        return
+    P[:] = s.trial
+    if conserves:
+        fill[:] = s.trial_fill
 
 
 def factor(
@@ -128,7 +169,8 @@ def factor(
 ) -> bool:
     """Factor Newton's matrix at P and fill, where the columns stand; arguments as for `newton`."""
     g, w = solver.grid, solver.work
-    solver.answer(P, fill, conserves, extra)
+    if not solver.answered:
+        solver.answer(P, fill, conserves, extra)
     lower, upper = _lu_buffers(w)
     ok, w.count, w.width = factor_compliant(
         solver.fields, solver.link_flux, P, fill, solver.full, solver.gain_P, solver.gain_fill, solver.vx, solver.vz,

@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.compliant_columns import columns_of
+from exudyn_ehd.film.compliant_columns import columns_of, gain_of_columns
 from exudyn_ehd.film.flux import LinkFlux
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -85,17 +85,16 @@ def across_slopes(links, i, j, h, d):
 
 @njit(cache=True, fastmath=_FAST)
 def compliant_residual(
-    columns, links, P, fill, gain, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, complementary, r_out
-):
+    columns, links, P, load, fill, rigid_film, area, times, mass_old, extra_old, conserves, beta,
+    vx, vz, width_x, width_z, link_x, link_z, fixed, pc, complementary, r_out,
+):  # fmt: skip
     """Balance of every vertex, outflow - inflow + storage; returns the norm of those that do not hold.
 
-    At pc oil may be drawn away if ``complementary``.
+    At pc oil may be drawn away if ``complementary``. Storage as in `compliant_columns.gain_of_columns`.
     """
     c = columns_of(columns)
     n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            r_out[i, j] = gain[i, j]
+    gain_of_columns(columns, P, load, fill, rigid_film, area, times, mass_old, extra_old, conserves, beta, r_out)
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         lx = link_x[i]
@@ -207,3 +206,101 @@ def compliant_coefficients(
             b_out[i, j + 1] += fz_out[i, j]
         kz_out[i, m - 1] = 0.0
         fz_out[i, m - 1] = 0.0
+
+
+@njit(cache=True, fastmath=_FAST)
+def compliant_gradient(
+    lam, columns, links, P, fill, gain_r, gain_t, vx, vz, width_x, width_z, link_x, link_z, cos_x, sin_x, cos_f, sin_f, z,
+    gradient,
+):  # fmt: skip
+    """`compliant_sensitivities` contracted with the pose in one sweep: gradient (k, 10) to (scaled pose, scaled rates, vx, vz)."""
+    c = columns_of(columns)
+    count, n, m = lam.shape
+    by = np.zeros((8, n, m))
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        lx = link_x[i]
+        linked = 1.0 if lx != 0.0 else 0.0
+        v = vx * linked
+        for j in range(m):
+            h = c.HF[i, j]
+            d = 0.5 * (c.E[nxt, j] - c.E[i, j])
+            f = fill[i, j] if v >= 0.0 else fill[nxt, j]
+            drop = lx * (P[nxt, j] - P[i, j])
+            k_h, k_d, k_v, carrier_h = along_slopes(links, i, j, h, d)
+            by_h = width_z[j] * c.link[i, j] * (v * f * carrier_h - k_h * drop)
+            by_d = 0.5 * width_z[j] * k_d * drop
+            by[0, i, j] = by_h
+            by[1, i, j] = 0.5 * by_h * c.D_r[i, j] + by_d * c.E_r[i, j]
+            by[2, i, j] = 0.5 * by_h * c.D_r[nxt, j] - by_d * c.E_r[nxt, j]
+            by[3, i, j] = width_z[j] * (linked * f * along(links, i, j, h, d)[1] - k_v * drop)
+        for j in range(m - 1):
+            h = 0.5 * (c.H[i, j] + c.H[i, j + 1])
+            d = 0.5 * (c.E[i, j + 1] - c.E[i, j])
+            f = fill[i, j] if vz >= 0.0 else fill[i, j + 1]
+            drop = link_z[j] * (P[i, j + 1] - P[i, j])
+            k_h, k_d, k_v, carrier_h = across_slopes(links, i, j, h, d)
+            by_h = 0.5 * width_x[i] * (vz * f * carrier_h - k_h * drop)
+            by_d = 0.5 * width_x[i] * k_d * drop
+            by[4, i, j] = by_h * c.H_r[i, j] + by_d * c.E_r[i, j]
+            by[5, i, j] = by_h * c.H_r[i, j + 1] - by_d * c.E_r[i, j + 1]
+            by[6, i, j] = -width_x[i] * k_v * drop
+            by[7, i, j] = width_x[i] * f * across(links, i, j, h, d)[1]
+    for k in range(count):
+        g = gradient[k]
+        g[:] = 0.0
+        for i in range(n):
+            nxt = i + 1 if i + 1 < n else 0
+            cell0 = cell1 = next0 = next1 = face0 = face1 = rate0 = rate1 = sx = sz = 0.0
+            for j in range(m):
+                own = lam[k, i, j]
+                out = lam[k, nxt, j] - own
+                cell = out * by[1, i, j] - own * gain_r[i, j]
+                other = out * by[2, i, j]
+                face = out * by[0, i, j]
+                rate = own * gain_t[i, j]
+                sx += out * by[3, i, j]
+                cell0 += cell
+                cell1 += cell * z[j]
+                next0 += other
+                next1 += other * z[j]
+                face0 += face
+                face1 += face * z[j]
+                rate0 -= rate
+                rate1 -= rate * z[j]
+            for j in range(m - 1):
+                out = lam[k, i, j + 1] - lam[k, i, j]
+                a = out * by[4, i, j]
+                b = out * by[5, i, j]
+                cell0 += a + b
+                cell1 += a * z[j] + b * z[j + 1]
+                sx += out * by[6, i, j]
+                sz += out * by[7, i, j]
+            g[0] -= cell0 * cos_x[i] + next0 * cos_x[nxt] + face0 * cos_f[i]
+            g[1] -= cell0 * sin_x[i] + next0 * sin_x[nxt] + face0 * sin_f[i]
+            g[2] -= cell1 * cos_x[i] + next1 * cos_x[nxt] + face1 * cos_f[i]
+            g[3] -= cell1 * sin_x[i] + next1 * sin_x[nxt] + face1 * sin_f[i]
+            g[4] -= rate0 * cos_x[i]
+            g[5] -= rate0 * sin_x[i]
+            g[6] -= rate1 * cos_x[i]
+            g[7] -= rate1 * sin_x[i]
+            g[8] += sx
+            g[9] += sz
+
+
+@njit(cache=True, fastmath=_FAST)
+def compliant_shear_row(columns, order, count, weight, active, full, ratio, ratio_P, ratio_h, row_out):
+    """Weights of the Couette integral at the unknowns: by gap and viscosity at unknown pressures, by the fill elsewhere if ``full`` fills.
+
+    ``ratio``, ``ratio_P``, ``ratio_h`` (n, m): viscosity over its reference, with its derivatives to unknown and gap.
+    """
+    c = columns_of(columns)
+    m = weight.shape[1]
+    for k in range(count):
+        i = order[k] // m
+        j = order[k] - i * m
+        h = c.H[i, j]
+        if active[i, j]:
+            row_out[k] = weight[i, j] / h * ((ratio_h[i, j] - ratio[i, j] / h) * c.H_P[i, j] + ratio_P[i, j])
+        else:
+            row_out[k] = weight[i, j] / h * ratio[i, j] if full else 0.0

@@ -98,21 +98,13 @@ def factor_compliant(
 
 
 @njit(cache=True)
-def newton_step(r, order, count, width, lower, upper, inv_diag, x):
-    """Newton's step x of the numbered unknowns with the factor at hand."""
-    m = r.shape[1]
-    for k in range(count):
-        i = order[k] // m
-        x[k] = -r[i, order[k] - i * m]
-    if count > 0:
-        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
-
-
-@njit(cache=True)
-def step_size(
-    P, load, columns, contact_G, beta, full, order, count, x, cavity_load, clips, least, opening
+def newton_step(
+    r, P, load, columns, contact_G, beta, full, order, count, width, lower, upper, inv_diag, cavity_load, clips, least,
+    opening, x,
 ):  # fmt: skip
-    """(largest step over the peak pressure, or of a fill; over what counts as much after it; the peak; share of the step to take).
+    """Newton's step x of the numbered unknowns with the factor at hand.
+
+    Returns (largest step over the peak pressure, or of a fill; over what counts as much after it; the peak; share of the step to take).
 
     All in pressures on the columns, pc being ``cavity_load`` among them, the peak at least ``least``. What a film that clips cuts off may
     lie far below pc and drops over the bent gaps, so that its steps are small by what presses and by ``opening``, the pressure that opens the
@@ -120,6 +112,11 @@ def step_size(
     """
     c = columns_of(columns)
     m = P.shape[1]
+    for k in range(count):
+        i = order[k] // m
+        x[k] = -r[i, order[k] - i * m]
+    if count > 0:
+        solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
     peak = least
     pressing = least
     largest = 0.0
@@ -168,8 +165,9 @@ def take_step(
     """Trial P + share x, or fill + share x, projected on what a closure allows; returns how many vertices rupture or fill up."""
     m = P.shape[1]
     P_out[:] = P
-    fill_out[:] = fill
-    full_out[:] = full
+    if conserves:
+        fill_out[:] = fill
+        full_out[:] = full
     changes = 0
     for k in range(count):
         i = order[k] // m

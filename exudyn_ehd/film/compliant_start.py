@@ -14,7 +14,8 @@ from exudyn_ehd.film.compliant_iteration import newton
 from exudyn_ehd.film.liner_newton import FULL
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.compliant import ColumnOil, CompliantFilmSolver
+    from exudyn_ehd.film.compliant import CompliantFilmSolver
+    from exudyn_ehd.film.compliant_parts import ColumnOil
 
 MAX_PSEUDO_STEPS = 200
 # Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.

@@ -84,9 +84,9 @@ class CompressibleFilmSolver(FilmSolver):
         shape = grid.shape
         self.law, self.pressure_scale = law, 1.0
         w, s = self.work, self.system
-        self.film = Balance(
-            s.kx, s.kz, s.fx, s.fz, np.zeros(shape), np.zeros(shape), np.zeros(shape), self.area, grid.fixed
-        )
+        # without a history, what full films store grows with the gap
+        grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
+        self.film = Balance(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
         lower, upper = _lu_buffers(w)
         self.buffers = Buffers(
             w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
@@ -143,7 +143,8 @@ class CompressibleFilmSolver(FilmSolver):
         w.warm = False
         if status is not Status.CONVERGED:
             return status, steps
-        self._set_store()
+        if self.closure.conserves_mass:
+            self._set_store()
         # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
         out = self._reaches(self.law.kernel_table.highest)
         ok, count = self._newton(1.0) if out else self._switch_on()
@@ -173,14 +174,13 @@ class CompressibleFilmSolver(FilmSolver):
             s.linear_pressure[self.grid.fixed] = s.pressure[self.grid.fixed]
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
-        self._set_store()
+            self._set_store()
 
     def _set_store(self) -> None:
-        """Coefficients of the storage term; see `Balance`."""
+        """Coefficients of a mass-conserving film's storage term; see `Balance`."""
         s, f = self.system, self.film
-        if self.closure.conserves_mass:
-            f.known[:] = 0.0
-            f.kept[:] = 0.0
+        f.known[:] = 0.0
+        f.kept[:] = 0.0
         if s.inverse_step > 0.0:
             np.multiply(self.H, s.inverse_step, out=f.grow)
             np.multiply(s.mass_old, -s.inverse_step, out=f.known if self.instant else f.kept)
@@ -369,7 +369,9 @@ class CompressibleFilmSolver(FilmSolver):
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
-        s, content = self.system, self.area * self.rho * self._fill
+        s, content = self.system, self.area * self.rho
+        if self.kind == FILLED:
+            content *= s.fill
         if s.inverse_step > 0.0 and not self.instant:
             return self.nothing, content * s.inverse_step
         return (content if self.squeeze else self.nothing), self.nothing

@@ -67,9 +67,11 @@ class WallContact:
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         wall_pressure(H, self.onset, self.level, P_out, slope_out)
 
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
-        """Solve ``G = X + compliance pressure(G)`` at every vertex (n, m) for G, in place; ``compliance`` in clearances per Pa."""
-        settle_wall(X, compliance, self.onset, self.level, G)
+    def settle(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `joint.effects.Contact`."""
+        settle_wall(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
 
     def limit(
         self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
@@ -95,19 +97,26 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
 
 
 @njit(cache=True)
-def settle_wall(X, compliance, onset, pressure, G_out):
-    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``, q = compliance times pressure, by its larger root."""
+def settle_wall(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
+    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``, q = compliance times pressure, by its larger root.
+
+    With the pressure there, and its derivative to G over ``scale``.
+    """
     n, m = X.shape
-    q = compliance * pressure
+    q = compliance * pressure / scale
     for i in range(n):
         for j in range(m):
             room = onset - X[i, j]
             if room <= 0.0:
                 G_out[i, j] = X[i, j]
+                P_out[i, j] = 0.0
+                slope_out[i, j] = 0.0
             else:
                 # s = 1 - G / onset is the positive root of q s^2 + onset s - room = 0, in the form without cancellation
                 s = 2.0 * room / (onset + np.sqrt(onset * onset + 4.0 * q * room))
                 G_out[i, j] = onset * (1.0 - s)
+                P_out[i, j] = pressure * s * s
+                slope_out[i, j] = -2.0 * pressure * s / (onset * scale)
 
 
 @njit(cache=True)

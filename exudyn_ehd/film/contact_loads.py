@@ -160,27 +160,22 @@ def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_
 
 
 @njit(cache=True)
-def contact_chain(gradient, motion, pose_scale, friction, transition, R, tangent):
-    """Add the wrench's answer to the integrals of `contact_wrench` to ``tangent`` (6, 10).
-
-    ``gradient`` (5, 10): of the integrals to (scaled pose, scaled rates, vx, vz), with vx = omega / 2 and vz = w / (2 R).
-    """
+def contact_weights(motion, friction, transition, R, out):
+    """Weights (6, 5) of the integrals of `contact_wrench` in the wrench."""
     v = R * motion[8]
     w = motion[9]
     size = math.sqrt(v * v + w * w + transition * transition)
-    a = v / size
-    b = w / size
-    for q in range(10):
-        scale = 0.5 if q == 8 else (0.5 / R if q == 9 else pose_scale[q % 4])
-        scale *= R * R
-        gc, gs = gradient[0, q] * scale, gradient[1, q] * scale
-        gzc, gzs, gn = gradient[2, q] * scale, gradient[3, q] * scale, gradient[4, q] * scale
-        tangent[0, q] += friction * a * gs - gc
-        tangent[1, q] -= friction * a * gc + gs
-        tangent[2, q] -= friction * b * gn
-        tangent[3, q] += R * (gzs + friction * (a * gzc - b * gs))
-        tangent[4, q] += R * (friction * (a * gzs + b * gc) - gzc)
-        tangent[5, q] += motion[1] * gc - motion[0] * gs + R * (motion[3] * gzc - motion[2] * gzs - friction * a * gn)
+    a = friction * v / size
+    b = friction * w / size
+    area = R * R
+    out[:] = 0.0
+    out[0, 0], out[0, 1] = -area, area * a
+    out[1, 0], out[1, 1] = -area * a, -area
+    out[2, 4] = -area * b
+    out[3, 1], out[3, 2], out[3, 3] = -area * R * b, area * R * a, area * R
+    out[4, 0], out[4, 2], out[4, 3] = area * R * b, -area * R, area * R * a
+    out[5, 0], out[5, 1] = area * motion[1], -area * motion[0]
+    out[5, 2], out[5, 3], out[5, 4] = area * R * motion[3], -area * R * motion[2], -area * R * a
 
 
 @njit(cache=True, fastmath=_FAST)

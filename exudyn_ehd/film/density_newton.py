@@ -26,6 +26,8 @@ MAX_NEWTON_STEPS = 60
 # Shares of the peak pressure: where a vertex changes sides, and the error at which the solution stands.
 SET_TOLERANCE = 1e-12
 ERROR_TOLERANCE = 1e-14
+# Pa: a film at rest has no pressures but rounding, and no share of those would ever stand.
+SMALLEST_PEAK = 1e-6
 # A step so small leaves an error of its square; a factor from so near, or one with which steps shrink so fast, counts as exact.
 LAST_STEP = 1e-7
 # Steps without a limit; then the share of the way to the end of the law's range that one may cover, and steps in a row that may want more.
@@ -213,7 +215,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     last = moved = 0.0
     fresh = not held
     end = law.highest / scale
-    least, slack, piled = 1e-300, 0.0, 0.0
+    least, slack, piled = SMALLEST_PEAK / scale, 0.0, 0.0
     cut_steps = 0
     for step in range(MAX_NEWTON_STEPS):
         if fresh:

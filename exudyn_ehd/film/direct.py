@@ -46,8 +46,14 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
+    return number_along(active, kx, 1, order_out, number_out)
+
+
+@njit(cache=True)
+def number_along(active, kx, forth, order_out, number_out):
+    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1)."""
     n, m = active.shape
-    start = -1
+    first = -1
     for i in range(n):
         empty = True
         for j in range(m):
@@ -55,9 +61,9 @@ def number_cells(active, kx, order_out, number_out):
                 empty = False
                 break
         if empty:
-            start = i
+            first = (i + forth + n) % n
             break
-    if start < 0:
+    if first < 0:
         for i in range(n):
             linked = False
             for j in range(m):
@@ -65,12 +71,12 @@ def number_cells(active, kx, order_out, number_out):
                     linked = True
                     break
             if not linked:
-                start = i
+                first = (i + 1) % n if forth > 0 else i
                 break
     count = 0
     for s in range(n):
-        if start >= 0:
-            i = (start + 1 + s) % n
+        if first >= 0:
+            i = (first + forth * s + n) % n
         elif s % 2 == 0:
             i = s // 2
         else:

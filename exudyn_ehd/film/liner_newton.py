@@ -23,6 +23,8 @@ LEAST_DEFLECTION = 1e-10
 EXACT_STEP = 1e-7
 # Of a sum of four flows, each a product of three numbers: a film that carries nothing is balanced to it, and no better.
 ROUNDING = 1e-15
+# Of the flows that drive a film: balances that may be left where suction is cut off.
+BALANCED = 1e-7
 FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -386,6 +388,10 @@ def solve_liner(
             rest, unit = (10.0 * largest * largest, bent) if fresh else (largest * largest, last)
             if kind == CLIPPED:
                 unit = min(unit, bent)
+            if standing and kind == CLIPPED:
+                # suction without bounds makes any step a small one
+                driven = flow_rounding(rigid[0], rigid[1], rigid[2], vx, vz, width_x, width_z, link_x) / ROUNDING
+                standing = norm <= BALANCED * driven
             if standing or (not borrowed and rest <= ERROR_TOLERANCE * bent * unit):
                 return True, step + 1, not borrowed and moved <= EXACT_STEP * peak, count, width
         last = largest

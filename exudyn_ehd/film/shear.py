@@ -130,13 +130,13 @@ def power_table(exponent: float) -> np.ndarray:
 # Checks for a division by zero would keep the compiler from vectorising the loops below; the table's gather stands apart for the same reason.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def powers(gap, speed, e, table, out):
-    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end; gap, out (n, m)."""
+    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end; gap, of either sign, and out (n, m)."""
     h, p = gap.reshape(-1), out.reshape(-1)
     coefficients = table.reshape(-1)
     size = abs(speed)
     scale = size * ((1.0 + TABLE_RATE) / TABLE_RATE * TABLE_INTERVALS)
     for k in range(h.size):
-        p[k] = scale / (h[k] + size)
+        p[k] = scale / (abs(h[k]) + size)
     for k in range(h.size):
         t = p[k]
         if t < TABLE_INTERVALS:

@@ -28,7 +28,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.columns import solve_columns_from
-from exudyn_ehd.film.direct import assemble_band, factor_band, solve_one
+from exudyn_ehd.film.direct import assemble_band, factor_band, number_along, solve_one
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # Longest front in rows of the grid: beyond, V costs more than it spares.
@@ -113,57 +113,6 @@ def flow_direction(f):
     if least >= 0.0:
         return 1
     return -1 if most <= 0.0 else 0
-
-
-@njit(cache=True)
-def _number_full(full, kx, along, order, number_out):
-    """Number the full vertices column by column against a flow ``along`` (1, -1); returns (count, half-bandwidth)."""
-    n, m = full.shape
-    first = -1
-    for i in range(n):
-        empty = True
-        for j in range(m):
-            if full[i, j]:
-                empty = False
-                break
-        if empty:
-            first = (i - along + n) % n
-            break
-    if first < 0:
-        for i in range(n):
-            linked = False
-            for j in range(m):
-                if kx[i, j] != 0.0:
-                    linked = True
-                    break
-            if not linked:
-                first = i if along > 0 else (i + 1) % n
-                break
-    count = 0
-    for s in range(n):
-        if first >= 0:
-            i = (first - along * s + n) % n
-        elif s % 2 == 0:
-            i = s // 2
-        else:
-            i = n - 1 - s // 2
-        for j in range(m):
-            if full[i, j]:
-                number_out[i, j] = count
-                order[count] = i * m + j
-                count += 1
-            else:
-                number_out[i, j] = -1
-    width = 1
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a = number_out[i, j]
-            if a >= 0 and kx[i, j] != 0.0:
-                b = number_out[nxt, j]
-                if b >= 0:
-                    width = max(width, abs(b - a))
-    return count, width
 
 
 @njit(cache=True)
@@ -378,7 +327,8 @@ def factor_transport(
     x_out : (n m,) array
         Right-hand sides b and c.
     """
-    count, width = _number_full(full, kx, along, order, t.number)
+    # against the flow
+    count, width = number_along(full, kx, -along, order, t.number)
     placed = _order_cavity(full, fixed, fx, along, across, count, order, t.place)
     if placed < 0:
         return False, 0

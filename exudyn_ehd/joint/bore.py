@@ -105,8 +105,10 @@ class ModalBore:
         even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
         self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
         self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
-        self._along_even, self._even_courses = courses(self._even, n)
-        self._along_odd, self._odd_courses = courses(self._odd, n)
+        self._along_even, even_courses = courses(self._even, n)
+        self._along_odd, odd_courses = courses(self._odd, n)
+        # twice around: every run of columns is one block
+        self._even_courses, self._odd_courses = np.tile(even_courses, (2, 1)), np.tile(odd_courses, (2, 1))
 
     @property
     def size(self) -> int:
@@ -148,8 +150,9 @@ class ModalBore:
         for start in range(0, size, TILE):
             tile, rows = start // TILE, min(TILE, size - start)
             even, odd = fold_adjoints(by_vertex, row, self.grid_shape, self.mirrored, *along, fields[tile])
-            by_even = _cyclic_product(even[:, :rows], self._even_courses, first * len(along[0]))
-            by_odd = _cyclic_product(odd[:, :rows], self._odd_courses, first * len(along[1]))
+            # columns behind the last one are the first ones again
+            by_even = even[:, :rows].T @ self._even_courses[first * len(along[0]) :][: len(even)]
+            by_odd = odd[:, :rows].T @ self._odd_courses[first * len(along[1]) :][: len(odd)]
             place_columns(by_even, by_odd, self.order, out[start : start + rows])
         return out
 
@@ -169,14 +172,6 @@ class ModalBore:
         out[split:, :split] = out[:split, split:].T
         back = np.argsort(self.order)
         return out[np.ix_(back, back)]
-
-
-def _cyclic_product(fields: np.ndarray, shapes: np.ndarray, start: int) -> np.ndarray:
-    """Fields (rows, r), transposed, times as many rows of shapes (n, k) from ``start`` on, the first one behind the last: (r, k)."""
-    seam = len(shapes) - start
-    if len(fields) <= seam:
-        return fields.T @ shapes[start : start + len(fields)]
-    return fields[:seam].T @ shapes[start:] + fields[seam:].T @ shapes[: len(fields) - seam]
 
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.contact import WallContact
 from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.joint.effects import ShearFactor, ShearProduct
+from exudyn_ehd.joint.effects import Effects, ShearFactor, ShearProduct
 from exudyn_ehd.joint.impedance import ImpedanceModel
-from exudyn_ehd.joint.model import BearingModel, Effects
+from exudyn_ehd.joint.model import BearingModel
 from exudyn_ehd.joint.rheology import collect_rheology
 from exudyn_ehd.joint.surfaces import liner_of, surface_effects
 from exudyn_ehd.joint.warmup import compile_kernels

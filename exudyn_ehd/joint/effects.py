@@ -92,8 +92,10 @@ class Contact(Protocol):
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
         """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
 
-    def settle(self, X: np.ndarray, compliance: float, G: np.ndarray) -> None:
-        """Solve ``G = X + compliance pressure(G)`` for G (n, m), in place; compliance in clearances per Pa."""
+    def settle(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place, with ``pressure`` (Pa) there and its slope over ``scale``."""
 
     @property
     def friction_coefficient(self) -> float:

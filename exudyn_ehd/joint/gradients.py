@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from exudyn_ehd.film.compliant_links import compliant_shear_row
 from exudyn_ehd.film.contact_loads import (
     chain_limiter,
     chain_links,
     contact_adjoint_rhs,
-    contact_chain,
     contact_tangent,
+    contact_weights,
     couette_gradient_ratio,
 )
 from exudyn_ehd.film.gap import contract_ends, contract_pose
 from exudyn_ehd.film.liner_newton import liner_shear_rhs
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
+from exudyn_ehd.film.stencil import integral_weights
 from exudyn_ehd.film.sweep import LinkDerivatives, pose_gradient, wrench_gradient
 from exudyn_ehd.joint.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection
 
@@ -42,7 +44,13 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
     `adjoint_rows`, if they are known already.
     """
-    gradient = film_gradient(model, slow_motion) if gradient is None else gradient
+    through_film = None
+    if gradient is None and _pressed_contact(model):
+        # six rows instead of the film's and the contact's ten and more
+        through_film = film_gradient(model, slow_motion, _wrench_weights(model)) * _motion_scale(model)
+        gradient = np.zeros((shape_rows(model), SIZE))
+    elif gradient is None:
+        gradient = film_gradient(model, slow_motion)
     ds, dc, extra = _integral_gradients(model, gradient)
     ends = np.zeros(4)
     if _film_gap_slope(model) is not None and any(model.bearing.end_pressures):
@@ -54,18 +62,20 @@ def wrench_tangent(model: BearingModel, slow_motion: bool = False, gradient: np.
     )  # fmt: skip
     if model.pressing is not None:
         _add_contacts(model, model.pressing, out)
-        if gradient.shape[0] > shape_rows(model):
-            _add_pressed_contact(model, model.pressing, gradient[shape_rows(model) :], out)
-    return out
+    return out if through_film is None else out + through_film
 
 
-def film_gradient(model: BearingModel, slow_motion: bool) -> np.ndarray:
-    """Gradients (k, 10) of the film's integrals to (scaled pose, scaled rates, vx, vz)."""
+def film_gradient(model: BearingModel, slow_motion: bool, weights: np.ndarray | None = None) -> np.ndarray:
+    """Gradients (k, 10) of the film's integrals, or of their sums with ``weights`` (k, integrals), to (scaled pose, scaled rates, vx, vz)."""
     s = model.solver
     rows = adjoint_rows(model)
+    if weights is not None:
+        rows = weights @ rows
     lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], SIZE))
-    if s.plain_links and not slow_motion:
+    if model.compliant is not None and not slow_motion:
+        model.compliant.pose_gradient(lam, model.cos_x, model.sin_x, model.cos_f, model.sin_f, gradient)
+    elif s.plain_links and not slow_motion:
         swept_gradient(model, lam, gradient)
     else:
         field_gradient(model, lam, gradient, slow_motion)
@@ -163,6 +173,24 @@ def _pressed_contact(model: BearingModel) -> bool:
     return model.compliant is not None and model.pressing is not None
 
 
+def _motion_scale(model: BearingModel) -> np.ndarray:
+    """(scaled pose, scaled rates, vx, vz) per motion in SI units (10,)."""
+    return np.concatenate((model.pose_scale, model.pose_scale, (0.5, 0.5 / model.grid.reference_length)))
+
+
+def _wrench_weights(model: BearingModel) -> np.ndarray:
+    """Weights (6, k) of the integrals of `adjoint_rows` in the wrench, with a contact that presses on a liner."""
+    assert model.pressing is not None
+    # the last of the film's eight is the ends', which no row of `adjoint_rows` has
+    film = np.empty((6, shape_rows(model) + 5))
+    own = np.empty((6, 8))
+    R = model.grid.reference_length
+    integral_weights(model.pose, R, model.force_scale, model.shear_scale, model.omega, model.axial_speed, own)
+    film[:, : shape_rows(model)] = own[:, : shape_rows(model)]
+    contact_weights(model.motion, *model.pressing.friction[0], R, film[:, shape_rows(model) :])
+    return film
+
+
 def adjoint_rows(model: BearingModel) -> np.ndarray:
     """Weights of the integrals at the unknowns, (k, count)."""
     g, w = model.grid, model.solver.work
@@ -199,7 +227,12 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     s, g, w = model.solver, model.grid, model.solver.work
     if model.compliant is not None:
         # by the pressure's deflection at unknown pressures, by the fill elsewhere
-        row[:] = _compliant_shear(model, model.compliant).ravel()[w.order[: w.count]]
+        film, none = model.compliant, s.nothing
+        compliant_shear_row(
+            film.fields, w.order, w.count, g.weight, w.active, s.closure.conserves_mass,
+            s.ones if model.ratio is None else model.ratio, none if model.ratio_q is None else model.ratio_q,
+            none if model.ratio_h is None else model.ratio_h, row,
+        )  # fmt: skip
         return
     if model.liner_solver is not None:
         liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, model.liner_solver.beta, row)
@@ -209,19 +242,6 @@ def _shear_row(model: BearingModel, row: np.ndarray) -> None:
     if s.closure.conserves_mass:
         by_fill = s.ones if model.ratio is None else model.ratio
     shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
-
-
-def _compliant_shear(model: BearingModel, film: CompliantFilmSolver) -> np.ndarray:
-    """d(Couette integral)/d(unknown) (n, m) on a liner: by the gap and the viscosity at unknown pressures, by the fill elsewhere."""
-    H, weight, active = film.H, model.grid.weight, film.work.active
-    ratio = 1.0 if model.ratio is None else model.ratio
-    by_gap = -ratio / H if model.ratio_h is None else model.ratio_h - ratio / H
-    field = by_gap * film.gap_by_pressure
-    if model.ratio_q is not None:
-        field = field + np.where(active, model.ratio_q, 0.0)
-    if film.closure.conserves_mass:
-        field = field + np.where(active, 0.0, ratio)
-    return weight / H * field
 
 
 def _add_couette_direct(model: BearingModel, dc: np.ndarray) -> None:
@@ -280,12 +300,6 @@ def _add_contacts(model: BearingModel, f: ContactFields, out: np.ndarray) -> Non
                 f.slope[k], g.weight, model.cos_x, model.sin_x, g.z, model.motion, model.pose_scale, friction, transition, R,
                 f.integrals[k], f.gradients, out,
             )  # fmt: skip
-
-
-def _add_pressed_contact(model: BearingModel, f: ContactFields, gradient: np.ndarray, out: np.ndarray) -> None:
-    """Add what the wrench of a liner's contact owes to the film's pressure: ``gradient`` (5, 10) of its integrals, to ``out``."""
-    friction, transition = f.friction[0]
-    contact_chain(gradient, model.motion, model.pose_scale, friction, transition, model.grid.reference_length, out)
 
 
 def _end_gradient(model: BearingModel) -> np.ndarray:

@@ -19,7 +19,8 @@ from test_carried_bodies import RING, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.items import resolve
-from exudyn_ehd.coupling.system_matrix import SystemMatrix, _as_sparse
+from exudyn_ehd.coupling.object_mass import as_sparse
+from exudyn_ehd.coupling.system_matrix import SystemMatrix
 
 SPEED, LOAD, PERIODS = 314.0, 4000.0, 3
 PERIOD = 2.0 * np.pi / SPEED
@@ -80,7 +81,7 @@ class Run:
         if kind == "reduced FE body":
             return np.asarray(data["stiffnessMatrixReduced"].Convert2DenseMatrix())
         if kind == "nodal FE body":
-            return _as_sparse(data["stiffnessMatrix"]).tocsr()
+            return as_sparse(data["stiffnessMatrix"]).tocsr()
         return None
 
     def record(self, mbs, t):

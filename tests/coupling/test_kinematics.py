@@ -9,7 +9,7 @@ import pytest
 import scenes
 import toy
 
-from exudyn_ehd.coupling import kinematics
+from exudyn_ehd.coupling import joint_kinematics, kinematics
 
 ALL = [pair for pair in itertools.product(("ground", "EP", "Rxyz", "RotVec"), repeat=2) if pair != ("ground",) * 2]
 
@@ -78,7 +78,7 @@ def moved(frame, matrix, shift, spin, velocity):
 
 def motion_of(housing, journal):
     motion = np.empty(10)
-    kinematics.relative_motion(housing, journal, motion)
+    joint_kinematics.relative_motion(housing, journal, motion)
     return motion
 
 

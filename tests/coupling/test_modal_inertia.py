@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from contextlib import nullcontext
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
+from bodies import ancf_beam
 from elastic_scene import CLEARANCE, CYLINDER, HOUSING, SPEED, STEEL, Nodes, bearing
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 from exudyn.utilities import InertiaCylinder
@@ -184,3 +186,38 @@ def test_bore_of_an_accelerated_housing_is_that_of_the_nodal_bush(density, spin,
     nodal, static, dynamic = (accelerated(kind, density, 1e4, spin) for kind in ("nodal", "static", "dynamic"))
     assert np.abs(static - nodal).max() > without
     measured("path over the clearance", np.abs(dynamic - nodal).max(), with_inertia)
+
+
+def light_housing(mass, **options):
+    """A joint on a body of ``mass``; its bush of 2.6 kg has mass."""
+    mbs = scenes.new_system()
+    inertia = RigidBodyInertia(mass=mass, com=np.zeros(3), inertiaTensor=np.eye(3))
+    items = [mbs.CreateRigidBody(inertia=inertia, **options), mbs.CreateRigidBody(inertia=HOUSING, **options)]
+    joint = ehd.CreateLubricatedJoint(
+        mbs, name="big end", itemNumbers=items, position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing(DYNAMIC)
+    )
+    return mbs, joint
+
+
+@pytest.mark.parametrize("options", [{}, {"create2D": True}])
+def test_a_housing_lighter_than_its_bush_is_refused(options):
+    """The mass matrix of a bush that weighs more than the body that contains it is indefinite."""
+    with pytest.raises(ehd.InputError, match=r"'big end'.* 2 kg, its bush .* 2\.58\d kg"):
+        light_housing(2.0, **options)
+    light_housing(2.7, **options)
+
+
+def test_what_is_lighter_than_its_bush_warns_when_it_is_assembled():
+    """A beam's own mass is not known by a number: its mass matrix tells."""
+    for density, light in ((7800.0, True), (700.0, False)):
+        mbs = scenes.new_system()
+        body = ancf_beam()(mbs)
+        journal = mbs.CreateRigidBody(referencePosition=list(body.point), inertia=HOUSING)
+        bush = dataclasses.replace(DYNAMIC, material=dataclasses.replace(STEEL, density=density))
+        ehd.CreateLubricatedJoint(
+            mbs, name="big end", itemNumbers=[body.item, journal], position=list(body.point), axis=[0, 0, 1],
+            bearing=bearing(bush),
+        )  # fmt: skip
+        mbs.Assemble()
+        with pytest.warns(UserWarning, match=r"'big end'.*indefinite.* 2\.58\d kg") if light else nullcontext():
+            mbs.SolveDynamic(scenes.settings(1e-7, 1, tolerance=1e-6))

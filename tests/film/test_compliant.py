@@ -198,14 +198,17 @@ def test_columns_settle(contact):
     scratch, p = np.empty_like(X), np.empty_like(X)
     for compliance, start in itertools.product((1e-12, 1e-9, 1e-7), (-5.0, 0.0, 1.0)):
         G = np.full(X.shape, start)
-        made.settle(X, compliance, G)
+        made.settle(X, compliance * SCALE, SCALE, G, p, scratch)
+        settled = p.copy(), SCALE * scratch
         made.pressure(G, p, scratch)
+        for a, b in zip(settled, (p, scratch), strict=True):
+            np.testing.assert_allclose(a, b, atol=1e-12 * np.abs(b).max())
         np.testing.assert_allclose(G - X, compliance * p, atol=1e-14 * (1.0 + np.abs(X).max()))
         assert np.all(np.diff(G.ravel()) > 0.0) and np.all(G >= X)
     G, up, down = X.copy(), X.copy(), X.copy()
-    made.settle(X, 1e-9, G)
-    made.settle(X + 1e-5, 1e-9, up)
-    made.settle(X - 1e-5, 1e-9, down)
+    made.settle(X, 1e-9, 1.0, G, p, scratch)
+    made.settle(X + 1e-5, 1e-9, 1.0, up, p, scratch)
+    made.settle(X - 1e-5, 1e-9, 1.0, down, p, scratch)
     made.pressure(G, p, scratch)
     np.testing.assert_allclose((up - down) / 2e-5, 1.0 / (1.0 - 1e-9 * scratch), atol=1e-5)
 

@@ -214,6 +214,16 @@ def test_warm_start_and_cold_start_agree(closure):
     np.testing.assert_allclose(s.pressure, cold, atol=1e-12 * np.abs(cold).max())  # both solved to 1e-14 of the peak
 
 
+@pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+def test_a_film_that_comes_to_rest_is_found_at_once(closure):
+    """Its pressures are those of its ends; all that Newton's steps leave is rounding, which must not count."""
+    s = bare_solver(closure, 3.0)
+    s.pressure[s.grid.fixed] = 0.0
+    status, steps = s.solve(0.0, 0.0, -0.01)
+    assert status is ehd.Status.CONVERGED and steps <= 8
+    assert np.abs(s.pressure[s.work.active]).max(initial=0.0) * s.pressure_scale < 1e-6
+
+
 def test_oil_beyond_the_law_has_no_pressure():
     with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
         slider(60, ehd.BarusPressure(coefficient=3e-8))

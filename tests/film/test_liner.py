@@ -285,6 +285,24 @@ def test_suction_that_is_cut_off_spoils_no_balance():
     assert np.abs(r[~g.fixed]).max() < 1e-9 * flow
 
 
+def test_suction_without_bounds_is_no_film():
+    """All but touched on a very soft liner, sliding along: Newton's linear pressure runs away where it is cut off. Found or not, never taken for found."""
+    model = bearing_on_liner(ehd.Gumbel(), 22720070.59878464, 0.02, 64, 16)
+    pose = [1.897821657490344e-05, 6.05064336175497e-06, 0.0, 0.0]
+    rates = [5.530549888546489e-08, 2.4800040097862752e-08, 5.4381030559481384e-06, 4.051467557530033e-06]
+    evaluation = model.evaluate(np.array([*pose, *rates, 0.0, -1.2016321297850399]))
+    if evaluation.status is ehd.Status.CONVERGED:
+        s, g = model.solver, model.grid
+        r = np.empty(g.shape)
+        liner_newton.liner_residual(
+            s.rigid, s.system.linear_pressure, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, 0.0, s.kind,
+            s.beta, 0.0, s.none, r,
+        )  # fmt: skip
+        assert np.abs(r[~g.fixed]).max() < 1e-6 * np.abs(s.system.fz).max()
+    else:
+        assert evaluation.status is ehd.Status.NOT_CONVERGED
+
+
 def test_status_of_films_that_are_not_found():
     """Tension that may pull the liner shut: no film to be found; else the closure did not settle."""
     gap = np.array([[0.1, 0.5]])

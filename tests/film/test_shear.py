@@ -27,6 +27,9 @@ def test_table_of_powers(n):
     found = np.empty_like(gap)
     powers(gap, speed, e, table, found)
     np.testing.assert_allclose(found, (1.0 + (speed / gap) ** 2) ** e, rtol=1e-12)
+    mirrored = np.empty_like(gap)
+    powers(-gap, speed, e, table, mirrored)  # what a solver tries on its way must not leave the table
+    np.testing.assert_array_equal(mirrored, found)
 
 
 @pytest.mark.parametrize("vx", [0.0, 40.0, -150.0])

@@ -9,8 +9,8 @@ Mass-conserving films also in transient sequences with jumps of position and spe
 Films on liners of 1e7 to 1e11 Pa, 1 mm thick on 20 mm, half of them with wall or asperities, steady and in motion; the same with pressure and shear
 laws and rough surfaces. What they leave out, because there
 no film need exist: tension that pulls a liner shut (`FullSommerfeld` only with contact and above 1e10 Pa; no contact, no tension in the
-cavity; else no more than an atmosphere), and steady films after `Gumbel`, whose balance is not that of a complementarity problem (2 to 3 in
-a thousand of these states are not found). Impedance maps over their whole domain, and beyond it, which they must say.
+cavity; else no more than an atmosphere), and steady films after `Gumbel`, whose balance is not that of a complementarity problem (one in
+two thousand of these states is not found). Impedance maps over their whole domain, and beyond it, which they must say.
 
 A state counts as failed if its status is not CONVERGED, a number of it is not finite, its pressure or fill leaves its bounds, or a
 balance of its discrete equations is not met. The one exception: oils with a pressure law have no viscosity beyond some GPa, where they

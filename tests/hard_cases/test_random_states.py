@@ -22,7 +22,8 @@ def run(name, states):
     failed = [f for f in record.failed if f[0] != hard_random.SOLID]
     assert record.failures == 0, failed[:3]
     assert record.worst <= (LARGEST_ON_LINER if name in hard_random.LINERS else LARGEST)
-    assert record.solid < 0.02 * states
+    # on liners a jump within microseconds also presses thin oil solid
+    assert record.solid < (0.05 if name in hard_random.LINERS else 0.02) * states
 
 
 @pytest.mark.parametrize("name", hard_random.CAMPAIGNS)

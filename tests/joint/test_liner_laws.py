@@ -188,3 +188,29 @@ def test_rough_surfaces_that_overlap_have_no_film_without_a_contact():
 def test_average_gap_is_the_nominal_one_here():
     """`test_flow_through_a_soft_annulus` needs no average gap: 25 sigma and more."""
     assert float(average_gap_ratio(np.array([C / SIGMA]), 0.0)[0]) == pytest.approx(C / SIGMA, rel=1e-12)
+
+
+@pytest.mark.parametrize("contact", [False, True])
+@every_closure
+def test_drag_of_unequally_rough_surfaces_on_a_liner(closure, contact):
+    """Tangent against central differences: the pressure drags the rougher surface more, by a gap that follows the pressure; 1e-6."""
+    options = {"roughness": ehd.PatirCheng(composite_roughness=SIGMA, journal_share=0.9)}
+    if contact:
+        options["asperity"] = ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=1e10)
+    model = build_model(bearing(cavitation=closure, **options))
+    at = motion(0.9)
+    at[2:4], at[4:8], at[9] = (1e-5, -2e-5), (4e-4, -3e-4, 2e-2, 1e-2), 0.3
+    history, step = model.initial_history(at - 0.01 * np.array([C, C, 0, 0, 0, 0, 0, 0, 0, 0])), 2e-4
+    evaluation = model.evaluate(at, history, step)
+    assert evaluation.status is ehd.Status.CONVERGED
+    assert (evaluation.quantities()["contact_load"] > 0.0) is contact
+    tangent = evaluation.tangent()
+    scale = np.array([C, C, C / L, C / L, C * SPEED, C * SPEED, C * SPEED / L, C * SPEED / L, SPEED, SPEED * R])
+    difference = np.empty((6, 10))
+    for k in range(10):
+        d = np.zeros(10)
+        d[k] = 1e-6 * scale[k]
+        difference[:, k] = (
+            model.evaluate(at + d, history, step).wrench - model.evaluate(at - d, history, step).wrench
+        ) / 2e-6
+    assert np.all(np.abs(tangent * scale - difference) < 1e-6 * np.abs(difference).max(axis=1, keepdims=True))
