@@ -20,6 +20,8 @@ CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, a
 # The load of a film whose vertices are no closer than the mesh's nodes is not smooth on the mesh: fine grid and mesh to compare.
 FINE = dataclasses.replace(CYLINDER, circumferential=40)
 FINE_FILM = ehd.FiniteLength(n_theta=96, n_z=12)
+# Soft bores give way next to their ends within an interval of the former.
+FINER_FILM = ehd.FiniteLength(n_theta=144, n_z=16)
 
 
 def material(modulus=2.1e11):
@@ -95,16 +97,28 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
 
 
 @pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.Gumbel()], ids=["swift", "gumbel"])
-@pytest.mark.parametrize("modulus", [2.1e11, 7e10])
+@pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
 @pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.0, 1e-4)], ids=["aligned", "tilted"])
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
-    reduced, full = (solve(b, tilt=tilt, film=FINE_FILM, cavitation=cavitation) for b in bushes)
-    # what the default tolerance promises for steel; a bush three times as soft misses its peak by 1.1 % when aligned
-    error = 0.01 if modulus > 1e11 else 0.012
-    assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=error)
-    assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=error)
-    assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=error)
+    reduced, full = (solve(b, tilt=tilt, film=FINER_FILM, cavitation=cavitation) for b in bushes)
+    assert reduced.peak_pressure == pytest.approx(full.peak_pressure, rel=0.01)
+    assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=0.01)
+    assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=0.01)
+
+
+@pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
+def test_default_modes_suit_the_default_film(modulus):
+    """Within half a per cent of a converged film on fine modes, where finer modes on the same film are not."""
+    default = ehd.FiniteLength()
+    fine = ehd.FiniteLength(n_theta=192, n_z=24)
+    truth = solve(modal(modulus, FINE, tolerance=5e-3, tilted=False), film=fine)
+    got = solve(modal(modulus, FINE, tilted=False), film=default)
+    finer = solve(modal(modulus, FINE, tolerance=0.01, tilted=False), film=default)
+    assert got.peak_pressure == pytest.approx(truth.peak_pressure, rel=5e-3)
+    assert got.minimum_gap == pytest.approx(truth.minimum_gap, rel=5e-3)
+    assert abs(finer.peak_pressure - truth.peak_pressure) > abs(got.peak_pressure - truth.peak_pressure)
+    assert abs(finer.minimum_gap - truth.minimum_gap) > abs(got.minimum_gap - truth.minimum_gap)
 
 
 @pytest.mark.parametrize(("modulus", "tilt"), [(2.1e10, 0.0), (2.1e11, 1e-4)], ids=["soft, aligned", "steel, tilted"])
