@@ -15,6 +15,7 @@ from exudyn_ehd.film.liner_newton import (
     EXACT_STEP,
     FULL,
     LEAST_DEFLECTION,
+    LEAST_PRESSURE,
     ROUNDING,
     flow_rounding,
     select,
@@ -24,11 +25,11 @@ if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
 
 MAX_NEWTON_STEPS = 60
-# Shares of the peak pressure: the error at which the solution stands, what may be left after a step (after one with a fresh factor the step's
-# square tells, with some distance), and steps too small for the residual to fall any further.
-STANDING = 1e-13
-SQUARE_TOLERANCE, REST_TOLERANCE = 1e-14, 1e-12
-STEP_TOLERANCE = 1e-8
+# Shares of the peak pressure: the error at which the solution stands and that may be left after a step, its bound on the square of a step
+# with a fresh factor, and steps too small for the residual to fall any further.
+STANDING, SQUARE_TOLERANCE, STEP_TOLERANCE = 1e-13, 1e-14, 1e-8
+# Pressures over the peak, and over the least that counts as one, by which vertices may lie below the cavity's before they rupture.
+SUCTION, ROUNDED = 1e-12, 1e-8
 # Largest last step that is not worth another look at gaps and balances.
 POLISHING = 1e-10
 # Steps with a factor at hand that are not so much shorter than the last are not taken; one that leaves so much is the factor's last.
@@ -62,10 +63,10 @@ def newton(
         select(P, s.residual, g.fixed, pc, kind, active)
     s.held = False
     x = w.unknowns
+    # what a journal centred but for rounding makes of the speed
+    slight = LEAST_PRESSURE * (abs(s.vx) + abs(s.vz))
     noise = flow_rounding(s.columns.H, s.columns.HF, s.rigid[2], s.vx, s.vz, g.width_x, g.width_z, g.link_x)
     lower, upper = _lu_buffers(w)
-    # oil is kept to more digits than pressure
-    left = STANDING if conserves else REST_TOLERANCE
     factored, last, last_size, moved = held, 0.0, 0.0, 0.0
     for step in range(1, MAX_NEWTON_STEPS + 1):
         fresh = not factored
@@ -79,7 +80,7 @@ def newton(
         opening = smallest / s.beta
         error, size, peak, share = newton_step(
             s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper,
-            w.inv_diag, s.cavity_load, kind == CLIPPED, LEAST_DEFLECTION * opening, opening, x,
+            w.inv_diag, s.cavity_load, kind == CLIPPED, max(LEAST_DEFLECTION * opening, slight), opening, x,
         )  # fmt: skip
         if not error < 1e300:
             return False, step
@@ -94,7 +95,7 @@ def newton(
                 share *= 0.5
                 s.press(P)
             changes = take_step(
-                P, s.load, fill, s.full, w.order, w.count, x, share, pc, complementary, conserves, 1e-12 * peak,
+                P, s.load, fill, s.full, w.order, w.count, x, share, pc, complementary, conserves, max(SUCTION * peak, ROUNDED * slight),
                 s.trial, s.trial_fill, s.trial_full,
             )  # fmt: skip
             norm, smallest_trial = s.balance(s.trial, s.trial_fill, conserves, extra, extra_old)
@@ -123,13 +124,13 @@ def newton(
         factored = changes == 0 and share == 1.0
         if factored:
             # What is left: about the square of a Newton step, or a step times its ratio to the last one.
-            rest = size * size / (SQUARE_TOLERANCE if fresh else left * min(max(last_size, 1e-300), 1.0))
+            rest = size * size / (SQUARE_TOLERANCE if fresh else STANDING * min(max(last_size, 1e-300), 1.0))
             if standing and kind == CLIPPED:
                 # suction without bounds makes any step a small one
                 standing = norm <= BALANCED * noise / ROUNDING
             if standing or (not borrowed and rest <= 1.0):
                 if not standing and extra == 0.0:
-                    _polish(s, P, fill, conserves, complementary, opening)
+                    _polish(s, P, fill, conserves, complementary, max(LEAST_DEFLECTION * opening, slight), opening)
                 s.exact = not borrowed and moved <= EXACT_STEP and extra == 0.0
                 s.held = extra == 0.0
                 return not conserves or _sound(s, fill), step
@@ -139,19 +140,25 @@ def newton(
 
 
 def _polish(
-    solver: CompliantFilmSolver, P: np.ndarray, fill: np.ndarray, conserves: bool, complementary: bool, opening: float
+    solver: CompliantFilmSolver,
+    P: np.ndarray,
+    fill: np.ndarray,
+    conserves: bool,
+    complementary: bool,
+    least: float,
+    opening: float,
 ) -> None:
     """Add one more step to P and fill alone, for the balances where the gap is wide: what is left changes the gaps by next to nothing."""
     s, w, pc = solver, solver.work, solver.system.cavity_pressure
     lower, upper = _lu_buffers(w)
     error, _, peak, _ = newton_step(
         s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper, w.inv_diag,
-        s.cavity_load, False, LEAST_DEFLECTION * opening, opening, w.unknowns,
+        s.cavity_load, False, least, opening, w.unknowns,
     )  # fmt: skip
     if not error <= POLISHING:
         return
     changes = take_step(
-        P, s.load, fill, s.full, w.order, w.count, w.unknowns, 1.0, pc, complementary, conserves, 1e-12 * peak, s.trial,
+        P, s.load, fill, s.full, w.order, w.count, w.unknowns, 1.0, pc, complementary, conserves, SUCTION * peak, s.trial,
         s.trial_fill, s.trial_full,
     )  # fmt: skip
     if changes > 0:

@@ -19,6 +19,9 @@ ERROR_TOLERANCE = 1e-13
 STEP_TOLERANCE = 1e-8
 # Share of the smallest gap; a peak pressure that deflects the liner by less counts as one that does by so much.
 LEAST_DEFLECTION = 1e-10
+# Share of the scaled speed, the pressure of a clearance (1) that is driven by it and closed after a radian: smaller peaks are those of a
+# journal that is centred but for rounding, and count as so large.
+LEAST_PRESSURE = 1e-6
 # A factor from so near counts as that of the solution.
 EXACT_STEP = 1e-7
 # Of a sum of four flows, each a product of three numbers: a film that carries nothing is balanced to it, and no better.
@@ -337,7 +340,7 @@ def solve_liner(
                 return True, step + 1, True, count, width
             moved = 0.0
         # pressures that no gap answers to are none: a film at rest ends here
-        peak = LEAST_DEFLECTION * smallest / beta
+        peak = max(LEAST_DEFLECTION * smallest / beta, LEAST_PRESSURE * (abs(vx) + abs(vz)))
         pressing = peak
         for k in range(count):
             i = order[k] // m
