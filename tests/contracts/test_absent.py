@@ -85,7 +85,7 @@ EFFECTS = {
 SHARED = {
     "band_lu", "cavitation", "choice", "columns", "direct", "drag", "folding", "gap", "grid", "loads", "lubricant", "oils",
     "reynolds", "solver", "steps", "stencil", "supply", "sweep", "temperature", "thermal", "tiles",
-    "density_matrix",
+    "compliant_parts", "density_matrix",
 }  # fmt: skip
 
 
