@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.film.compliant_iteration import newton
-from exudyn_ehd.film.liner_newton import COMPLEMENTARY, FULL
+from exudyn_ehd.film.liner_newton import FULL
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.compliant import CompliantFilmSolver
     from exudyn_ehd.film.compliant_parts import ColumnOil
 
 MAX_PSEUDO_STEPS = 200
-# Share of its storage that a step leaves: where the sets of one sequence of films turn in circles, another passes beside them.
-DECAYS = (0.3, 0.55)
 # Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.
 OPEN, MODERATE = 0.01, 0.1
 
@@ -72,17 +70,6 @@ def pseudo_transient(solver: CompliantFilmSolver, P: np.ndarray) -> tuple[bool, 
 
     The film stands in P; returns (found, Newton steps).
     """
-    total = 0
-    for decay in DECAYS if solver.kind == COMPLEMENTARY or solver.closure.conserves_mass else DECAYS[:1]:
-        ok, steps = _in_pseudo_time(solver, P, decay)
-        total += steps
-        if ok:
-            return True, total
-    return False, total
-
-
-def _in_pseudo_time(solver: CompliantFilmSolver, P: np.ndarray, decay: float) -> tuple[bool, int]:
-    """The steps in pseudo time with a storage that falls by ``decay`` from one to the next."""
     conserves, fill = solver.closure.conserves_mass, solver.film_fill
     solver.work.warm = False
     _dry_guess(solver, P)
@@ -112,7 +99,7 @@ def _in_pseudo_time(solver: CompliantFilmSolver, P: np.ndarray, decay: float) ->
             continue
         solver.work.warm = True
         start[:], start_fill[:], start_full[:] = P, fill, solver.full
-        extra *= decay
+        extra *= 0.3
         if extra < 1e-3 * rate:
             ok, steps = solver.target(P)
             total += steps

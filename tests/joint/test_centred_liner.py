@@ -1,4 +1,4 @@
-"""Films on a liner whose pressures are next to nothing: a journal that is centred but for rounding, and sets that turn in circles."""
+"""Films on a liner whose pressures are next to nothing: a journal that is centred, or nearly so."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
         model = build_model(made)
         found = model.evaluate_steady(motion) if k % 2 else model.evaluate(motion)
         assert found.status is ehd.Status.CONVERGED
-        # full film, no rupture: 12 pi mu R omega (R/c)^3 tanh-like in L/D, at most the long bearing's force per offset
+        # at most the long bearing's force per offset, 12 pi mu L (R/c)^3; pressures below 1e-9 of the speed's count as rounding
         offset, rate = np.hypot(*motion[:2]), np.hypot(*motion[4:6])
-        long = 12.0 * np.pi * 0.015 * 0.02 * (0.02 / CLEARANCE) ** 3 * 0.02 / 0.02
+        long = 12.0 * np.pi * 0.015 * 0.02 * (0.02 / CLEARANCE) ** 3
         rounding = 1e-9 * 0.015 * 300.0 * (0.02 / CLEARANCE) ** 2 * 0.02 * 0.02
         assert np.hypot(*found.wrench[:2]) <= long * (0.5 * abs(motion[8]) * offset + rate) + rounding
 
 
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
-def test_sets_that_turn_in_circles_are_left_by_another_way(contact):
-    """At this eccentricity, and within 1e-6 of it, storages that fall to 0.3 from one step to the next end where they began."""
+def test_slight_films_rupture_without_turning_in_circles(contact):
+    """Steps are measured by a pressure that the speed could make, not by the rounding next to it, which took up to 400 solves."""
     motion = np.zeros(10)
     motion[0], motion[8] = 0.02548220424684501 * CLEARANCE, -123.07779066684151
     found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)
@@ -51,4 +51,5 @@ def test_sets_that_turn_in_circles_are_left_by_another_way(contact):
     near[0] *= 1.001
     beside = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(near)
     assert found.status is beside.status is ehd.Status.CONVERGED
+    assert max(found.iterations, beside.iterations) < 40
     assert np.allclose(found.wrench, beside.wrench, rtol=1e-2, atol=1e-3 * np.abs(beside.wrench).max())
