@@ -23,8 +23,8 @@ import numpy as np
 from exudyn import itemInterface as items
 from matplotlib.figure import Figure
 
-from exudyn_ehd.coupling.bush_object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
-from exudyn_ehd.coupling.sparse_newton import SolveDynamicSparse
+from exudyn_ehd.coupling.bush.object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
+from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.pictures.bush import Frame, contour_figure
 from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.bush import ANCFBush

@@ -24,61 +24,61 @@ import importlib
 from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
-from exudyn_ehd.film.asperity import GreenwoodTripp, composite_modulus
-from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
-from exudyn_ehd.film.classic import ClassicSOR
-from exudyn_ehd.film.contact import RegularisedWall
-from exudyn_ehd.film.density import DowsonHigginson
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.long_bearing import LongBearing
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.film.oils import oil
-from exudyn_ehd.film.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
-from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.film.shear import CarreauShear
+from exudyn_ehd.film.lubricant.density import DowsonHigginson
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.named_oils import oil
+from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
+from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
+from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
-from exudyn_ehd.film.temperature import ReynoldsTemperature, VogelTemperature, WaltherTemperature
-from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
-from exudyn_ehd.film.wear import ArchardWear
-from exudyn_ehd.joint.any_gap import FilmResult, solve_film
-from exudyn_ehd.joint.audit import Audit, Finding
-from exudyn_ehd.joint.equilibrium import EquilibriumResult, equilibrium
-from exudyn_ehd.joint.fields import FilmFields
-from exudyn_ehd.joint.steady import SteadyResult, steady
-from exudyn_ehd.joint.stribeck import StribeckResult, stribeck
+from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp, composite_modulus
+from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
+from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.joint.audit.audit import Audit, Finding
+from exudyn_ehd.joint.model.fields import FilmFields
+from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
+from exudyn_ehd.joint.static.solve_film import FilmResult, solve_film
+from exudyn_ehd.joint.static.steady import SteadyResult, steady
+from exudyn_ehd.joint.static.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, Status
 
 __version__ = "0.1.0"
 
 # Imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid.
 _LAZY = {
-    "ConfigureSolver": "coupling.settings",
+    "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
     "Free": "coupling.api",
     "Held": "coupling.api",
-    "JointHistory": "coupling.history",
+    "JointHistory": "coupling.record.history",
     "LubricatedJoint": "coupling.api",
-    "Quantity": "coupling.history",
-    "Revolutions": "coupling.revolutions",
-    "load_history": "coupling.history",
-    "StepControl": "coupling.step_control",
-    "JointState": "coupling.restart",
-    "SystemState": "coupling.restart",
-    "SaveState": "coupling.run",
-    "SolveDynamic": "coupling.run",
-    "SolveStatic": "coupling.run",
-    "CarriedOuter": "coupling.bush_object",
-    "CreateFlexibleBush": "coupling.bush_object",
-    "FixedOuter": "coupling.bush_object",
-    "FlexibleBush": "coupling.bush_object",
-    "FreeOuter": "coupling.bush_object",
-    "Support": "coupling.bush_object",
-    "FactorReuse": "coupling.sparse_newton",
-    "SolveDynamicSparse": "coupling.sparse_newton",
+    "Quantity": "coupling.record.history",
+    "Revolutions": "coupling.record.revolutions",
+    "load_history": "coupling.record.history",
+    "StepControl": "coupling.watch.step_control",
+    "JointState": "coupling.run.restart",
+    "SystemState": "coupling.run.restart",
+    "SaveState": "coupling.run.solve",
+    "SolveDynamic": "coupling.run.solve",
+    "SolveStatic": "coupling.run.solve",
+    "CarriedOuter": "coupling.bush.object",
+    "CreateFlexibleBush": "coupling.bush.object",
+    "FixedOuter": "coupling.bush.object",
+    "FlexibleBush": "coupling.bush.object",
+    "FreeOuter": "coupling.bush.object",
+    "Support": "coupling.bush.object",
+    "FactorReuse": "coupling.run.sparse",
+    "SolveDynamicSparse": "coupling.run.sparse",
     "ANCFBush": "solid.bush",
     "BushMesh": "solid.mesh",
     "DeadPressure": "solid.loads",
@@ -88,7 +88,7 @@ _LAZY = {
     "FollowerPressure": "solid.loads",
     "HollowCylinder": "solid.mesh",
     "LineLoad": "solid.loads",
-    "ModalBush": "solid.reduce",
+    "ModalBush": "solid.static_modes",
     "Rayleigh": "solid.bush",
     "SaintVenantKirchhoff": "solid.total_lagrange",
     "SurfaceLoad": "solid.loads",

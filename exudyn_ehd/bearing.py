@@ -8,29 +8,29 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.asperity import GreenwoodTripp
-from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
-from exudyn_ehd.film.choice import Film, check_film
-from exudyn_ehd.film.classic import ClassicSOR
-from exudyn_ehd.film.contact import RegularisedWall
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.long_bearing import LongBearing
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.film.profile import PROFILE_TYPES, Profile
-from exudyn_ehd.film.roughness import PatirCheng
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
+from exudyn_ehd.film.models import Film, check_film
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
-from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.viscosity import RoelandsPressure
-from exudyn_ehd.film.wear import ArchardWear
+from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.profile import PROFILE_TYPES, Profile
+from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.reduce import ModalBush
+    from exudyn_ehd.solid.static_modes import ModalBush
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -309,7 +309,7 @@ def _check_bush(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.bush import ANCFBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.mesh import HollowCylinder
-    from exudyn_ehd.solid.reduce import ModalBush
+    from exudyn_ehd.solid.static_modes import ModalBush
 
     _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None)))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):

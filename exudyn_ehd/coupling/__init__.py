@@ -20,8 +20,8 @@ contract      what a film model offers
 """
 
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held, LubricatedJoint
-from exudyn_ehd.coupling.history import JointHistory, Quantity
-from exudyn_ehd.coupling.settings import ConfigureSolver
+from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
 
 __all__ = [
     "ConfigureSolver",

@@ -10,25 +10,25 @@ from typing import TYPE_CHECKING, Any
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling import kinematics
-from exudyn_ehd.coupling.axial import hold_axially
 from exudyn_ehd.coupling.contract import JointModel
-from exudyn_ehd.coupling.film_element import FilmElement
-from exudyn_ehd.coupling.history import JointHistory, Quantity
-from exudyn_ehd.coupling.items import Item
-from exudyn_ehd.coupling.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
-from exudyn_ehd.coupling.restart import JointState, check_owner, digest
-from exudyn_ehd.coupling.results import JointResults
-from exudyn_ehd.coupling.run import joints_of, require_system
-from exudyn_ehd.coupling.sensors import add_sensor
-from exudyn_ehd.coupling.sides import MarkerSide
-from exudyn_ehd.coupling.step_control import GapWatch, StepControl
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.axial import hold_axially
+from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.items.resolve import Item
+from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide
+from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+from exudyn_ehd.coupling.record.results import JointResults
+from exudyn_ehd.coupling.record.sensors import add_sensor
+from exudyn_ehd.coupling.run.restart import JointState, check_owner, digest
+from exudyn_ehd.coupling.run.solve import joints_of, require_system
+from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.status import InputError, require_bool, require_vector
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.liner import ElasticLiner
-    from exudyn_ehd.joint.audit import Audit
-    from exudyn_ehd.joint.equilibrium import EquilibriumResult
+    from exudyn_ehd.film.solvers.liner import ElasticLiner
+    from exudyn_ehd.joint.audit.audit import Audit
+    from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -114,7 +114,7 @@ class LubricatedJoint(JointResults):
         FilmError
             If no equilibrium was found.
         """
-        place = importlib.import_module("exudyn_ehd.coupling.placing").place
+        place = importlib.import_module("exudyn_ehd.coupling.run.equilibrium_start").place
         return place(self.mbs, self.element, self.name, load, speed)
 
     def state(self) -> JointState:
@@ -169,8 +169,8 @@ class LubricatedJoint(JointResults):
             raise InputError(
                 f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
             )
-        audit = importlib.import_module("exudyn_ehd.joint.audit")
-        states = importlib.import_module("exudyn_ehd.joint.audit_states")
+        audit = importlib.import_module("exudyn_ehd.joint.audit.audit")
+        states = importlib.import_module("exudyn_ehd.joint.audit.samples")
         names = [field.name for field in dataclasses.fields(states.RecordedSteps)]
         record = states.RecordedSteps(**{name: getattr(history, name) for name in names})
         return audit.audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
@@ -295,14 +295,14 @@ def CreateLubricatedJoint(
     points = joint_points(housing, journal, position, useGlobalFrame)
     if housing.body is not None and getattr(bearing, "bush", None) is not None:
         # imported here: a rigid bearing needs no solid
-        bearing, housing = importlib.import_module("exudyn_ehd.coupling.fe_bore").hold_fe_bore(
+        bearing, housing = importlib.import_module("exudyn_ehd.coupling.items.reduced_bodies").hold_fe_bore(
             mbs, bearing, housing, points[0], rotation
         )
     if not housing.nodes and getattr(getattr(bearing, "bush", None), "body_forces", False):
         # what stands still needs no modes for its acceleration
         bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bearing.bush, body_forces=False))
     # imported late: the builder compiles kernels, which input errors need not wait for
-    model = importlib.import_module("exudyn_ehd.joint.build").build_model(bearing)
+    model = importlib.import_module("exudyn_ehd.joint.model.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
     if stepControl is not None:
         joint.element.watch = GapWatch(stepControl, bearing)
@@ -354,7 +354,7 @@ def attach(
     nodes, more = [node for side in sides for node in side.nodes], {}
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
-        attach_bush = importlib.import_module("exudyn_ehd.coupling.elastic_attach").attach_bush
+        attach_bush = importlib.import_module("exudyn_ehd.coupling.element.attach").attach_bush
         element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show)
         nodes += element.bore_nodes
     number = mbs.AddObject(

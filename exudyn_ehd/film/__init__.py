@@ -1,1 +1,17 @@
-"""The oil film: Reynolds equation, cavitation, loads. Knows numpy and numba only; no solid, no Exudyn."""
+"""The oil film, numpy and numba only: grid, gap, Reynolds equation, cavitation closures, solvers, loads.
+
+Module map
+----------
+grid         vertices (theta, z), control volumes, weights
+models       from the film model that a scene names to its grid and solver
+supply       grooves, holes, pockets
+loads        integrals of pressure, shear and drag; flows through the edges
+reynolds     gap and flow through the links between vertices
+lubricant    oil: viscosity and density laws
+surfaces     what lies on the walls: profile, roughness, contact, wear, liner
+cavitation   closures: where the film is full, and what it carries where it is not
+banded       factors of banded matrices and their right-hand sides
+solvers      from gap and rates to pressure and fill
+sensitivity  derivatives of loads with respect to pose and bore
+heat         temperature of the film
+"""

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.solver import FilmSolver, Sensitivities
+from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
 from exudyn_ehd.status import Status, require_integer
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.joint.effects import Contact
+from exudyn_ehd.joint.seams import Contact
 
 
 class ContactFields:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.seams import History
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
-    from exudyn_ehd.joint.model import BearingModel
+    from exudyn_ehd.joint.model.rigid import BearingModel
 
 
 @dataclass(eq=False)
@@ -47,7 +47,7 @@ class Evaluation:
         return self._model.tangent()
 
     def quantities(self) -> dict[str, float]:
-        """Scalars of this state in SI units; see `exudyn_ehd.joint.quantities.quantities`."""
+        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
         self._require_current()
         return self._model.quantities()
 

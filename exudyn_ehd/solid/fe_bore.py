@@ -23,8 +23,8 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.face_map import BoreFaces, surface_faces
-from exudyn_ehd.solid.reduce import (
+from exudyn_ehd.solid.fe_faces import BoreFaces, surface_faces
+from exudyn_ehd.solid.static_modes import (
     LARGEST_TOLERANCE,
     SMALLEST_TOLERANCE,
     candidate_pressures,

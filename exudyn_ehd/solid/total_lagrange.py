@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid import kernels
+from exudyn_ehd.solid import hex20_kernels as kernels
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature, shape_functions, shape_gradients
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError, require_number

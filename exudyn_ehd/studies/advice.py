@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.choice import Film
-from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.film.models import Film
+from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush
+from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.studies import catalogue, cells, moving_catalogue
 from exudyn_ehd.studies.cells import Cell

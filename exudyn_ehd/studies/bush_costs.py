@@ -23,16 +23,16 @@ from exudyn.utilities import InertiaCylinder
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Held
-from exudyn_ehd.coupling.settings import ConfigureSolver
-from exudyn_ehd.coupling.sparse_newton import SolveDynamicSparse
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.film.grid import FiniteLength
-from exudyn_ehd.film.liner import ElasticLiner
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush, bore_modes
+from exudyn_ehd.solid.static_modes import ModalBush, bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.studies.costs import Cost, costs_of_blocks

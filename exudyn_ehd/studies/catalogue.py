@@ -9,14 +9,14 @@ from functools import partial
 from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.asperity import GreenwoodTripp
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.film.shear import CarreauShear
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
+from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
+from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.supply import AxialGroove
-from exudyn_ehd.film.temperature import VogelTemperature
-from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.viscosity import RoelandsPressure
+from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.studies import ladders
 from exudyn_ehd.studies.moving_catalogue import STEEL, moving_catalogue, quick_moving_catalogue

@@ -31,14 +31,14 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.choice import Film
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.film.liner import ElasticLiner
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import Film
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush
+from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.studies.richardson import converged

@@ -21,25 +21,25 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.film.asperity import GreenwoodTripp
-from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel
-from exudyn_ehd.film.classic import ClassicSOR
-from exudyn_ehd.film.contact import RegularisedWall
-from exudyn_ehd.film.density import DowsonHigginson
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.film.liner import ElasticLiner
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.long_bearing import LongBearing
-from exudyn_ehd.film.profile import Crown
-from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.film.shear import CarreauShear
+from exudyn_ehd.film.lubricant.density import DowsonHigginson
+from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
+from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
+from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
-from exudyn_ehd.film.temperature import VogelTemperature
-from exudyn_ehd.film.thermal import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.viscosity import BarusPressure, RoelandsPressure
-from exudyn_ehd.film.wear import ArchardWear
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.profile import Crown
+from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.studies.costs import Cost, costs_of_blocks
 from exudyn_ehd.studies.growth import CLEARANCE, SPEED, plain_bearing

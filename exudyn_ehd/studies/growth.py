@@ -19,14 +19,14 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.settings import ConfigureSolver
-from exudyn_ehd.film.cavitation import SwiftStieber
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush
+from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.studies import mechanisms
 from exudyn_ehd.studies.table import format_seconds, write_atomic

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation import FullSommerfeld, Gumbel, SwiftStieber
-from exudyn_ehd.film.classic import ClassicSOR
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.film.liner import ElasticLiner
 from exudyn_ehd.film.long_bearing import LongBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush
+from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as Material
 from exudyn_ehd.studies.setting import Scene, Setting
 from exudyn_ehd.studies.study import Reference, Study

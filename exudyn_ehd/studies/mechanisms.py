@@ -15,7 +15,7 @@ import exudyn.itemInterface as eii
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, LubricatedJoint
-from exudyn_ehd.joint.equilibrium import equilibrium
+from exudyn_ehd.joint.static.equilibrium import equilibrium
 
 Built = tuple[Any, LubricatedJoint]
 # Friction changes the spin by less than 1e-6 of it in any scene, kg m2.

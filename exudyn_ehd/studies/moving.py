@@ -11,9 +11,9 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.history import JointHistory
-from exudyn_ehd.coupling.run import SolveDynamic
-from exudyn_ehd.coupling.settings import ConfigureSolver
+from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.run.solve import SolveDynamic
 from exudyn_ehd.status import InputError, require_integer, require_number
 from exudyn_ehd.studies.mechanisms import Built
 from exudyn_ehd.studies.setting import Integration, Outcome, QuantityOfInterest, Setting

@@ -9,15 +9,15 @@ from functools import partial
 from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.asperity import GreenwoodTripp
-from exudyn_ehd.film.cavitation import Gumbel, SwiftStieber
-from exudyn_ehd.film.classic import ClassicSOR
-from exudyn_ehd.film.contact import RegularisedWall
-from exudyn_ehd.film.elrod import ElrodAdams
+from exudyn_ehd.film.cavitation.closures import Gumbel, SwiftStieber
+from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import FiniteLength
-from exudyn_ehd.film.lubricant import Lubricant
-from exudyn_ehd.film.roughness import PatirCheng
-from exudyn_ehd.joint.equilibrium import equilibrium
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.solvers.sor import ClassicSOR
+from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.studies import ladders, mechanisms

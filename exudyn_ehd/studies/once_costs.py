@@ -8,9 +8,9 @@ import sys
 import tempfile
 from collections.abc import Callable
 
-from exudyn_ehd.film.impedance import ImpedanceMap
-from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.solid.reduce import bore_modes
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.studies import bush_costs, growth
 from exudyn_ehd.studies.costs import Cost, costs_of_blocks

@@ -32,7 +32,7 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.equilibrium import equilibrium
+from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.status import EHDError, InputError, require_integer
 from exudyn_ehd.tables import text_table, write_csv
 

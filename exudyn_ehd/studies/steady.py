@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.impedance import ImpedanceModel
-from exudyn_ehd.joint.settle import settle
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
 from exudyn_ehd.studies.setting import Outcome, QuantityOfInterest, Setting
 
@@ -79,7 +79,7 @@ class SteadyScene:
                 raise InputError(f"SteadyScene.{name} must be below 1, got {getattr(self, name)!r}.")
 
     def motions(self) -> np.ndarray:
-        """Motions (directions, 10) as in `exudyn_ehd.joint.model`."""
+        """Motions (directions, 10) as in `exudyn_ehd.joint.model.rigid`."""
         angles = self.start_direction + DEGREE * np.arange(self.directions)
         state = self.speed, self.eccentricity_ratio, self.tilt_ratio
         return np.array([motion_at(self.bearing, *state, angle) for angle in angles])

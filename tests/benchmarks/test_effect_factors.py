@@ -11,8 +11,8 @@ import time
 import numpy as np
 import pytest
 
-from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.effects import Effects
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.studies import effect_costs
 from exudyn_ehd.studies.costs import format_costs
 from exudyn_ehd.studies.growth import plain_bearing

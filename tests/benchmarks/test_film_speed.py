@@ -14,10 +14,10 @@ import pytest
 from numba import njit
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.loads import pressure_integrals
-from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.reynolds.gap import rigid_gap
+from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.studies import effect_costs
 
 pytestmark = pytest.mark.benchmark

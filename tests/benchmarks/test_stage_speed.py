@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.gap import rigid_gap
 from exudyn_ehd.film.loads import pressure_integrals
-from exudyn_ehd.film.reynolds import add_squeeze, conductances, couette_fluxes, right_hand_side
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.reynolds.gap import rigid_gap
+from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.studies import effect_costs, growth, moving_catalogue, order
 from exudyn_ehd.studies.setting import Integration, Setting
 

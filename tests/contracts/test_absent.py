@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 
 C = 25e-6
 MOTION = np.array([11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3])
@@ -36,28 +36,28 @@ def oil(**laws):
 
 # Modules that belong to an effect alone, and options that must call each of them.
 EFFECTS = {
-    "contact": (("film.contact",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
-    "contact loads": (("film.contact_loads",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
-    "asperity": (("film.asperity", "film.average_gap"), {"asperity": ASPERITY}),
-    "roughness": (("film.roughness",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
-    "wear": (("film.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
-    "profile": (("film.profile",), {"profile": ehd.Crown(drop=2e-6)}),
-    "pressure law": (("film.viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
-    "shear law": (("film.shear",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
-    "link flux": (("film.flux",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
+    "contact": (("film.surfaces.wall",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "contact loads": (("film.surfaces.contact_wrench",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "asperity": (("film.surfaces.asperity", "film.surfaces.average_gap"), {"asperity": ASPERITY}),
+    "roughness": (("film.surfaces.flow_factors",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
+    "wear": (("film.surfaces.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
+    "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
+    "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
+    "shear law": (("film.lubricant.shear_thinning",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
+    "link flux": (("film.reynolds.flux",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
     "density law": (
-        ("film.density", "film.density_field", "film.density_newton", "film.density_sweep", "film.compressible"),
+        ("film.lubricant.density", "film.lubricant.density_field", "film.solvers.density_newton", "film.reynolds.density_sweep", "film.solvers.compressible"),
         oil(density_law=ehd.DowsonHigginson()),
     ),
-    "lumped": (("joint.thermal",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
-    "energy": (("film.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
-    "liner": (("film.liner", "film.liner_newton"), {"bush": LINER}),
+    "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
+    "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
+    "liner": (("film.solvers.liner", "film.solvers.liner_newton"), {"bush": LINER}),
     "liner in contact": (
-        ("film.compliant", "film.compliant_columns", "film.compliant_iteration", "film.compliant_links", "film.compliant_newton", "film.compliant_start"),
+        ("film.solvers.compliant", "film.solvers.compliant_columns", "film.solvers.compliant_iteration", "film.solvers.compliant_links", "film.solvers.compliant_newton", "film.solvers.compliant_start"),
         {"bush": LINER, "asperity": ASPERITY},
     ),
     "bush": (
-        ("joint.bore", "joint.elastic", "joint.elastic_tangent", "joint.bore_settle", "solid.reduce"),
+        ("joint.bore.shapes", "joint.model.flexible", "joint.tangent.bore", "joint.bore.equilibrium", "solid.static_modes"),
         {
             "bush": ehd.ModalBush(
                 mesh=ehd.HollowCylinder(
@@ -68,24 +68,24 @@ EFFECTS = {
             )
         },
     ),
-    "classic": (("film.classic",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
+    "classic": (("film.solvers.sor",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
     "long bearing": (
         ("film.long_bearing",),
         {"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3),), "end_pressures": (0.0, 0.0)},
     ),
     "impedance map": (
-        ("film.impedance", "joint.impedance"),
+        ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
     ),
-    "mass conservation": (("film.elrod", "film.transport", "film.transport_transposed"), {"cavitation": CLOSURES["elrod"]}),
+    "mass conservation": (("film.cavitation.elrod_adams", "film.cavitation.cavity_transport", "film.cavitation.cavity_adjoint"), {"cavitation": CLOSURES["elrod"]}),
 }  # fmt: skip
 
 
 # Modules that every film uses, that describe a scene, or (the last line) whose kernels only other kernels of their effect call.
 SHARED = {
-    "band_lu", "cavitation", "choice", "columns", "direct", "drag", "folding", "gap", "grid", "loads", "lubricant", "oils",
-    "reynolds", "solver", "steps", "stencil", "supply", "sweep", "temperature", "thermal", "tiles",
-    "compliant_parts", "density_matrix",
+    "banded.lu", "cavitation.closures", "models", "banded.columns", "banded.ldl", "drag", "sensitivity.mirror_symmetry", "reynolds.gap", "grid", "loads", "lubricant.lubricant", "lubricant.named_oils",
+    "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.tiles",
+    "solvers.compliant_parts", "solvers.density_matrix",
 }  # fmt: skip
 
 
@@ -143,7 +143,8 @@ def use(made):
 
 
 def test_every_module_of_the_film_is_asked_about():
-    found = {path.stem for path in pathlib.Path(ehd.__file__).parent.glob("film/[!_]*.py")}
+    film = pathlib.Path(ehd.__file__).parent / "film"
+    found = {".".join(path.relative_to(film).with_suffix("").parts) for path in film.rglob("[!_]*.py")}
     assert found == SHARED | {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
 
 

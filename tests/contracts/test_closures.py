@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 
 SPEED = 100.0
 CLOSURES = (ehd.FullSommerfeld, ehd.Gumbel, ehd.SwiftStieber)

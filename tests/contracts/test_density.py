@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film import compressible, density, density_newton
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.lubricant import density
+from exudyn_ehd.film.solvers import compressible, density_newton
+from exudyn_ehd.joint.model.build import build_model
 
 C, STEP = 25e-6, 1e-4
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
@@ -199,7 +200,7 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
 
     for module in (density, density_newton, compressible):
         for name in [n for n in vars(module) if callable(getattr(module, n)) and not n[0].isupper() and n[0] != "_"]:
-            if getattr(module, name).__module__.startswith("exudyn_ehd.film.density"):
+            if getattr(module, name).__module__.startswith("exudyn_ehd.film.lubricant.density"):
                 monkeypatch.setattr(module, name, forbidden)
     for target in ("compressible.CompressibleFilmSolver.__init__", "density.CompressibleLaw.__init__"):
         monkeypatch.setattr(f"exudyn_ehd.film.{target}", forbidden)

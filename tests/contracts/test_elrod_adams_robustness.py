@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.solver import fill_balance
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.solvers.linear import fill_balance
+from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE = 0.01, 2e-5
 GRIDS = [(48, 8), (64, 10), (96, 10), (64, 16), (33, 7)]

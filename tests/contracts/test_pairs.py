@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 
 CLEARANCE = 50e-6
 SCALE = np.array([CLEARANCE, CLEARANCE, 2e-3, 2e-3, 1e-2, 1e-2, 0.5, 0.5, 300.0, 1.0])

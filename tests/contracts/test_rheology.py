@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film import flux, solver, viscosity
 from exudyn_ehd.film.loads import couette_integral_ratio
-from exudyn_ehd.joint.build import build_model
-from exudyn_ehd.joint.effects import Effects, History
+from exudyn_ehd.film.lubricant import pressure_viscosity as viscosity
+from exudyn_ehd.film.reynolds import flux
+from exudyn_ehd.film.solvers import linear as solver
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.seams import Effects, History
 
 C = 25e-6
 WALTHER = ehd.WaltherTemperature(first=(313.15, 23e-6), second=(373.15, 5e-6))
@@ -148,7 +150,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         for name in names:
             monkeypatch.setattr(module, name, forbidden)
     for target in ("ShearThinning.apply", "ShearThinning.factor"):
-        monkeypatch.setattr(f"exudyn_ehd.film.shear.{target}", forbidden)
+        monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
     for target in (
         "thermal.viscosity_ratio",
         "oil_flows.film_flows",

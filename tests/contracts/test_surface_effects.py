@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, SPEED = 0.02, 0.03, 20e-6, 200.0
 SIGMA = 0.4e-6

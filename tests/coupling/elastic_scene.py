@@ -9,7 +9,7 @@ from exudyn.utilities import InertiaCylinder
 from scenes import new_system, rotation
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.sides import detached
+from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 SPEED = 3000 * 2 * np.pi / 60

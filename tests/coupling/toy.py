@@ -12,7 +12,8 @@ from types import SimpleNamespace
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling import api, joint_frame
+from exudyn_ehd.coupling import api
+from exudyn_ehd.coupling.items import joint_frame
 from exudyn_ehd.status import Status
 
 exu.config.printToConsole = False

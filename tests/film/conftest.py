@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from exudyn_ehd.film import reynolds
-from exudyn_ehd.film.band_lu import PAD
+from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.reynolds import links as reynolds
 
 
 class Film(NamedTuple):

@@ -7,7 +7,7 @@ import pytest
 
 from exudyn_ehd import FullSommerfeld, bearing_grid
 from exudyn_ehd.film import loads
-from exudyn_ehd.film.solver import FilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 
 
 @pytest.fixture

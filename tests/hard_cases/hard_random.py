@@ -28,11 +28,11 @@ from collections.abc import Callable
 import numpy as np
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.compliant_columns import LOAD_P
-from exudyn_ehd.film.reynolds import vertex_balance
-from exudyn_ehd.film.solver import fill_balance
-from exudyn_ehd.film.viscosity import LARGEST_PRESSURE
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
+from exudyn_ehd.film.reynolds.links import vertex_balance
+from exudyn_ehd.film.solvers.compliant_columns import LOAD_P
+from exudyn_ehd.film.solvers.linear import fill_balance
+from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
 GRIDS = [(48, 8), (64, 10), (96, 10), (64, 16), (33, 7), (24, 4), (40, 5), (128, 12)]

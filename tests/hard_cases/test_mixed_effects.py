@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.effects import History
+from exudyn_ehd.joint.seams import History
 
 R, L, C = 0.02, 0.02, 25e-6
 RATE = 2.0 * math.pi * 50.0

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 
 SPEED, LOAD, STEPS, STEP = 200.0, 600.0, 120, 1e-4
 OIL = ehd.oil("ISO VG 46", temperature=323.15)

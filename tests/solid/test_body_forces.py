@@ -7,7 +7,7 @@ import pytest
 
 from exudyn_ehd.solid.hex20 import GAUSS27, shape_functions
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush, bore_modes
+from exudyn_ehd.solid.static_modes import ModalBush, bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, reference_gradients
 from exudyn_ehd.solid.vibrations import held_stiffness
 

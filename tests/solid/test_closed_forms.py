@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.analysis import eigenfrequencies, equilibrium
 from exudyn_ehd.solid.hex20 import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.static_equilibrium import eigenfrequencies, equilibrium
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.analysis import EquilibriumError, equilibrium
 from exudyn_ehd.solid.hex20 import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.static_equilibrium import EquilibriumError, equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)

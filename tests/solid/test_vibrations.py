@@ -8,10 +8,10 @@ from scipy.linalg import eigh
 from scipy.optimize import brentq
 from scipy.special import j1, jvp, y1, yvp
 
-from exudyn_ehd.solid.analysis import eigenfrequencies
 from exudyn_ehd.solid.hex20 import GAUSS27, shape_functions
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.reduce import ModalBush, bore_modes, pressure_loads
+from exudyn_ehd.solid.static_equilibrium import eigenfrequencies
+from exudyn_ehd.solid.static_modes import ModalBush, bore_modes, pressure_loads
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, reference_gradients
 from exudyn_ehd.solid.vibrations import held_stiffness
 from exudyn_ehd.status import InputError

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError
 from exudyn_ehd.studies import catalogue, cells, moving_catalogue
 from exudyn_ehd.studies.setting import Integration, Setting

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.build import build_model
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError
 from exudyn_ehd.studies import bush_costs, effect_costs, growth
 from exudyn_ehd.studies.costs import Cost, costs_of_blocks, format_costs, read_costs, write_costs

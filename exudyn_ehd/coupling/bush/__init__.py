@@ -1,0 +1,7 @@
+"""Flexible bush as an object of Exudyn.
+
+Module map
+----------
+object     CreateFlexibleBush
+equations  its forces, matrices and Jacobians
+"""

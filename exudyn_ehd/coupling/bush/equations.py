@@ -1,0 +1,271 @@
+"""Equations of motion of a nodal bush in the coordinates of its Exudyn object.
+
+Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier with coordinates q_c.
+With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+from scipy.sparse import bmat, csr_matrix, identity
+
+from exudyn_ehd.coupling.items.carrier import Carrier
+from exudyn_ehd.solid.loads import FollowerPressure, Load, factor
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+
+HOLD = 1e9
+"""Spring of a single supported direction over the stiffest entry of the mesh."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BushEquations:
+    """Force, Jacobian and mass of a bush object.
+
+    Parameters
+    ----------
+    solid : TotalLagrange
+        Mesh at its place in the model.
+    held : ndarray of bool, shape (n, 3)
+        Supported directions.
+    slaved : ndarray of bool, shape (n,)
+        Nodes that move with the carrier.
+    carrier : Carrier or None
+    loads : tuple of loads
+    mass_rate : float
+        Mass-proportional damping [1/s].
+    """
+
+    solid: TotalLagrange
+    held: np.ndarray
+    slaved: np.ndarray
+    carrier: Carrier | None
+    loads: tuple[Load, ...]
+    mass_rate: float
+
+    def motion(
+        self, q: np.ndarray, q_t: np.ndarray, configuration: Any = exu.ConfigurationType.Current
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at Exudyn's state in ``configuration``."""
+        u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)
+        u[self._moving] = q[: self._count].reshape(-1, 3)
+        v[self._moving] = q_t[: self._count].reshape(-1, 3)
+        if self.carrier is not None:
+            self.carrier.move(q[self._count :], q_t[self._count :], configuration)
+            u[self.slaved] = self.carrier.positions() - self.solid.mesh.nodes[self.slaved]
+            v[self.slaved] = self.carrier.velocities()
+        return u, v
+
+    def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+        """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
+        u, v = self.motion(q, q_t)
+        nodal = self._nodal_forces(t, u, v)
+        if self.carrier is not None:
+            acceleration = np.zeros_like(u)
+            acceleration[self.slaved] = self.carrier.velocity_accelerations(q[self._count :], q_t[self._count :])
+            nodal -= self.solid.scalar_mass @ acceleration
+        result = np.empty(len(q))
+        result[: self._count] = nodal[self._moving].ravel()
+        if self.carrier is not None:
+            B = self.carrier.jacobian()
+            result[self._count :] = B.T @ nodal[self.slaved].ravel()
+        result[self._held] = -self._spring * q[self._held]
+        return result
+
+    def jacobian(
+        self, t: float, q: np.ndarray, q_t: np.ndarray, position_factor: float, velocity_factor: float
+    ) -> csr_matrix:
+        """Return -(position_factor d(force)/dq + velocity_factor d(force)/dq_t) on a fixed pattern.
+
+        Exact without carrier and without viscosity; mass-proportional damping is exact too. Left out: a viscosity's
+        change with the strain rate (see `TotalLagrange.tangent`), and with a carrier the change of the slaved
+        velocities and inertia forces with its attitude, of the size of its angular velocity. Newton's method then
+        takes more iterations; its result is the same.
+        """
+        u, v = self.motion(q, q_t)
+        values = self.solid.tangent_values(u, v, position_factor=position_factor, velocity_factor=velocity_factor)
+        self._add_follower_stiffness(values, t, u, position_factor)
+        K = self._moving_block.matrix(values)
+        if self.mass_rate:
+            K.data += velocity_factor * self.mass_rate * self._mass_values
+        K.data[self._cut] = 0.0
+        K.data[self._cut_diagonal] = position_factor * self._spring
+        if self.carrier is None:
+            return K
+        qc = q[self._count :]
+        B = self.carrier.jacobian()
+        coupling = self._coupling_block.matrix(values) @ B
+        coupling[self._held] = 0.0
+        turn = self.carrier.force_derivative(qc, q_t[self._count :], self._nodal_forces(t, u, v)[self.slaved])
+        own = B.T @ (self._slaved_block.matrix(values) @ B) - position_factor * turn
+        return bmat([[K, coupling], [self._transposed_coupling(values, B), own]], format="csr")
+
+    def mass(self, q: np.ndarray | None) -> csr_matrix:
+        """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
+        if self.carrier is None or q is None:
+            return self._moving_mass
+        qc = q[self._count :]
+        self.carrier.move(qc, np.zeros_like(qc))
+        B = self.carrier.jacobian()
+        M = self.solid.mass
+        coupling = M[self._moving_rows][:, self._slaved_rows] @ B
+        coupling[self._held] = 0.0
+        own = B.T @ (M[self._slaved_rows][:, self._slaved_rows] @ B)
+        return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
+
+    def _nodal_forces(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """Loads minus internal and mass-proportional damping forces, shape (n, 3) [N]."""
+        total = -self.solid.force(u, v)
+        for load, vector in self._dead_vectors:
+            total += factor(load, t) * vector
+        for pressure in self._followers:
+            total += factor(pressure, t) * pressure.forces(self.solid.mesh.nodes + u)
+        if self.mass_rate:
+            total -= self.mass_rate * (self.solid.scalar_mass @ v)
+        return total
+
+    def _add_follower_stiffness(self, values: np.ndarray, t: float, u: np.ndarray, scale: float) -> None:
+        for pressure, places in zip(self._followers, self._follower_places, strict=True):
+            block = pressure.stiffness(self.solid.mesh.nodes + u)
+            np.add.at(values, places, scale * factor(pressure, t) * block.ravel())
+
+    def _transposed_coupling(self, values: np.ndarray, B: np.ndarray) -> np.ndarray:
+        rows = (self._coupling_rows_block.matrix(values).T @ B).T
+        rows[:, self._held] = 0.0
+        return rows
+
+    @cached_property
+    def _moving(self) -> np.ndarray:
+        return ~self.slaved & ~self.held.all(axis=1)
+
+    @cached_property
+    def _count(self) -> int:
+        return 3 * int(self._moving.sum())
+
+    @cached_property
+    def _moving_rows(self) -> np.ndarray:
+        return np.flatnonzero(np.repeat(self._moving, 3))
+
+    @cached_property
+    def _slaved_rows(self) -> np.ndarray:
+        return np.flatnonzero(np.repeat(self.slaved, 3))
+
+    @cached_property
+    def _held(self) -> np.ndarray:
+        """Coordinates held by a spring."""
+        return np.flatnonzero(self.held[self._moving].ravel())
+
+    @cached_property
+    def _spring(self) -> float:
+        return HOLD * float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max())
+
+    @cached_property
+    def _moving_mass(self) -> csr_matrix:
+        M = self.solid.mass[self._moving_rows][:, self._moving_rows].tocsr()
+        keep = np.ones(self._count)
+        keep[self._held] = 0.0
+        mask = csr_matrix((keep, (np.arange(self._count), np.arange(self._count))))
+        # the held coordinates swing far above every frequency of the mesh
+        inertia = self._spring / (100.0 * self._highest_frequency_squared)
+        M = (mask @ M @ mask).tocsr()
+        M.eliminate_zeros()
+        return (M + inertia * (identity(self._count, format="csr") - mask)).tocsr()
+
+    @cached_property
+    def _mass_values(self) -> np.ndarray:
+        """The mass on the pattern of the moving block."""
+        block = self._moving_block
+        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
+        return np.asarray(self._moving_mass[rows, block.indices]).ravel()
+
+    @cached_property
+    def _highest_frequency_squared(self) -> float:
+        """An upper estimate [1/s^2]: largest row sum of K over a hundredth of the smallest diagonal of M."""
+        K = self.solid.tangent(np.zeros(self.held.shape))
+        return 100.0 * float(abs(K).sum(axis=1).max() / self.solid.scalar_mass.diagonal().min())
+
+    @cached_property
+    def _dead_vectors(self) -> list[tuple[Load, np.ndarray]]:
+        return [(s, s.nodal_forces(self.solid.mesh)) for s in self.loads if not isinstance(s, FollowerPressure)]
+
+    @cached_property
+    def _followers(self) -> list[FollowerPressure]:
+        return [s for s in self.loads if isinstance(s, FollowerPressure)]
+
+    @cached_property
+    def _follower_places(self) -> list[np.ndarray]:
+        result = []
+        for pressure in self._followers:
+            dofs = (3 * pressure.surface.faces[:, :, None] + np.arange(3)).reshape(-1, 24)
+            rows, columns = np.repeat(dofs, 24, axis=1), np.tile(dofs, (1, 24))
+            result.append(self.solid.pattern.places(rows, columns))
+        return result
+
+    @cached_property
+    def _moving_block(self) -> Block:
+        return Block.of(self.solid, self._moving_rows, self._moving_rows)
+
+    @cached_property
+    def _coupling_block(self) -> Block:
+        return Block.of(self.solid, self._moving_rows, self._slaved_rows)
+
+    @cached_property
+    def _coupling_rows_block(self) -> Block:
+        return Block.of(self.solid, self._slaved_rows, self._moving_rows)
+
+    @cached_property
+    def _slaved_block(self) -> Block:
+        return Block.of(self.solid, self._slaved_rows, self._slaved_rows)
+
+    @cached_property
+    def _cut(self) -> np.ndarray:
+        """Entries of the moving block in a row or column of a held coordinate."""
+        held = np.zeros(self._count, dtype=bool)
+        held[self._held] = True
+        block = self._moving_block
+        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
+        return np.flatnonzero(held[rows] | held[block.indices])
+
+    @cached_property
+    def _cut_diagonal(self) -> np.ndarray:
+        block = self._moving_block
+        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
+        return self._cut[rows[self._cut] == block.indices[self._cut]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Block:
+    """Rows and columns of the fixed tangent pattern as a matrix of its own.
+
+    Parameters
+    ----------
+    entries : ndarray of int
+        Positions among the values of the whole pattern.
+    indptr, indices : ndarray of int
+        CSR structure of the block.
+    columns : int
+        Number of columns.
+    """
+
+    entries: np.ndarray
+    indptr: np.ndarray
+    indices: np.ndarray
+    columns: int
+
+    @classmethod
+    def of(cls, solid: TotalLagrange, rows: np.ndarray, columns: np.ndarray) -> Block:
+        """Return the block of these rows and columns (ascending)."""
+        pattern = solid.pattern
+        numbered = pattern.matrix(np.arange(pattern.size, dtype=np.int64))
+        part = numbered[rows][:, columns].tocsr()
+        part.sort_indices()
+        return cls(entries=part.data, indptr=part.indptr, indices=part.indices, columns=len(columns))
+
+    def matrix(self, values: np.ndarray) -> csr_matrix:
+        """Return the block with the given values of the whole pattern."""
+        shape = (len(self.indptr) - 1, self.columns)
+        return csr_matrix((values[self.entries], self.indices, self.indptr), shape=shape, copy=False)

@@ -1,0 +1,366 @@
+"""The nodal bush as an object of an Exudyn model.
+
+One ``ObjectGenericODE2`` over ``NodePoint`` nodes: constant sparse mass, force and Jacobian of the total Lagrangian
+solid. Nodes whose three directions are supported become ``NodePointGround`` and leave the equations. A direction
+supported alone stays a coordinate but is cut off from the mesh and held by a spring 1e9 times stiffer than the mesh, so
+that the mesh sees an exact support and a force of another item on that coordinate is carried to ground.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import exudyn
+import numpy as np
+from exudyn import itemInterface as items
+
+from exudyn_ehd.coupling.bush.equations import BushEquations
+from exudyn_ehd.coupling.items import carrier as carriers
+from exudyn_ehd.coupling.items.carrier import Carrier
+from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.loads import Load
+from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.stress import StressRecovery
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.status import InputError, require_vector
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Support:
+    """Nodes that can't move in some global directions.
+
+    Parameters
+    ----------
+    nodes : ndarray of int
+        Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
+    directions : three bools
+        Which of x, y, z are held.
+    """
+
+    nodes: np.ndarray
+    directions: tuple[bool, bool, bool] = (True, True, True)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeOuter:
+    """The outer surface is free."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FixedOuter:
+    """The outer surface is fixed in space."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CarriedOuter:
+    """The outer surface moves with the rigid frame of a body, without constraint equations.
+
+    Parameters
+    ----------
+    itemNumber : exudyn.ObjectIndex, NodeIndex or MarkerIndex
+        The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar bodies, beams and cables,
+        links of kinematic trees, finite-element bodies. Its own mass and inertia stay untouched: the bush adds its own. With a Lie group node
+        (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
+        when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
+    """
+
+    itemNumber: Any
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FlexibleBush:
+    """A bush in a model: its items and its state.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    mesh : BushMesh
+        Bush frame; surfaces and lines for loads, supports and films.
+    solid : TotalLagrange
+        On the mesh at its place in the model; its displacements are global.
+    objectNumber : exudyn.ObjectIndex
+    nodeNumbers : ndarray of int, shape (n,)
+        Exudyn's node of every mesh node; -1 where it is slaved to the carrier.
+    equations : BushEquations
+    """
+
+    mbs: Any
+    mesh: BushMesh
+    solid: TotalLagrange
+    objectNumber: Any
+    nodeNumbers: np.ndarray
+    equations: BushEquations
+
+    def coordinates(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+        """Return the object's coordinates q without reference values."""
+        places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
+        return np.asarray(self.mbs.systemData.GetODE2Coordinates(configuration))[places]
+
+    def coordinates_t(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+        """Return the rates dq/dt of the object's coordinates."""
+        places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
+        return np.asarray(self.mbs.systemData.GetODE2Coordinates_t(configuration))[places]
+
+    def displacements(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+        """Return the displacement of all mesh nodes, shape (n, 3) [m], global frame."""
+        return self._motion(configuration)[0]
+
+    def velocities(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+        """Return the velocity of all mesh nodes, shape (n, 3) [m/s], global frame."""
+        return self._motion(configuration)[1]
+
+    def _motion(self, configuration: Any) -> tuple[np.ndarray, np.ndarray]:
+        return self.equations.motion(self.coordinates(configuration), self.coordinates_t(configuration), configuration)
+
+    @property
+    def stress(self) -> StressRecovery:
+        """Stress recovery for `displacements`."""
+        return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
+
+    def energy(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[float, float]:
+        """Return strain and kinetic energy [J]."""
+        v = self.velocities(configuration)
+        kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
+        return self.solid.energy(self.displacements(configuration)), kinetic
+
+    def momentum(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[np.ndarray, np.ndarray]:
+        """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s]."""
+        flow = self.solid.scalar_mass @ self.velocities(configuration)
+        positions = self.solid.mesh.nodes + self.displacements(configuration)
+        return flow.sum(axis=0), np.cross(positions, flow).sum(axis=0)
+
+
+def CreateFlexibleBush(
+    mbs: Any,
+    name: str = "",
+    *,
+    bush: ANCFBush,
+    outer: FreeOuter | FixedOuter | CarriedOuter,
+    position: Sequence[float] = (0.0, 0.0, 0.0),
+    rotationMatrix: np.ndarray | None = None,
+    supports: Sequence[Support] = (),
+    loads: Sequence[Load] = (),
+    initialVelocity: Sequence[float] = (0.0, 0.0, 0.0),
+    initialAngularVelocity: Sequence[float] = (0.0, 0.0, 0.0),
+    show: bool = True,
+    color: Sequence[float] = (0.6, 0.6, 0.7, 1.0),
+) -> FlexibleBush:
+    """Add a flexible bush to a model.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    name : str
+        Name of the object.
+    bush : ANCFBush
+    outer : FreeOuter, FixedOuter or CarriedOuter
+        What holds the outer surface.
+    position : three numbers
+        Global reference position of the bush frame [m].
+    rotationMatrix : ndarray, shape (3, 3), optional
+        Bush frame to global frame; identity by default.
+    supports : sequence of Support
+    loads : sequence of LineLoad, SurfaceLoad, DeadPressure or FollowerPressure
+        Vectors are global.
+    initialVelocity, initialAngularVelocity : three numbers
+        Rigid initial motion [m/s], [rad/s], global, about ``position``. A carried bush takes the carrier's instead.
+    show, color
+        For Exudyn's renderer.
+
+    Returns
+    -------
+    FlexibleBush
+    """
+    rotation = np.eye(3) if rotationMatrix is None else np.asarray(rotationMatrix, dtype=float)
+    if rotation.shape != (3, 3) or not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9):
+        raise InputError(
+            f"CreateFlexibleBush.rotationMatrix must be a rotation matrix, got {rotationMatrix!r}; its columns are "
+            "the bush axes in the global frame."
+        )
+    place = require_vector("CreateFlexibleBush.position", position, 3, "m")
+    carry = _carried(mbs, outer.itemNumber, place, rotation) if isinstance(outer, CarriedOuter) else None
+    velocity = require_vector("CreateFlexibleBush.initialVelocity", initialVelocity, 3, "m/s")
+    omega = require_vector("CreateFlexibleBush.initialAngularVelocity", initialAngularVelocity, 3, "rad/s")
+    return add_bush(
+        mbs, name, bush, carry, (place, rotation), fixed=isinstance(outer, FixedOuter), supports=supports, loads=loads,
+        start=(velocity, omega), show=show, color=color,
+    )  # fmt: skip
+
+
+def _carried(mbs: Any, number: Any, place: np.ndarray, rotation: np.ndarray) -> Mount:
+    """Side and initial frame of the bush's frame on an item."""
+    where = "CarriedOuter.itemNumber"
+    item = resolve(mbs, where, number)
+    if not item.nodes:
+        raise InputError(f"{where} must be a body that moves, got ground; use FixedOuter() for ground.")
+    if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
+        raise InputError(
+            f"CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis {rotation[:, 2]}."
+        )
+    side = item.side(item.position if item.is_marker else place, rotation)
+    return Mount(side, carriers.initial_frame(mbs, item, side), item.position if item.is_marker else place)
+
+
+@dataclass(frozen=True, eq=False)
+class Mount:
+    """What carries a bush.
+
+    Parameters
+    ----------
+    side : Side
+        Its axes are the bush's.
+    initial : ndarray (3, 6)
+        The side's frame in the initial configuration.
+    point : ndarray (3,)
+        Global position of the side's frame in the reference configuration [m].
+    """
+
+    side: Side
+    initial: np.ndarray
+    point: np.ndarray
+
+
+def add_bush(
+    mbs: Any,
+    name: str,
+    bush: ANCFBush,
+    mount: Mount | None,
+    place: tuple[np.ndarray, np.ndarray],
+    *,
+    fixed: bool = False,
+    supports: Sequence[Support] = (),
+    loads: Sequence[Load] = (),
+    start: tuple[np.ndarray, np.ndarray] = (np.zeros(3), np.zeros(3)),
+    show: bool = True,
+    color: Sequence[float] = (0.6, 0.6, 0.7, 1.0),
+) -> FlexibleBush:
+    """Add a bush on a mount; what `CreateFlexibleBush` does after its checks of arguments.
+
+    Parameters
+    ----------
+    mount : Mount or None
+        None: the outer surface is ``fixed`` or free.
+    place : ndarray (3,), ndarray (3, 3)
+        Bush frame in the reference configuration, global [m].
+    start : two ndarrays (3,)
+        Initial velocity [m/s] and angular velocity [rad/s] without a mount.
+    mbs, name, bush, supports, loads, show, color
+        As in `CreateFlexibleBush`.
+    """
+    position, rotation = place
+    mesh = bush.build_mesh()
+    solid = bush.solid(replace(mesh, nodes=position + mesh.nodes @ rotation.T))
+    held = _held_directions(mesh, supports)
+    carrier = None
+    slaved = np.zeros(len(mesh.nodes), dtype=bool)
+    local = mesh.nodes
+    if fixed:
+        held[mesh.outer.nodes] = True
+    elif mount is not None:
+        slaved[mesh.outer.nodes] = True
+        local = mesh.nodes + rotation.T @ (position - mount.point)
+        carrier = Carrier(mbs, mount.side, mount.initial, local[slaved])
+        if held[slaved].any():
+            raise InputError(
+                "CreateFlexibleBush.supports must leave the outer surface to its carrier, got supported outer nodes; "
+                "support the carrier instead."
+            )
+    mass_rate = 0.0 if bush.damping is None else bush.damping.mass_rate
+    if carrier is not None and mass_rate > 0.0:
+        raise InputError(
+            f"ANCFBush.damping with outer=CarriedOuter must have mass_rate = 0, got {mass_rate:g} 1/s: it would brake "
+            "the carrier; use stiffness_time."
+        )
+    equations = BushEquations(
+        solid=solid, held=held, slaved=slaved, carrier=carrier, loads=tuple(loads), mass_rate=mass_rate
+    )
+    X = solid.mesh.nodes
+    if mount is None:
+        u, v = np.zeros_like(X), start[0] + np.cross(start[1], X - position)
+    else:
+        u, v = carriers.positions(mount.initial, local) - X, carriers.velocities(mount.initial, local)
+    numbers = _add_nodes(mbs, equations, u, v)
+    return _add_object(mbs, name, mesh, equations, numbers, show, color)
+
+
+def _held_directions(mesh: BushMesh, supports: Sequence[Support]) -> np.ndarray:
+    held = np.zeros((len(mesh.nodes), 3), dtype=bool)
+    for support in supports:
+        nodes = np.asarray(support.nodes)
+        if nodes.size == 0 or nodes.min() < 0 or nodes.max() >= len(held):
+            raise InputError(
+                f"Support.nodes must be mesh nodes from 0 to {len(held) - 1}, got {support.nodes!r}; take them from a "
+                "surface or a generatrix of the mesh."
+            )
+        held[np.ix_(nodes.ravel(), np.asarray(support.directions, dtype=bool).nonzero()[0])] = True
+    return held
+
+
+def _add_nodes(mbs: Any, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    numbers = np.full(len(u), -1)
+    X, held = equations.solid.mesh.nodes, equations.held
+    v = np.where(held, 0.0, v)
+    for i in np.flatnonzero(~equations.slaved):
+        if held[i].all():
+            node = items.NodePointGround(referenceCoordinates=X[i], visualization=items.VNodePointGround(show=False))
+        else:
+            node = items.NodePoint(
+                referenceCoordinates=X[i],
+                initialCoordinates=u[i],
+                initialVelocities=v[i],
+                visualization=items.VNodePoint(show=False),
+            )
+        numbers[i] = int(mbs.AddNode(node))
+    return numbers
+
+
+def _add_object(
+    mbs: Any,
+    name: str,
+    mesh: BushMesh,
+    equations: BushEquations,
+    numbers: np.ndarray,
+    show: bool,
+    color: Sequence[float],
+) -> FlexibleBush:
+    def force(mbs, t, itemNumber, q, q_t):
+        return equations.force(t, np.array(q), np.array(q_t))
+
+    def jacobian(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
+        return equations.jacobian(t, np.array(q), np.array(q_t), fODE2, fODE2_t)
+
+    def mass(mbs, t, itemNumber, q, q_t):
+        return equations.mass(np.array(q))
+
+    nodes = [exu.NodeIndex(int(i)) for i in numbers[numbers >= 0]]
+    carrier = equations.carrier
+    arguments: dict = {"forceUserFunction": force, "jacobianUserFunction": jacobian}
+    if carrier is None:
+        container = exu.MatrixContainer()
+        container.SetWithSparseMatrix(equations.mass(None), useDenseMatrix=False)
+        arguments["massMatrix"] = container
+    else:
+        nodes += carrier.nodes
+        arguments["massMatrixUserFunction"] = mass
+    picture = items.VObjectGenericODE2(
+        show=show, color=list(color), triangleMesh=_triangles(mesh, numbers), showNodes=False
+    )
+    number = mbs.AddObject(items.ObjectGenericODE2(name=name, nodeNumbers=nodes, visualization=picture, **arguments))
+    return FlexibleBush(
+        mbs=mbs, mesh=mesh, solid=equations.solid, objectNumber=number, nodeNumbers=numbers, equations=equations
+    )
+
+
+def _triangles(mesh: BushMesh, numbers: np.ndarray) -> np.ndarray:
+    """Triangles of the boundary in the object's own node numbers, shape (m, 3): six for every 8-node face."""
+    own = np.cumsum(numbers >= 0) - 1
+    faces = mesh.boundary[(numbers[mesh.boundary] >= 0).all(axis=1)]
+    cut = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)])
+    return own[faces[:, cut].reshape(-1, 3)]

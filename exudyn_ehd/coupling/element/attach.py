@@ -1,0 +1,164 @@
+"""Puts the items of a flexible bush into an Exudyn system and makes the film element on them."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import exudyn
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling.bush.object import Mount, add_bush
+from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
+from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.items.carrier import initial_frame
+from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
+from exudyn_ehd.coupling.items.resolve import Item
+from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
+from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.joint.model.build import collect_effects
+from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.status import Status
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+SIZE = 10
+# Period over 2 pi of a mode on its numerical mass, s.
+NUMERICAL_PERIOD = 1e-6
+
+
+def attach_bush(
+    mbs: Any,
+    model: Any,
+    items: tuple[Item, Item],
+    sides: tuple[Side, Side],
+    place: tuple[np.ndarray, np.ndarray],
+    name: str,
+    show: bool,
+) -> tuple[BoreFilmElement, dict[str, Any]]:
+    """Add the bush of ``model`` (an `ElasticBearingModel`).
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    model : ElasticBearingModel
+    items, sides : pairs
+        Housing and journal; the sides are brought to the initial configuration.
+    place : ndarray (3,), ndarray (3, 3)
+        Joint point and joint frame in the reference configuration, global.
+    name : str
+        Of the joint.
+    show : bool
+        Draw the bush.
+
+    Returns
+    -------
+    element : BoreFilmElement
+        The film on it.
+    arguments : dict
+        What the element's ObjectGenericODE2 needs beside nodes and functions.
+    """
+    for item, side in zip(items, sides, strict=True):
+        side.frame[:] = initial_frame(mbs, item, side)
+    if not isinstance(model.bore, ModalBore):
+        return _attach_nodes(mbs, model, sides, place, name, show), {}
+    if isinstance(sides[0], FloatingBoreSide):
+        # the body has nodes, mass and stiffness for the modes
+        _settle_modes(mbs, model, sides)
+        return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore.stiffness), {}
+    start = initial_coordinates(model, sides)
+    k = model.bore.size
+    node = mbs.AddNode(
+        eii.NodeGenericODE2(
+            name=f"{name} bush modes",
+            referenceCoordinates=[0.0] * k,
+            initialCoordinates=[0.0] * k if start is None else start.tolist(),
+            initialCoordinates_t=[0.0] * k,
+            numberOfODE2Coordinates=k,
+        )
+    )
+    modes = model.bore.modes
+    mass = modes.mass if isinstance(modes, BoreModes) else None
+    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
+    if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
+        require_heavy_housing(mbs, items[0].node, modes, name)
+        element.inertia = ModalInertia(mbs, sides[0], modes)
+        return element, {"massMatrixUserFunction": element.mass}
+    if mass is None and start is not None:
+        mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
+    if mass is None:
+        return element, {}
+    # the sides of markers find their size after Assemble only
+    rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
+    return element, {"massMatrix": _mass_matrix(rigid, mass)}
+
+
+def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
+    """Let the modes of a reduced body start in equilibrium with the film, unless the scene has set them."""
+    bush: ReducedBore = model.bearing.bush
+    node = sides[0].nodes[-1]
+    if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
+        return
+    held = bush.held()
+    start = initial_coordinates(model, sides, ModalBore(held, model.grid))
+    if start is not None:
+        mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
+
+
+def _attach_nodes(
+    mbs: Any,
+    model: Any,
+    sides: tuple[Side, Side],
+    place: tuple[np.ndarray, np.ndarray],
+    name: str,
+    show: bool,
+) -> NodalFilmElement:
+    mount = Mount(sides[0], sides[0].frame.copy(), place[0]) if sides[0].nodes else None
+    bush = add_bush(mbs, f"{name} bush", model.bearing.bush, mount, place, fixed=mount is None, show=show)
+    start = initial_coordinates(model, sides)
+    if start is not None:
+        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
+        for number, shift in zip(bush.nodeNumbers, u):
+            if number >= 0 and shift.any():
+                node = exu.NodeIndex(int(number))
+                initial = np.array(mbs.GetNodeParameter(node, "initialCoordinates")) + shift
+                mbs.SetNodeParameter(node, "initialCoordinates", initial.tolist())
+    nodes = [exu.NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
+    return NodalFilmElement(model, *sides, nodes, name, bush)
+
+
+def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
+    """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
+
+    A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be felt;
+    only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
+    """
+    whole = np.zeros((n + len(mass), n + len(mass)))
+    whole[n:, n:] = mass
+    return whole
+
+
+def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) -> np.ndarray | None:
+    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
+
+    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
+    first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
+    """
+    bearing = dataclasses.replace(model.bearing, thermal=None)
+    if bearing.cavitation.conserves_mass:
+        closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
+        bearing = dataclasses.replace(bearing, cavitation=closure)
+    film = ElasticBearingModel(
+        bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
+    )
+    motion = np.empty(SIZE)
+    joint_kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
+    settled = film.evaluate_steady(motion).status is Status.CONVERGED
+    return film.coordinates.copy() if settled else None

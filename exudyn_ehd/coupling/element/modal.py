@@ -1,0 +1,154 @@
+"""The film element on a flexible bore: a third block of coordinates beside housing and journal.
+
+Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is ``Q - K q``; their
+mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves coupled with it (`modal_inertia`). The
+film's wrench on the housing stays the opposite of the journal's, since the modes' forces are internal to the bush: force and moment on
+journal and housing cancel exactly.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn
+import numpy as np
+
+from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
+from exudyn_ehd.coupling.element.rigid import FilmElement, Trial
+from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
+from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.solid.fe_bore import ReducedBore
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+SIZE = 10
+
+
+class BoreFilmElement(FilmElement):
+    """Film between two sides on a bore with nodes of its own.
+
+    Parameters
+    ----------
+    model : ElasticBearingModel
+        The film.
+    housing, journal : NodeSide or MarkerSide
+        As in `FilmElement`.
+    nodes : list
+        Nodes of the bore; their coordinates follow those of housing and journal.
+    name : str
+        For messages.
+    """
+
+    def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str) -> None:
+        super().__init__(model, housing, journal, name)
+        self.bore_nodes = nodes
+        self._places: np.ndarray | None = None
+
+    @property
+    def rigid_size(self) -> int:
+        """Number of coordinates of housing and journal."""
+        return self.sides[0].size + self.sides[1].size
+
+    def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
+        q, q_t = super()._read(mbs, configuration)
+        if self._places is None:
+            self._places = np.concatenate([mbs.systemData.GetNodeLTGODE2(int(node)) for node in self.bore_nodes])
+        data = mbs.systemData
+        q += np.asarray(data.GetODE2Coordinates(configuration))[self._places].tolist()
+        q_t += np.asarray(data.GetODE2Coordinates_t(configuration))[self._places].tolist()
+        return q, q_t
+
+    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+        """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
+        if not self._bound:
+            self._bind(mbs)
+        qv, qv_t, n = np.array(q), np.array(q_t), self.rigid_size
+        rigid = self._move_rigid(mbs, qv[:n], qv_t[:n], configuration)
+        return np.concatenate((rigid, *self._bore_motion(qv[n:], qv_t[n:])))
+
+    def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
+        return q, q_t
+
+    def _wrench_map(self) -> np.ndarray:
+        """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
+        housing, journal = self.sides
+        out = np.empty((self.rigid_size, 6))
+        joint_kinematics.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
+        return out
+
+
+class ModalFilmElement(BoreFilmElement):
+    """Film on a modal bush; see the module's docstring.
+
+    Parameters
+    ----------
+    stiffness : (k,) array
+        Modal stiffness, N/m.
+
+    Attributes
+    ----------
+    inertia : ModalInertia or None
+        Of modes with mass on a housing that moves.
+    """
+
+    def __init__(
+        self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str, stiffness: np.ndarray
+    ) -> None:
+        super().__init__(model, housing, journal, nodes, name)
+        self.stiffness = stiffness
+        self.inertia: ModalInertia | None = None
+        self._weighed = False
+
+    def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """User function of Exudyn: mass matrix (N, N) of modes and housing."""
+        assert self.inertia is not None
+        if not self._bound:
+            self._bind(mbs)
+        if not self._weighed:
+            self._weighed = True
+            self.inertia.warn_if_indefinite(self.model.bore.modes, self.name)  # type: ignore[attr-defined]
+        n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
+        whole = np.zeros((state.size, state.size))
+        whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])
+        whole[:n_h, n:], whole[n:, :n_h] = coupling, coupling.T
+        return whole
+
+    def _inertia_state(self, trial: Trial) -> list[np.ndarray]:
+        """Coordinates and rates of the housing, then of the modes."""
+        n, n_h = self.rigid_size, self.sides[0].size
+        q, q_t = np.array(trial.q), np.array(trial.q_t)
+        return [q[:n_h], q_t[:n_h], q[n:], q_t[n:]]
+
+    def _generalized_force(self, trial: Trial) -> np.ndarray:
+        evaluation: Any = trial.evaluation
+        housing, journal = self.sides
+        n, k = self.rigid_size, self.stiffness.size
+        joint_kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        force = np.empty(len(trial.q))
+        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
+        if self.inertia is not None:
+            on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
+            force[: housing.size] += on_housing
+            force[n:] += on_modes
+        return force
+
+    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        evaluation: Any = trial.evaluation
+        T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
+        whole = np.empty((n + k, n + k))
+        joint_kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
+        if self.inertia is not None:
+            by_place, by_rate = self.inertia.derivatives(*self._inertia_state(trial))
+            places = np.r_[: self.sides[0].size, n : n + k]
+            whole[np.ix_(places, places)] -= f_q * by_place + f_qt * by_rate
+        return whole
+
+    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""
+        model: Any = self.model
+        if isinstance(model.bore.modes, ReducedBore):
+            return None
+        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)

@@ -1,0 +1,191 @@
+"""Inertia of a modal bush on a housing that moves: floating frame of reference, linear in the modes' displacement.
+
+The housing's body has the bush's mass, at its undeformed place. A point X of the bush's frame (position r, rotation A, velocity v, angular
+velocity omega) stands at r + A (X + u), u = Phi q. Of its kinetic energy beyond the body's,
+
+    T = int rho d(A X + r)/dt . d(A u)/dt dV + q_t^T M q_t / 2,
+
+what is left out is of the second order in u: gyroscopic and centrifugal terms of u with itself. T does not change when the whole model is
+displaced or turned, so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
+accelerations in the frame's components,
+
+    delta r:    a_w = alpha x p + Omega x (Omega x p) + 2 Omega x p_t + p_tt,
+    delta phi:  p x a + I alpha + Omega x (I Omega) + 2 sum q_t,i K_i Omega + Theta q_tt,     I = sum q_i (K_i + K_i^T),
+    delta q_i:  P_i . a + Theta_i . alpha - Omega . K_i Omega + (M q_tt)_i,
+
+need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see `BoreModes.moments`.
+With modes for body forces (`exudyn_ehd.solid.body_forces`) the bore answers to accelerations as the mesh does, else within 5 to 20 %.
+"""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import exudyn
+import numpy as np
+
+from exudyn_ehd.coupling.items.object_mass import object_mass
+from exudyn_ehd.coupling.items.resolve import body_of_node
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, Side, detached
+from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.status import InputError
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+
+_CURRENT = exu.ConfigurationType.Current
+
+
+# Negative eigenvalue of a scaled mass matrix that is none of rounding.
+INDEFINITE = -1e-6
+
+
+def require_heavy_housing(mbs: Any, node: Any, modes: BoreModes, name: str) -> None:
+    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it."""
+    body = None if node is None else body_of_node(mbs, node)
+    if body is None:
+        return
+    mass, own = float(mbs.GetObject(body)["mass"]), bush_mass(modes)
+    if mass < own * (1.0 - 1e-6):
+        raise InputError(
+            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its bush with dynamics=True has "
+            f"{own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's to the body, or take dynamics=False."
+        )
+
+
+def bush_mass(modes: BoreModes) -> float:
+    """Mass of the whole bush, kg."""
+    assert modes.moments is not None
+    return float(modes.moments[:, 0].sum())
+
+
+class ModalInertia:
+    """Mass and velocity forces of modes on a side.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    side : Side
+        Carries the bush's frame; a copy with arrays of its own is kept.
+    modes : BoreModes
+        With mass.
+    """
+
+    def __init__(self, mbs: Any, side: Side, modes: BoreModes) -> None:
+        assert modes.mass is not None
+        self.mbs = mbs
+        self.side: Side = detached(side)
+        self.modal_mass = modes.mass
+        self.P, self.Theta, self.K = modes.participation()
+        self._both, self._flat = np.concatenate((self.P, self.Theta)), self.K.reshape(-1, 9)
+        self._bound = not isinstance(side, MarkerSide)
+
+    def mass(self, q: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Blocks of housing (n, n), housing and modes (n, k), and modes (k, k) at their coordinates (n,) and (k,)."""
+        J = self._move(q)
+        p, inertia = _skew(self.P @ modes), self._inertia(modes)
+        own = np.block([[np.zeros((3, 3)), -p], [p, inertia]])
+        return J.T @ own @ J, J.T @ self._both, self.modal_mass
+
+    def warn_if_indefinite(self, modes: BoreModes, name: str) -> None:
+        """Warn, once the system is assembled, if what carries the bush has not its mass: the mass matrix is then indefinite.
+
+        No error: constraints may hold what is too light.
+        """
+        data, mbs = self.mbs.systemData, self.mbs
+        places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in self.side.nodes])
+        n, k = len(places), len(self.modal_mass)
+        whole = np.zeros((n + k, n + k))
+        for number in range(data.NumberOfObjects()):
+            item = exu.ObjectIndex(number)
+            coordinates = np.asarray(data.GetObjectLTGODE2(item), dtype=int)
+            here, there = np.nonzero(coordinates[:, None] == places)
+            matrix = object_mass(mbs, item) if len(here) else None
+            if matrix is not None:
+                whole[np.ix_(there, there)] += matrix[here][:, here]
+        q = np.asarray(data.GetODE2Coordinates())[places]
+        _, coupling, whole[n:, n:] = self.mass(q, np.zeros(k))
+        whole[:n, n:], whole[n:, :n] = coupling, coupling.T
+        size = np.sqrt(np.maximum(np.diag(whole), 0.0))
+        moved = size > 1e-9 * size.max()
+        scaled = whole[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
+        if np.linalg.eigvalsh(scaled)[0] < INDEFINITE:
+            warnings.warn(
+                f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the bush of {bush_mass(modes):.4g} kg "
+                "is lighter than it there, or has less rotary inertia, but must contain the bush's: add them to the housing, or take "
+                "ModalBush(dynamics=False).",
+                stacklevel=2,
+            )
+
+    def force(
+        self, q: np.ndarray, q_t: np.ndarray, modes: np.ndarray, modes_t: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (n,) on the housing and (k,) on the modes that velocities cause."""
+        return self._velocity_force(self._move(q), q, q_t, modes, modes_t)
+
+    def derivatives(
+        self, q: np.ndarray, q_t: np.ndarray, modes: np.ndarray, modes_t: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n + k, n + k) of `force` to the coordinates and to the rates.
+
+        Exact but for the change with the housing's coordinates, which is left out; so is that of the mass matrix in Exudyn: Newton's rate
+        suffers by the angle of a step.
+        """
+        J, n, k = self._move(q), q.size, modes.size
+        place, rate = np.zeros((n + k, n + k)), np.zeros((n + k, n + k))
+        a, alpha, omega = self._accelerations(J, q, q_t)
+        N = self.K + self.K.transpose(0, 2, 1)
+        columns = self.P.T
+        by_place = np.concatenate((
+            np.cross(alpha, columns) + np.cross(omega, np.cross(omega, columns)),
+            np.cross(columns, a) + N @ alpha + np.cross(omega, N @ omega),
+        ), axis=1)  # fmt: skip
+        by_rate = np.concatenate((np.cross(omega, columns), self.K @ omega), axis=1)
+        place[:n, n:] = -(J.T @ by_place.T)
+        rate[:n, n:] = -2.0 * (J.T @ by_rate.T)
+        # quadratic in the rates: central differences are exact
+        for i in range(n):
+            ends = []
+            for sign in (1.0, -1.0):
+                moved = q_t.copy()
+                moved[i] += sign
+                ends.append(np.concatenate(self._velocity_force(J, q, moved, modes, modes_t)))
+            rate[:, i] = 0.5 * (ends[0] - ends[1])
+        return place, rate
+
+    def _velocity_force(
+        self, J: np.ndarray, q: np.ndarray, q_t: np.ndarray, modes: np.ndarray, modes_t: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        a, alpha, omega = self._accelerations(J, q, q_t)
+        p, p_t, inertia = self.P @ modes, self.P @ modes_t, self._inertia(modes)
+        turn, each = _skew(omega), self.K @ omega
+        force = _skew(alpha) @ p + turn @ (turn @ p + 2.0 * p_t)
+        moment = _skew(p) @ a + inertia @ alpha + turn @ (inertia @ omega) + 2.0 * (modes_t @ each)
+        on_modes = a @ self.P + alpha @ self.Theta - each @ omega
+        return -(np.concatenate((force, moment)) @ J), -on_modes
+
+    def _accelerations(self, J: np.ndarray, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Accelerations a and alpha at q_tt = 0, and Omega, in the frame's components."""
+        side = self.side
+        side.frame[:, 5] = side.jac[1] @ q_t
+        side.vary(self.mbs, q, q_t)
+        A = side.frame[:, :3]
+        return (side.jac[2] @ q_t) @ A, (side.jac[3] @ q_t) @ A, J[3:] @ q_t
+
+    def _inertia(self, modes: np.ndarray) -> np.ndarray:
+        first = (modes @ self._flat).reshape(3, 3)
+        return first + first.T
+
+    def _move(self, q: np.ndarray) -> np.ndarray:
+        """Bring the side to ``q``; its Jacobian (6, n) in the frame's components."""
+        if not self._bound:
+            self.side.bind(self.mbs)  # type: ignore[attr-defined]
+            self._bound = True
+        self.side.update(self.mbs, q, np.zeros_like(q), _CURRENT)
+        A = self.side.frame[:, :3]
+        return np.concatenate((A.T @ self.side.jac[0], A.T @ self.side.jac[1]))
+
+
+def _skew(v: np.ndarray) -> np.ndarray:
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])

@@ -1,0 +1,12 @@
+"""Items of a system that a joint connects.
+
+Module map
+----------
+resolve         bodies, nodes and markers
+joint_frame     where the joint is
+beams           beams and cables
+reduced_bodies  reduced finite-element bodies
+carrier         what carries a bush
+object_mass     mass of an object
+axial           axial freedom
+"""

@@ -1,0 +1,63 @@
+"""The constraint that holds a journal along the axis of its joint, for the option `Held`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling.items.resolve import Item, body_of_node
+from exudyn_ehd.status import InputError
+
+_WHERE = "CreateLubricatedJoint"
+
+
+def hold_axially(
+    mbs: Any, name: str, housing: Item, journal: Item, points: tuple[np.ndarray, np.ndarray], rotation: np.ndarray
+) -> Any:
+    """Constrain the relative displacement along the joint axis to its reference value."""
+    axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
+    markers = []
+    for label, item, point in (("housing", housing, points[0]), ("journal", journal, points[1])):
+        if item.kind is None:
+            if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
+                raise InputError(
+                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none exists on spatial "
+                    "cables; use axial=Free(), with a constraint of your own if one is needed."
+                )
+            if abs(axial_offset) > 0.0:
+                raise InputError(
+                    f"{_WHERE}: with axial=Held() the two markers must lie in one plane normal to the axis in the "
+                    f"reference configuration, got an axial distance of {axial_offset:.6g} m."
+                )
+            markers.append(item.marker)
+            continue
+        if item is journal:
+            point = point - rotation[:, 2] * axial_offset
+        transform = np.eye(4)
+        transform[:3, :3] = item.node_rotation.T @ rotation
+        transform[:3, 3] = item.node_rotation.T @ (point - item.node_position)
+        markers.append(_rigid_marker(mbs, f"{name} {label}", item, transform))
+    if housing.kind is None:
+        raise InputError(f"{_WHERE}: axial=Held() needs a rigid body, a rigid node or ground as housing.")
+    return mbs.AddObject(
+        eii.ObjectJointGeneric(
+            name=f"{name} axial",
+            markerNumbers=markers,
+            constrainedAxes=[0, 0, 1, 0, 0, 0],
+            visualization=eii.VObjectJointGeneric(show=False),
+        )
+    )
+
+
+def _rigid_marker(mbs: Any, name: str, item: Item, transform: np.ndarray) -> Any:
+    """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
+    if item.node is None:
+        # a ground object of our own at the origin holds the marker
+        body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
+    else:
+        body = body_of_node(mbs, item.node)
+        if body is None:
+            raise InputError(f"{_WHERE}: axial=Held() needs the rigid body of node {int(item.node)}, add it before.")
+    return mbs.AddMarker(eii.MarkerBodyRigid(name=name, bodyNumber=body, localHT=transform))

@@ -1,0 +1,210 @@
+"""Beams and cables as items of a joint: where along the element the joint point lies, and which side carries it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import exudyn
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling.kinematics import cables as slope_kinematics
+from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
+from exudyn_ehd.status import InputError
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+
+SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
+"""Node types that hold a position and a slope, and their dimension."""
+CABLES = {"ANCFCable2D": 2, "ANCFCable": 3}
+EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
+# |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8 degrees)
+ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
+# How far a joint point may lie beyond an element's end, in lengths; positions are typed with few digits.
+BEYOND_END = 1e-6
+
+
+def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Reference and initial coordinates and initial velocities (n,) of nodes."""
+    data = [mbs.GetNode(node) for node in nodes]
+    rate = ["initialVelocities" if "initialVelocities" in d else "initialCoordinates_t" for d in data]
+    reference, initial, velocities = (
+        np.concatenate([np.array(d[key], dtype=float) for d, key in zip(data, keys, strict=True)])
+        for keys in (["referenceCoordinates"] * len(data), ["initialCoordinates"] * len(data), rate)
+    )
+    return reference, initial, velocities
+
+
+def element_nodes(data: dict[str, Any]) -> tuple[Any, ...]:
+    """Nodes of an object."""
+    numbers = data["nodeNumbers"] if "nodeNumbers" in data else [data["nodeNumber"]]
+    return tuple(exu.NodeIndex(int(number)) for number in numbers)
+
+
+def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
+    """Reference frame (3, 3) of a beam or cable without an orientation: x along it, z as close to the global z as can be."""
+    t = tangent / np.linalg.norm(tangent)
+    across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
+    return slope_kinematics.slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+
+
+# --- cables -------------------------------------------------------------------------------------------------------------------------------
+
+
+def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarray, np.ndarray]:
+    """Maps (3, n) from a cable's coordinates to position and slope.
+
+    Parameters
+    ----------
+    dimension : int
+        2 or 3.
+    length : float or None
+        Of the element; None for a node.
+    x : float
+        Place along the element [m], from its first node.
+    """
+    if length is None:
+        values, slopes = [1.0, 0.0], [0.0, 1.0]
+    else:
+        s = x / length
+        values = [
+            1.0 - 3.0 * s**2 + 2.0 * s**3, length * (s - 2.0 * s**2 + s**3), 3.0 * s**2 - 2.0 * s**3, length * (s**3 - s**2),
+        ]  # fmt: skip
+        slopes = [
+            (6.0 * s**2 - 6.0 * s) / length, 1.0 - 4.0 * s + 3.0 * s**2, (6.0 * s - 6.0 * s**2) / length, 3.0 * s**2 - 2.0 * s,
+        ]  # fmt: skip
+    part = np.eye(3)[:, :dimension]
+    return tuple(np.hstack([value * part for value in row]) for row in (values, slopes))  # type: ignore[return-value]
+
+
+def cable_side(
+    where: str,
+    nodes: tuple[Any, ...],
+    reference: np.ndarray,
+    length: float | None,
+    x: float | None,
+    point: np.ndarray,
+    rotation: np.ndarray,
+) -> SlopeSide:
+    """Side on a cable's node (``length`` None), or on an element at ``x``, by default where the joint point is.
+
+    Raises
+    ------
+    InputError
+        Joint point beyond the element; axis neither along nor across a spatial cable.
+    """
+    dimension = reference.size // (2 * len(nodes))
+    if x is None:
+        x = 0.0 if length is None else _place_on_cable(where, dimension, reference, length, point)
+    place, slope = cable_maps(dimension, length, x)
+    t = slope @ reference
+    t /= np.linalg.norm(t)
+    if dimension == 2:
+        director = np.array([0.0, 0.0, 1.0])
+    else:
+        cosine = abs(float(t @ rotation[:, 2]))
+        if ACROSS < cosine < ALONG:
+            raise InputError(
+                f"CreateLubricatedJoint.axis must be along or across the cable of {where}, got an angle of "
+                f"{math.degrees(math.acos(cosine)):.3g} degrees: a cable has no orientation about its axis; use a beam element or a "
+                "rigid body at its end."
+            )
+        director = rotation[:, 2] if cosine <= ACROSS else rotation[:, 0]
+        director = director - t * (t @ director)
+        director /= np.linalg.norm(director)
+    return SlopeSide(list(nodes), reference, place, slope, director, point, rotation)
+
+
+def _place_on_cable(where: str, dimension: int, reference: np.ndarray, length: float, point: np.ndarray) -> float:
+    """Place x [m] on the reference curve nearest to a point, by Newton with the slope's square as derivative."""
+    x = 0.5 * length
+    for _ in range(50):
+        place, slope = cable_maps(dimension, length, x)
+        t = slope @ reference
+        step = float((point - place @ reference) @ t / (t @ t))
+        x += step
+        if abs(step) < 1e-14 * length:
+            break
+    return _within(where, x, 0.0, length)
+
+
+def _within(where: str, x: float, low: float, high: float) -> float:
+    margin = BEYOND_END * (high - low)
+    if not low - margin <= x <= high + margin:
+        raise InputError(
+            f"CreateLubricatedJoint.position must lie on the element of {where}, which spans {low:g} to {high:g} m along its axis, got "
+            f"{x:.6g} m; give the element of the beam that carries the joint, or move the joint."
+        )
+    return min(max(x, low), high)
+
+
+# --- beams --------------------------------------------------------------------------------------------------------------------------------
+
+
+def beam_ends(mbs: Any, nodes: tuple[Any, ...], node_kinds: dict[str, int]) -> tuple[NodeSide, NodeSide]:
+    """The nodes' own frames of a geometrically exact beam element."""
+    ends = []
+    for node in nodes:
+        data = mbs.GetNode(node)
+        reference = np.array(data["referenceCoordinates"], dtype=float)
+        kind = node_kinds[data["nodeType"]]
+        ends.append(NodeSide(kind, node, reference, np.zeros(3), np.eye(3)))
+        rest = np.zeros(reference.size)
+        ends[-1].update(None, rest, rest, None)
+    return ends[0], ends[1]
+
+
+def beam_side(
+    where: str, ends: tuple[NodeSide, NodeSide], share: float | None, point: np.ndarray, rotation: np.ndarray
+) -> BeamSide:
+    """Side on a geometrically exact beam at a share of its length, by default where the joint point is."""
+    if share is None:
+        start, end = (side.frame[:, 3] for side in ends)
+        along = end - start
+        length = float(np.linalg.norm(along))
+        share = _within(where, float((point - start) @ along) / length, 0.0, length) / length
+    return BeamSide(ends, share, point, rotation)
+
+
+def marker_on_body(
+    mbs: Any, where: str, body: Any, nodes: tuple[Any, ...], point: np.ndarray, rotation: np.ndarray
+) -> MarkerSide:
+    """Side through a marker of our own on an ANCF beam element or a RotationalMass1D, at a point of the reference configuration."""
+    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+
+    def at(local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        value = [
+            mbs.GetObjectOutputBody(body, kind, local.tolist(), reference)
+            for kind in (output.Position, output.RotationMatrix)
+        ]
+        return np.array(value[0]), np.array(value[1]).reshape(3, 3)
+
+    local = np.zeros(3)
+    for _ in range(50):
+        place, matrix = at(local)
+        step = matrix.T @ (point - place)
+        local += step
+        if np.abs(step).max() < 1e-15:
+            break
+    data = mbs.GetObject(body)
+    if "length" in data:
+        half = 0.5 * float(data["length"])
+        local[0] = _within(where, local[0] + half, 0.0, 2.0 * half) - half
+    marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=local.tolist()))
+    return MarkerSide(marker, list(nodes), at(local)[1].T @ rotation)
+
+
+def marker_on_node(
+    mbs: Any, where: str, node: Any, place: np.ndarray, frame: np.ndarray, point: np.ndarray, rotation: np.ndarray
+) -> MarkerSide:
+    """Side through a marker of our own on a node that has an orientation, at the node."""
+    if np.linalg.norm(point - place) > 1e-9 * max(1.0, float(np.linalg.norm(place))):
+        raise InputError(
+            f"CreateLubricatedJoint.position must be that of the node of {where}, {place.tolist()}, got {point.tolist()}; for a point "
+            "along the beam give the beam element."
+        )
+    marker = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=node))
+    return MarkerSide(marker, [node], frame.T @ rotation)

@@ -1,0 +1,120 @@
+"""The two items of a joint, its frame and its joint points, from the arguments of `CreateLubricatedJoint`; input checks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.coupling.items.resolve import Item, resolve
+from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
+from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.status import InputError, require_vector
+
+_WHERE = "CreateLubricatedJoint"
+
+
+def resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
+    """Housing and journal of ``itemNumbers``; `InputError` for what can't be one."""
+    where = f"{_WHERE}.itemNumbers"
+    if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
+        raise InputError(f"{where} must be [housing, journal], got {itemNumbers!r}.")
+    housing = resolve(mbs, f"{where}[0]", itemNumbers[0])
+    journal = resolve(mbs, f"{where}[1]", itemNumbers[1])
+    if not housing.nodes and not journal.nodes:
+        raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
+    shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
+    # Exudyn adds up what an object hands to a node that it lists twice
+    if shared and not (housing.inner and journal.inner and int(housing.marker) != int(journal.marker)):
+        raise InputError(
+            f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
+        )
+    return housing, journal
+
+
+def joint_rotation(housing: Item, axis: Any, matrix: Any, use_global: bool) -> np.ndarray:
+    """Joint frame (3, 3) in the reference configuration, columns x, y, z global."""
+    to_global = np.eye(3) if use_global else housing.rotation
+    given = np.size(axis) > 0
+    z = np.zeros(3)
+    if given:
+        z = require_vector(f"{_WHERE}.axis", axis, 3)
+        if not np.linalg.norm(z) > 0.0:
+            raise InputError(f"{_WHERE}.axis must not be zero, got {axis!r}.")
+        z = to_global @ (z / np.linalg.norm(z))
+    if matrix is not None:
+        rotation = _checked_rotation(matrix)
+        rotation = to_global @ rotation
+        # 1e-9: an axis and a matrix typed or computed in double precision agree far better
+        if given and np.linalg.norm(np.cross(z, rotation[:, 2])) + max(0.0, -z @ rotation[:, 2]) > 1e-9:
+            raise InputError(
+                f"{_WHERE}.axis and the third column of rotationMatrixAxes must agree, got {axis!r} and "
+                f"{np.asarray(matrix)[:, 2]}; leave axis=[]."
+            )
+        return rotation
+    if not given:
+        raise InputError(f"{_WHERE}.axis is missing; give the direction of the joint axis, e.g. axis=[0, 0, 1].")
+    for k in (0, 1):
+        x = housing.rotation[:, k] - z * (z @ housing.rotation[:, k])
+        # parallel to rounding only: anything else has a defined projection
+        if np.linalg.norm(x) > 1e-6:
+            break
+    x /= np.linalg.norm(x)
+    return np.column_stack([x, np.cross(z, x), z])
+
+
+def _checked_rotation(matrix: Any) -> np.ndarray:
+    """``rotationMatrixAxes`` as an array (3, 3); `InputError` for what isn't a rotation."""
+    where = f"{_WHERE}.rotationMatrixAxes"
+    try:
+        rotation = np.array(matrix, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        rotation = np.zeros(0)
+    if rotation.shape != (3, 3) or not np.all(np.isfinite(rotation)):
+        raise InputError(f"{where} must be a rotation matrix (3, 3), got {matrix!r}.")
+    # 1e-8: a matrix computed in double precision is orthonormal to 1e-15, one typed with few digits is not meant
+    if np.abs(rotation.T @ rotation - np.eye(3)).max() > 1e-8 or np.linalg.det(rotation) < 0.0:
+        raise InputError(f"{where} must be orthonormal and right-handed, got {matrix!r}.")
+    return rotation
+
+
+def joint_points(housing: Item, journal: Item, position: Any, use_global: bool) -> tuple[np.ndarray, np.ndarray]:
+    """Joint point of either side in the reference configuration, global [m]."""
+    if housing.is_marker or journal.is_marker:
+        if np.size(position):
+            raise InputError(f"{_WHERE}.position must be [] if a marker is given, which sets it; got {position!r}.")
+        first = housing.position if housing.is_marker else journal.position
+        second = journal.position if journal.is_marker else housing.position
+        return first.copy(), second.copy()
+    point = require_vector(f"{_WHERE}.position", position, 3, "m")
+    if not use_global:
+        point = housing.position + housing.rotation @ point
+    return point, point.copy()
+
+
+def check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
+    """Refuse an initial state in which the journal isn't inside the bore."""
+    for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
+        if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
+            raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
+        side.update(None, item.initial_coordinates, item.initial_velocities, None)
+    motion = np.empty(10)
+    cosine = joint_kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
+    clearance, length = bearing.radial_clearance, bearing.length
+    tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
+    if tilt * length >= 2.0 * clearance:
+        raise InputError(
+            f"{_WHERE}: the axes of the two bodies are not parallel within the clearance in the initial configuration: "
+            f"tilt {tilt:.6g} rad, at most {2.0 * clearance / length:.6g} rad fit (2 c / L); check "
+            "the initial rotations."
+        )
+    half = 0.5 * length
+    ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
+    if max(ends) >= clearance:
+        raise InputError(
+            f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
+            f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
+            f"{clearance:.6g} m; check the initial positions, and whether the clearance is radial."
+        )

@@ -1,0 +1,155 @@
+"""The bore of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the joint's frame that takes part in its motion.
+
+The body's modal node serves twice in the film's object: in the housing's side, for the rigid motion of the bore that the modes cause,
+and as the bore's coordinates, for the rest. Exudyn adds up what an object hands to a node that it lists twice, forces and Jacobians alike.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.items.resolve import Item
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
+from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore, bore_faces, find_bore
+from exudyn_ehd.status import InputError
+
+_WHERE = "CreateLubricatedJoint.bearing with bush=FEBore(...)"
+
+
+def hold_fe_bore(
+    mbs: Any, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
+) -> tuple[JournalBearing, Item]:
+    """Bearing with the bore that was found in the housing, and the housing that moves with it.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    bearing : JournalBearing
+        With an `FEBore` as bush.
+    housing : Item
+        An ObjectFFRFreducedOrder.
+    point, rotation : ndarray (3,), (3, 3)
+        Joint point [m] and joint frame in the reference configuration, global.
+
+    Raises
+    ------
+    InputError
+        If the housing is something else, or has no such bore.
+    """
+    bush = bearing.bush
+    if not isinstance(bush, FEBore):
+        raise InputError(
+            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder gives way by its own modes with bush=FEBore(fem=...), got "
+            f"{type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on the body as itemNumbers[0]."
+        )
+    data = mbs.GetObject(housing.body)
+    basis = np.asarray(data["modeBasis"], dtype=float)
+    local = housing.node_rotation.T @ rotation
+    origin = housing.node_rotation.T @ (point - housing.node_position)
+    places = (np.asarray(data["referencePositions"], dtype=float).reshape(-1, 3) - origin) @ local
+    radius = bearing.journal_radius + bearing.radial_clearance
+    chosen = find_bore(_WHERE, places, radius, bearing.length, bush.radius_tolerance, bush.nodes)
+    if len(np.asarray(bush.fem.nodes["Position"])) != len(places):
+        raise InputError(
+            f"{_WHERE}: fem must be the FEMinterface that the body was made of, with {len(places)} nodes, got one with "
+            f"{len(bush.fem.nodes['Position'])}."
+        )
+    faces, chosen = bore_faces(_WHERE, bush.fem, places, chosen)
+    shapes = basis.reshape(len(places), 3, -1)[chosen]
+    reduced = ReducedBore(
+        faces=faces,
+        displacements=np.einsum("nik,ij->njk", shapes, local),
+        stiffness_matrix=np.asarray(data["stiffnessMatrixReduced"].Convert2DenseMatrix()),
+        radius=radius,
+        length=bearing.length,
+        settled=bush.settled,
+    )
+
+    def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
+        frame = NodeSide(
+            _kind(housing), housing.node, housing.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
+        )
+        return FloatingBoreSide(frame, housing.nodes[1], origin, local, reduced.rigid)
+
+    return dataclasses.replace(bearing, bush=reduced), dataclasses.replace(housing, build=build)
+
+
+def _kind(housing: Item) -> int:
+    assert housing.node_kind is not None
+    return housing.node_kind
+
+
+class FloatingBoreSide:
+    """Frame that follows a body's floating frame and the rigid part P q, Theta q of its bore's motion in the modes q.
+
+    Position ``r + A (x0 + P q)``, rotation ``A exp(Theta q) R``.
+
+    Parameters
+    ----------
+    frame : NodeSide
+        The rigid node's own frame.
+    modal_node : exudyn.NodeIndex
+        Node of the modes.
+    origin, rotation : ndarray (3,), (3, 3)
+        Joint point x0 [m] and joint frame R in the body's frame.
+    rigid : ndarray (6, k)
+        P and Theta in the joint's frame.
+    """
+
+    def __init__(
+        self, frame: NodeSide, modal_node: Any, origin: np.ndarray, rotation: np.ndarray, rigid: np.ndarray
+    ) -> None:
+        self.floating = frame
+        self.nodes = [*frame.nodes, modal_node]
+        self.origin, self.rotation = origin, rotation
+        self.shift, self.turn = rotation @ rigid[:3], rotation @ rigid[3:]
+        self.size = frame.size + rigid.shape[1]
+        self.frame = np.zeros((3, 6))
+        self.jac = np.zeros((4, 3, self.size))
+        rest = np.zeros(self.size)
+        self.update(None, rest, rest, None)
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        n, floating = self.floating.size, self.floating
+        if not np.isfinite(q.sum()):
+            self.frame[:] = np.nan
+            return
+        floating.update(mbs, q[:n], q_t[:n], configuration)
+        A, omega = floating.frame[:, :3], floating.frame[:, 5]
+        angle = self.turn @ q[n:]
+        self.jac[:2, :, :n] = floating.jac[:2]
+        self.jac[0, :, n:] = A @ self.shift
+        self.jac[1, :, n:] = A @ (_rate_of_rotation(angle) @ self.turn)
+        self.arm = A @ (self.origin + self.shift @ q[n:])
+        self.jac[0, :, :n] += np.cross(floating.jac[1].T, self.arm).T
+        self.frame[:, :3] = A @ Rotation.from_rotvec(angle).as_matrix() @ self.rotation
+        self.frame[:, 3] = floating.frame[:, 3] + self.arm
+        self.frame[:, 4] = floating.frame[:, 4] + np.cross(omega, self.arm) + self.jac[0, :, n:] @ q_t[n:]
+        self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        n = self.floating.size
+        self.change = floating_change(self.floating, q[:n], self.arm, self.jac)
+        self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
+        out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
+
+
+def _rate_of_rotation(angle: np.ndarray) -> np.ndarray:
+    """T (3, 3) with angular velocity T d(angle)/dt of exp(angle), in the frame before the rotation."""
+    size = float(np.linalg.norm(angle))
+    x, y, z = angle
+    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    if size < 1e-4:
+        # to 1e-12: the next terms are of fourth order
+        return np.eye(3) + S * (0.5 - size**2 / 24.0) + S @ S * (1.0 / 6.0 - size**2 / 120.0)
+    return np.eye(3) + S * ((1.0 - np.cos(size)) / size**2) + S @ S * ((size - np.sin(size)) / size**3)

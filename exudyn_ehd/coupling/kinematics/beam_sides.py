@@ -1,0 +1,162 @@
+"""Sides on beams whose kinematics are known in closed form: geometrically exact beams, and cables that have a slope only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from exudyn_ehd.coupling.kinematics import cables as slope_kinematics
+from exudyn_ehd.coupling.kinematics.sides import NodeSide
+
+
+class BeamSide:
+    """Frame at a place along a geometrically exact beam element with two rigid-body nodes.
+
+    Position, velocity and angular velocity are interpolated linearly between the nodes, as the element's own virtual work does, the
+    rotation along the shortest turn between the two. (Exudyn places points between the nodes on an arc, whose rate is not the velocity
+    it reports; a film, which takes the gap from one and its squeezing from the other, needs both to agree.) The rate of the shortest turn
+    differs from the interpolated angular velocity by the relative rotation of the nodes squared.
+
+    Parameters
+    ----------
+    ends : pair of NodeSide
+        The nodes' own frames.
+    share : float
+        Place between them, 0 to 1.
+    point : ndarray (3,)
+        Joint point in the reference configuration, global [m].
+    rotation : ndarray (3, 3)
+        Joint frame in the reference configuration.
+    """
+
+    def __init__(self, ends: tuple[NodeSide, NodeSide], share: float, point: np.ndarray, rotation: np.ndarray) -> None:
+        self.ends = ends
+        self.weights = (1.0 - share, share)
+        self.nodes = [node for end in ends for node in end.nodes]
+        self.size = sum(end.size for end in ends)
+        self.frame = np.zeros((3, 6))
+        self.jac = np.zeros((4, 3, self.size))
+        rest = np.zeros(self.size)
+        self._update_ends(rest, rest)
+        section = self.section()
+        self.rho = section.T @ (point - self._mean(3))
+        self.rotation = section.T @ rotation
+        self.arm = section @ self.rho
+
+    def _parts(self) -> tuple[tuple[NodeSide, float, slice], ...]:
+        n = self.ends[0].size
+        return (
+            (self.ends[0], self.weights[0], slice(0, n)),
+            (self.ends[1], self.weights[1], slice(n, self.size)),
+        )
+
+    def _update_ends(self, q: np.ndarray, q_t: np.ndarray) -> None:
+        for end, _, place in self._parts():
+            end.update(None, q[place], q_t[place], None)
+
+    def _mean(self, column: int) -> np.ndarray:
+        return self.weights[0] * self.ends[0].frame[:, column] + self.weights[1] * self.ends[1].frame[:, column]
+
+    def section(self) -> np.ndarray:
+        """Rotation (3, 3) of the cross section in the state of the last update."""
+        first, second = (end.frame[:, :3] for end in self.ends)
+        turn = Rotation.from_matrix(first.T @ second).as_rotvec()
+        return first @ Rotation.from_rotvec(self.weights[1] * turn).as_matrix()
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        if not np.isfinite(q.sum()):
+            self.frame[:] = np.nan
+            return
+        self._update_ends(q, q_t)
+        section = self.section()
+        self.arm = section @ self.rho
+        self.frame[:, :3] = section @ self.rotation
+        self.frame[:, 5] = self._mean(5)
+        self.frame[:, 3] = self._mean(3) + self.arm
+        self.frame[:, 4] = self._mean(4) + np.cross(self.frame[:, 5], self.arm)
+        for end, weight, place in self._parts():
+            self.jac[:2, :, place] = weight * end.jac[:2]
+        self.jac[0] += np.cross(self.jac[1].T, self.arm).T
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        for end, weight, place in self._parts():
+            end.vary(mbs, q[place], q_t[place])
+            self.jac[2:, :, place] = weight * end.jac[2:]
+        moved = np.cross(self.jac[1].T, self.arm)
+        self.jac[2] += (np.cross(self.jac[3].T, self.arm) + np.cross(self.frame[:, 5], moved)).T
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
+        total = moment + np.cross(self.arm, force)
+        for end, weight, place in self._parts():
+            end.geometric(mbs, q[place], weight * force, weight * total, out[place, place])
+        out += self.jac[1].T @ np.cross(np.cross(self.jac[1].T, self.arm), force).T
+
+
+class SlopeSide:
+    """Frame on a cable, whose nodes hold positions and slopes; see `slope_kinematics`.
+
+    The roll about the cable is no coordinate: a moment about the cable's axis finds no resistance and no motion there.
+
+    Parameters
+    ----------
+    nodes : list
+        One node, or the two of an element.
+    reference : ndarray (n,)
+        Their reference coordinates.
+    place, slope : ndarray (3, n)
+        Maps from the coordinates to position and slope.
+    director : ndarray (3,)
+        Unit vector normal to the cable in the reference configuration, global.
+    point, rotation : ndarray (3,), (3, 3)
+        Joint point [m] and joint frame in the reference configuration, global.
+    """
+
+    def __init__(
+        self,
+        nodes: list[Any],
+        reference: np.ndarray,
+        place: np.ndarray,
+        slope: np.ndarray,
+        director: np.ndarray,
+        point: np.ndarray,
+        rotation: np.ndarray,
+    ) -> None:
+        self.nodes = nodes
+        self.reference = reference
+        self.size = reference.size
+        self.place, self.slope = np.ascontiguousarray(place), np.ascontiguousarray(slope)
+        self.director = np.ascontiguousarray(director)
+        own = slope_kinematics.slope_rotation(self.slope @ reference, self.director)
+        self.rho = own.T @ (point - self.place @ reference)
+        self.rotation = own.T @ rotation
+        self.frame = np.zeros((3, 6))
+        self.jac = np.zeros((4, 3, self.size))
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        slope_kinematics.slope_frame(
+            self.place,
+            self.slope,
+            self.reference + q,
+            q_t,
+            self.director,
+            self.rho,
+            self.rotation,
+            self.frame,
+            self.jac,
+        )
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        slope_kinematics.slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
+        slope_kinematics.slope_geometric(
+            self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out
+        )

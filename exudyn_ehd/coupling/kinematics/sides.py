@@ -1,0 +1,292 @@
+"""The two sides of a joint: who carries the marker frame, and how its state is read.
+
+A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels, `beam_sides` for
+geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
+"""
+
+from __future__ import annotations
+
+import copy
+from typing import Any, Protocol
+
+import exudyn
+import numpy as np
+
+from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+
+# ExudynError exists at run time, but not in the type stubs
+exu: Any = exudyn
+_CURRENT = exu.ConfigurationType.Current
+_EMPTY = np.zeros(0)
+
+
+class NodeSide:
+    """Marker frame fixed to one rigid-body node, or to ground.
+
+    Parameters
+    ----------
+    kind : int
+        How the node turns (`kinematics.GROUND` and others).
+    node : exudyn.NodeIndex or None
+        The node; None for ground.
+    reference : ndarray (n,)
+        Reference coordinates of the node.
+    rho : ndarray (3,)
+        Joint point in the node's frame [m]; global for ground.
+    rotation : ndarray (3, 3)
+        Joint frame to node frame; to global for ground.
+    """
+
+    def __init__(self, kind: int, node: Any, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray) -> None:
+        self.kind = kind
+        self.nodes = [] if node is None else [node]
+        self.size = kinematics.COORDINATES[kind]
+        self.reference = np.ascontiguousarray(reference, dtype=float)
+        self.rho = np.ascontiguousarray(rho, dtype=float)
+        self.rotation = np.ascontiguousarray(rotation, dtype=float)
+        self.frame = np.zeros((3, 6))
+        self.frame[:, :3] = self.rotation
+        self.frame[:, 3] = self.rho
+        self.jac = np.zeros((4, 3, self.size))
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+        if self.size:
+            kinematics.node_frame(self.kind, q, q_t, self.reference, self.rho, self.rotation, self.frame, self.jac)
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        if self.size:
+            kinematics.node_variation(self.kind, q, q_t, self.reference, self.rho, self.jac)
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
+        if self.size:
+            kinematics.node_geometric(self.kind, q, self.reference, self.rho, force, moment, out)
+
+
+class MarkerSide:
+    """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
+
+    The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from Exudyn too where the
+    marker offers it (ANCF beams and cables, rigid bodies); the subclasses know it for bodies whose markers don't. For any other body it
+    counts as zero: Newton's rate suffers a little, the solution does not.
+
+    Parameters
+    ----------
+    marker : exudyn.MarkerIndex
+        The marker.
+    nodes : list
+        Nodes of its body in the order of the columns of the marker's Jacobians.
+    rotation : ndarray (3, 3)
+        Joint frame to marker frame.
+    """
+
+    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray) -> None:
+        self.marker = marker
+        self.nodes = nodes
+        self.rotation = np.ascontiguousarray(rotation, dtype=float)
+        self.frame = np.zeros((3, 6))
+        self.jac = np.zeros((4, 3, 0))
+        self.size = -1
+        self.change: np.ndarray | None = None
+        self._offers_change = True
+
+    def bind(self, mbs: Any) -> None:
+        """Find the number of coordinates, which Exudyn knows only after Assemble."""
+        self.size = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian).shape[1]
+        self.jac = np.zeros((4, 3, self.size))
+        try:
+            mbs.ComputeItem(self.marker, exu.ComputeItemType.JacobianTTimesVectorDerivative, vector=np.ones(6))
+        except exu.ExudynError:
+            self._offers_change = False
+
+    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+        return np.asarray(mbs.ComputeItem(self.marker, item))
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame from the marker in ``configuration``, and Jp, Jr if that is the current one."""
+        output = exu.OutputVariableType
+        a = mbs.GetMarkerOutput(self.marker, output.RotationMatrix, configuration).reshape(3, 3)
+        self.frame[:, :3] = a @ self.rotation
+        self.frame[:, 3] = mbs.GetMarkerOutput(self.marker, output.Position, configuration)
+        self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
+        self.frame[:, 5] = mbs.GetMarkerOutput(self.marker, output.AngularVelocity, configuration)
+        if configuration == _CURRENT:
+            self.jac[0] = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian)
+            self.jac[1] = self._jacobian(mbs, exu.ComputeItemType.RotationJacobian)
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+        self.change = self._jacobian_change(mbs, q)
+        if self.change is not None:
+            self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
+        if self.change is not None:
+            out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray | None:
+        """Entries d J[i, a] / dq_b (6, n, n) of J = [Jp, Jr]; None if unknown."""
+        if not self._offers_change:
+            return None
+        item, n = exu.ComputeItemType.JacobianTTimesVectorDerivative, self.size
+        change = np.zeros((6, n, n))
+        for i, unit in enumerate(np.eye(6)):
+            part = np.asarray(mbs.ComputeItem(self.marker, item, vector=unit))
+            # Exudyn gives an empty matrix for one that vanishes
+            if part.size:
+                change[i] = part
+        return change
+
+
+class TreeSide(MarkerSide):
+    """Frame on a link of a kinematic tree of revolute and prismatic joints.
+
+    Columns k of joints behind j turn with joint j, dJ_k/dq_j = omega_j x J_k (j <= k); a joint before j sees the marker's point move,
+    dJp_k/dq_j = omega_k x Jp_j (j > k). Parents come before their children; joints off the path to the link have zero columns.
+    """
+
+    def bind(self, mbs: Any) -> None:
+        """Find the number of coordinates."""
+        super().bind(mbs)
+        before = np.tri(self.size, dtype=bool)  # [k, j]: j <= k
+        self._turning, self._leading = before, ~before
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+        Jp, Jr = self.jac[0].T, self.jac[1].T
+        turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
+        turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
+        turned[1][self._leading] = 0.0
+        # joints off the path move nothing, and nothing that they carry counts
+        return turned.transpose(0, 3, 1, 2).reshape(6, self.size, self.size)
+
+
+class FloatingSide(MarkerSide):
+    """Superelement marker on a body in floating frame of reference formulation: a rigid node, then local flexible coordinates.
+
+    The columns of the flexible coordinates turn with the frame, ``d/dtheta = Jr_theta x``, and the frame's lever arm to the marker grows
+    with them; their own change with deformation is of the order of the deformation and left out.
+
+    Parameters
+    ----------
+    marker, nodes, rotation
+        As in `MarkerSide`.
+    frame : NodeSide
+        The rigid node's own frame.
+    """
+
+    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, frame: NodeSide) -> None:
+        super().__init__(marker, nodes, rotation)
+        self.floating = frame
+
+    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+        n = self.floating.size
+        self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
+        return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
+
+
+def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.ndarray) -> np.ndarray:
+    """Entries d J[i, a] / dq_b (6, m, m) of the Jacobians of a point in a floating frame.
+
+    Parameters
+    ----------
+    floating : NodeSide
+        The rigid node's own frame.
+    q : ndarray (n,)
+        Its coordinates.
+    arm : ndarray (3,)
+        From the node to the point, global [m].
+    jac : ndarray (4, 3, m)
+        Jp and Jr of the point: the node's columns, then those of local coordinates.
+    """
+    n, size = floating.size, jac.shape[2]
+    turn = jac[1, :, :n].T
+    change = np.zeros((6, size, size))
+    for i, unit in enumerate(np.eye(3)):
+        floating.geometric(None, q, np.zeros(3), unit, change[3 + i, :n, :n])
+        floating.geometric(None, q, np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
+    # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
+    change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
+    for first in (0, 3):
+        columns = jac[first // 3, :, n:].T
+        change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
+    change[:3, :n, n:] = np.cross(turn[:, None, :], jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
+    return change
+
+
+class MeshSide(MarkerSide):
+    """Superelement marker on a finite-element object with positions as nodes: only the marker's own nodes take part.
+
+    The Jacobian of the position is constant, that of the averaged rotation as good as constant.
+
+    Parameters
+    ----------
+    marker, rotation
+        As in `MarkerSide`.
+    nodes : list
+        The marker's nodes.
+    columns : ndarray of int (n,)
+        Their columns in the marker's Jacobians.
+    """
+
+    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, columns: np.ndarray) -> None:
+        super().__init__(marker, nodes, rotation)
+        self.columns = columns
+
+    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+        return np.asarray(mbs.ComputeItem(self.marker, item))[:, self.columns]
+
+
+class Side(Protocol):
+    """What carries the frame of one side of a joint.
+
+    Attributes
+    ----------
+    nodes : list
+        Nodes it depends on.
+    size : int
+        Number n of their coordinates.
+    frame : ndarray (3, 6)
+    jac : ndarray (4, 3, n)
+        Work arrays of `kinematics`.
+    """
+
+    nodes: list[Any]
+    size: int
+    frame: np.ndarray
+    jac: np.ndarray
+
+    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+
+    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+
+    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+
+
+def detached(side: Any) -> Any:
+    """Copy of a side with work arrays of its own, for other states than the solver's."""
+    out = copy.copy(side)
+    for name, value in vars(side).items():
+        if isinstance(value, np.ndarray):
+            setattr(out, name, value.copy())
+        elif isinstance(value, NodeSide):
+            setattr(out, name, detached(value))
+        elif isinstance(value, tuple) and value and isinstance(value[0], NodeSide):
+            setattr(out, name, tuple(detached(part) for part in value))
+    return out
+
+
+def read_state(mbs: Any, sides: tuple[Side, Side], configuration: Any) -> tuple[list[float], list[float]]:
+    """Coordinates (without reference values) and rates of both sides, in the film element's order."""
+    q: list[float] = []
+    q_t: list[float] = []
+    for side in sides:
+        for node in side.nodes:
+            q += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates, configuration)).tolist()
+            q_t += np.atleast_1d(mbs.GetNodeOutput(node, exu.OutputVariableType.Coordinates_t, configuration)).tolist()
+    return q, q_t

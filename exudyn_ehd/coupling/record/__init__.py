@@ -1,0 +1,11 @@
+"""What a run leaves behind.
+
+Module map
+----------
+history      quantities over accepted steps
+films        films over accepted steps
+results      what a joint's handle offers
+revolutions  extremes by revolution
+sensors      Exudyn sensors
+display      drawing in Exudyn's renderer
+"""

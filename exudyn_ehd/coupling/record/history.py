@@ -1,0 +1,307 @@
+"""Record of the accepted steps of one joint."""
+
+from __future__ import annotations
+
+import dataclasses
+import enum
+import math
+import pathlib
+import zipfile
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.coupling.contract import Geometry
+from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
+from exudyn_ehd.files import replacing
+from exudyn_ehd.pictures.methods import HistoryPictures
+from exudyn_ehd.status import InputError
+from exudyn_ehd.tables import write_csv
+
+_SCALARS = (
+    "minimum_gap",
+    "peak_pressure",
+    "friction_torque",
+    "power_loss",
+    "leakage",
+    "contact_load",
+    "contact_torque",
+    "supply_flow",
+    "film_temperature",
+    "peak_temperature",
+    "minimum_gap_angle",
+    "minimum_gap_z",
+    "peak_angle",
+    "bore_displacement",
+)
+_TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
+_WIDTH = _FIRST_SCALAR + len(_SCALARS)
+_FORMAT = "exudyn_ehd JointHistory 2"
+_PARTS = {
+    "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
+    "force": ("force_x", "force_y", "force_z"),
+    "moment": ("moment_x", "moment_y", "moment_z"),
+}
+_MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s", "m/s")
+
+
+class Quantity(enum.Enum):
+    """What a sensor can record; the value is the name in `JointHistory`."""
+
+    MOTION = "motion"
+    ECCENTRICITY = "eccentricity"
+    ECCENTRICITY_RATIO = "eccentricity_ratio"
+    LARGEST_ECCENTRICITY_RATIO = "largest_eccentricity_ratio"
+    FORCE = "force"
+    MOMENT = "moment"
+    MINIMUM_GAP = "minimum_gap"
+    PEAK_PRESSURE = "peak_pressure"
+    FRICTION_TORQUE = "friction_torque"
+    POWER_LOSS = "power_loss"
+    LEAKAGE = "leakage"
+    CONTACT_LOAD = "contact_load"
+    CONTACT_TORQUE = "contact_torque"
+    SUPPLY_FLOW = "supply_flow"
+    FILM_TEMPERATURE = "film_temperature"
+    PEAK_TEMPERATURE = "peak_temperature"
+    MINIMUM_GAP_ANGLE = "minimum_gap_angle"
+    MINIMUM_GAP_Z = "minimum_gap_z"
+    PEAK_ANGLE = "peak_angle"
+    BORE_DISPLACEMENT = "bore_displacement"
+
+
+_COLUMNS: dict[str, Any] = {
+    "time": _TIME,
+    "motion": slice(_MOTION, _MOTION + 10),
+    "eccentricity": slice(_ECCENTRICITY, _ECCENTRICITY + 2),
+    "eccentricity_ratio": _RATIO,
+    "largest_eccentricity_ratio": _RATIO_MAX,
+    "force": slice(_WRENCH, _WRENCH + 3),
+    "moment": slice(_WRENCH + 3, _WRENCH + 6),
+    **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
+}
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class JointHistory(HistoryPictures):
+    """Accepted steps of one joint, first the initial state, last the state now.
+
+    All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
+    about the bearing's centre. A quantity that the film does not provide is nan.
+
+    Attributes
+    ----------
+    time : ndarray (n,)
+        [s]; in a static solve Exudyn's load parameter.
+    motion : ndarray (n, 10)
+        x, y [m], bx, by [rad], their rates, relative spin omega [rad/s], axial velocity w [m/s].
+    eccentricity : ndarray (n, 2)
+        Journal axis in the mid-plane [m].
+    eccentricity_ratio : ndarray (n,)
+        |eccentricity| / radial clearance in the mid-plane.
+    largest_eccentricity_ratio : ndarray (n,)
+        The largest along the length, at one of the ends.
+    force, moment : ndarray (n, 3)
+        [N], [N m].
+    minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
+        [m], [Pa], [N m], [W], [m3/s], [N].
+    contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
+        [N m], [m3/s], [K], [K].
+    minimum_gap_angle, minimum_gap_z, peak_angle : ndarray (n,)
+        Place of the smallest gap [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
+    bore_displacement : ndarray (n,)
+        Largest displacement of a liner or of a flexible bore [m].
+    radial_clearance, journal_radius, length : float
+        Of the bearing [m].
+    """
+
+    time: np.ndarray
+    motion: np.ndarray
+    eccentricity: np.ndarray
+    eccentricity_ratio: np.ndarray
+    largest_eccentricity_ratio: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    minimum_gap: np.ndarray
+    peak_pressure: np.ndarray
+    friction_torque: np.ndarray
+    power_loss: np.ndarray
+    leakage: np.ndarray
+    contact_load: np.ndarray
+    contact_torque: np.ndarray
+    supply_flow: np.ndarray
+    film_temperature: np.ndarray
+    peak_temperature: np.ndarray
+    minimum_gap_angle: np.ndarray
+    minimum_gap_z: np.ndarray
+    peak_angle: np.ndarray
+    bore_displacement: np.ndarray
+    radial_clearance: float
+    journal_radius: float
+    length: float
+
+    def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
+        """The steps with ``start <= time <= end`` (s), a billionth of the record's length more on either side for rounding."""
+        if not start <= end:
+            raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
+        slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
+        kept = (self.time >= start - slack) & (self.time <= end + slack)
+        columns = {name: getattr(self, name)[kept] for name in _COLUMNS}
+        return dataclasses.replace(self, **columns)
+
+    def save(self, path: str | pathlib.Path) -> None:
+        """Write everything to a NumPy file (npz); it appears whole or not at all. `load_history` reads it.
+
+        Parameters
+        ----------
+        path : path
+            Ending in ``.npz``.
+        """
+        if pathlib.Path(path).suffix != ".npz":
+            raise InputError(f"JointHistory.save: path must end in .npz, got '{path}'; use to_csv for text.")
+        fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
+        with replacing(path, binary=True) as file:
+            np.savez_compressed(file, format=_FORMAT, **fields)
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write all columns as text, names and SI units in the first line; vectors by their components."""
+        columns: dict[str, np.ndarray] = {}
+        for name in _COLUMNS:
+            values = getattr(self, name)
+            # the eccentricity is the motion's x and y
+            if name in _PARTS:
+                columns |= dict(zip(_PARTS[name], values.T, strict=True))
+            elif name != "eccentricity":
+                columns[name] = values
+        write_csv(path, columns, more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
+
+    def revolutions(self, *, period: float | None = None) -> Revolutions:
+        """Smallest film with its place, peak pressure, mean loss and leakage of every whole revolution; print it for a table.
+
+        Parameters
+        ----------
+        period : float, optional
+            Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the journal against
+            the housing are counted.
+
+        Raises
+        ------
+        InputError
+            If there is no whole revolution or period.
+        """
+        return revolutions(self, period)
+
+
+def load_history(path: str | pathlib.Path) -> JointHistory:
+    """Read what `JointHistory.save` has written.
+
+    Parameters
+    ----------
+    path : path
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it holds something else.
+    """
+    try:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
+            known = "format" in data.files and str(data["format"]) == _FORMAT
+            values: dict[str, Any] = {name: data[name] for name in data.files if name != "format"} if known else {}
+    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
+        known = False
+    if not known:
+        raise InputError(
+            f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
+        )
+    fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
+    return JointHistory(**fields)
+
+
+def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
+    """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
+    x, y, bx, by = motion[:4].tolist()
+    half = 0.5 * length
+    ends = max((x + bx * half) ** 2 + (y + by * half) ** 2, (x - bx * half) ** 2 + (y - by * half) ** 2)
+    return (x * x + y * y) ** 0.5 / radial_clearance, ends**0.5 / radial_clearance
+
+
+def make_row(
+    time: float,
+    motion: np.ndarray,
+    ratios: tuple[float, float],
+    wrench: np.ndarray,
+    quantities: Mapping[str, Any],
+) -> np.ndarray:
+    """One row of the record."""
+    row = np.empty(_WIDTH)
+    row[_TIME] = time
+    row[_MOTION : _MOTION + 10] = motion
+    row[_ECCENTRICITY : _ECCENTRICITY + 2] = motion[:2]
+    row[_RATIO], row[_RATIO_MAX] = ratios
+    row[_WRENCH : _WRENCH + 6] = wrench
+    for i, name in enumerate(_SCALARS):
+        row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
+    return row
+
+
+def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
+    """The part (k,) of a row that holds ``quantity``."""
+    return np.atleast_1d(row[_COLUMNS[quantity.value]])
+
+
+class Record:
+    """Rows of accepted steps of a bearing in a growing array."""
+
+    def __init__(self, bearing: Geometry) -> None:
+        self._dimensions: dict[str, Any] = {
+            name: float(getattr(bearing, name)) for name in ("radial_clearance", "journal_radius", "length")
+        }
+        self._rows = np.empty((64, _WIDTH))
+        self._count = 0
+
+    def append(self, row: np.ndarray) -> None:
+        """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
+        if self._count:
+            last = self._rows[self._count - 1, _TIME]
+            if row[_TIME] < last:
+                self._count = 0
+            elif row[_TIME] == last:
+                self._count -= 1
+        if self._count == self._rows.shape[0]:
+            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
+        self._rows[self._count] = row
+        self._count += 1
+
+    def clear(self) -> None:
+        """Begin a new record."""
+        self._count = 0
+
+    def rows(self, final: np.ndarray | None) -> np.ndarray:
+        """Copy of all rows (n, k), with ``final`` behind them if given and later."""
+        rows = self._rows[: self._count].copy()
+        if final is not None and final[_TIME] > self.last_time:
+            rows = np.concatenate([rows, final[None]])
+        return rows
+
+    def restore(self, rows: np.ndarray) -> None:
+        """Begin with these rows (n, k)."""
+        if rows.ndim != 2 or rows.shape[1] != _WIDTH:
+            raise InputError(f"LubricatedJoint.restore_state: rows must be (n, {_WIDTH}), got {rows.shape}.")
+        self._rows, self._count = np.concatenate([rows, np.empty((64, _WIDTH))]), len(rows)
+
+    @property
+    def last_time(self) -> float:
+        """Time of the last row, minus infinity if there is none."""
+        return float(self._rows[self._count - 1, _TIME]) if self._count else -np.inf
+
+    def snapshot(self, final: np.ndarray | None) -> JointHistory:
+        """Copy of the record, with ``final`` as its last row if given."""
+        rows = self._rows[: self._count].copy()
+        if final is not None:
+            rows = np.concatenate([rows, final[None]])
+        columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
+        return JointHistory(**columns, **self._dimensions)

@@ -1,0 +1,12 @@
+"""Solver runs.
+
+Module map
+----------
+solve              SolveDynamic, SolveStatic
+settings           ConfigureSolver
+start_guess        where Newton starts in a step
+equilibrium_start  joints placed in equilibrium
+restart            states to go on from
+sparse             SolveDynamicSparse
+system_matrix      its iteration matrix
+"""

@@ -1,0 +1,97 @@
+"""A consistent start: the journal placed where its film carries a steady load."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
+from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
+from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
+from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.status import InputError, Status, require_number, require_vector
+
+_INITIAL = exu.ConfigurationType.Initial
+_WHERE = "LubricatedJoint.place_in_equilibrium"
+
+
+def place(mbs: Any, element: FilmElement, name: str, load: Any, speed: float | None) -> EquilibriumResult:
+    """Move the journal's node to its equilibrium; see `LubricatedJoint.place_in_equilibrium`."""
+    journal = element.sides[1]
+    if not mbs.systemIsConsistent:
+        raise InputError(f"{_WHERE}: the system of joint '{name}' is not assembled; call mbs.Assemble() first.")
+    if not isinstance(journal, NodeSide) or not journal.nodes:
+        raise InputError(
+            f"{_WHERE}: the journal of joint '{name}' must be a rigid body or node that moves; place other bodies by a static solve "
+            "(ehd.SolveStatic)."
+        )
+    if getattr(element, "bush", None) is not None:
+        raise InputError(
+            f"{_WHERE}: joint '{name}' has a nodal bush, whose nodes would have to move too; place the journal's body before the joint is "
+            "created (initialDisplacement), at ehd.equilibrium(...).position: the bush then starts in equilibrium with its film."
+        )
+    force = require_vector(f"{_WHERE}: load", load, 2, "N")
+    q, q_t = (np.array(v) for v in read_state(mbs, element.sides, _INITIAL))
+    motion = _motion(mbs, element, q, q_t)
+    if speed is not None:
+        motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
+    if motion[8] == 0.0:
+        raise InputError(
+            f"{_WHERE}: joint '{name}' does not turn in the initial state, and a film without speed carries no steady load; give speed=..., or "
+            "the bodies an initial angular velocity."
+        )
+    bearing = element.model.bearing
+    result = equilibrium(bearing, speed=float(motion[8]), load=(force[0], force[1]), tilt=(motion[2], motion[3]))
+    housing = element.sides[0].frame[:, :3]
+    coordinates = np.array(mbs.systemData.GetODE2Coordinates(_INITIAL), dtype=float)
+    rates = np.array(mbs.systemData.GetODE2Coordinates_t(_INITIAL), dtype=float)
+    places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])), dtype=int)
+    size = 2 if journal.kind == kinematics.PLANAR else 3
+    coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
+    # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
+    rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
+    bore: Any = result.film.bore_coordinates
+    for node in getattr(element, "bore_nodes", ()):
+        where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
+        coordinates[where], bore = bore[: where.size], bore[where.size :]
+        rates[where] = 0.0
+    mbs.systemData.SetODE2Coordinates(coordinates, _INITIAL)
+    mbs.systemData.SetODE2Coordinates_t(rates, _INITIAL)
+    at_rest = motion.copy()
+    at_rest[:2], at_rest[4:8] = result.position, 0.0
+    element.resume(float(mbs.systemData.GetTime(_INITIAL)), _memory(element.model, at_rest, result), element.no_rows())
+    return result
+
+
+def _motion(mbs: Any, element: FilmElement, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+    """Motion (10,) of the rigid surfaces in the initial state."""
+    n = element.sides[0].size
+    for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
+        side.update(mbs, q[part], q_t[part], _INITIAL)
+    motion = np.empty(10)
+    joint_kinematics.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
+    return motion
+
+
+def _memory(model: Any, motion: np.ndarray, result: EquilibriumResult) -> History | None:
+    """What the steady film at ``motion`` (10,) remembers; None without effects that do."""
+    if not model.remembers:
+        return None
+    bore = result.film.bore_coordinates
+    whole = motion if bore is None else np.concatenate((motion, bore, np.zeros_like(bore)))
+    first = model.initial_history(whole)
+    settled = settle(model, whole)
+    evaluation = model.evaluate(whole, settled)
+    if first is None or evaluation.status is not Status.CONVERGED:
+        return first
+    last = model.history()
+    temperature = first.temperature if settled is None else settled.temperature
+    return dataclasses.replace(
+        first, mass=last.mass, deflection=last.deflection, temperature=temperature, density=last.density
+    )

@@ -1,0 +1,219 @@
+"""The state of a run: Exudyn's coordinates and what the films remember, in memory and as a file."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import pathlib
+import zipfile
+import zlib
+from collections.abc import Sequence
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.watch import solver_state as solvers
+from exudyn_ehd.files import replacing
+from exudyn_ehd.joint.seams import History
+from exudyn_ehd.status import InputError
+
+_FORMAT = "exudyn_ehd SystemState 1"
+_PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class JointState:
+    """What a joint knows beside Exudyn's coordinates.
+
+    Attributes
+    ----------
+    name : str
+    bearing : str
+        Digest of the bearing's description: a state is for the bearing that it came from.
+    time : float
+        s, of the last accepted step.
+    memory : History or None
+        Oil content, wear, temperature and deflection at that time; None if the film remembers nothing.
+    rows : (n, k) array
+        The record of accepted steps up to it.
+    """
+
+    name: str
+    bearing: str
+    time: float
+    memory: History | None
+    rows: np.ndarray
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class SystemState:
+    """The last accepted state of a system with its lubricated joints; see `SaveState` and `SolveDynamic`.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    coordinates : tuple of 5 arrays
+        As Exudyn's ``systemData.GetSystemState``: ODE2 coordinates and velocities, ODE1, algebraic and data coordinates.
+    accelerations : (n,) array
+        Of the ODE2 coordinates.
+    algorithmic : (n,) array or None
+        Algorithmic accelerations of an implicit integrator.
+    joints : tuple of JointState
+    """
+
+    time: float
+    coordinates: tuple[np.ndarray, ...]
+    accelerations: np.ndarray
+    algorithmic: np.ndarray | None
+    joints: tuple[JointState, ...]
+
+    @classmethod
+    def of(cls, mbs: Any, joints: Sequence[Any]) -> SystemState:
+        """Take the last accepted state of a system and its joints after a run."""
+        solver = mbs.sys.get("dynamicSolver")
+        if not mbs.systemIsConsistent or solver is None:
+            raise InputError("SystemState: the system has no run to take a state from; call SolveDynamic before.")
+        finished = solvers.is_finished(solver)
+        configuration = exu.ConfigurationType.Current if finished else exu.ConfigurationType.StartOfStep
+        data, algorithmic = mbs.systemData, None
+        if isinstance(solver, exu.MainSolverImplicitSecondOrder):
+            implicit: Any = solver
+            last = implicit.GetAAlgorithmic if finished else implicit.GetStartOfStepStateAAlgorithmic
+            algorithmic = np.array(last(), dtype=float)
+        return cls(
+            time=float(data.GetTime(configuration)),
+            coordinates=tuple(np.array(part, dtype=float) for part in data.GetSystemState(configuration)),
+            accelerations=np.array(data.GetODE2Coordinates_tt(configuration), dtype=float),
+            algorithmic=algorithmic,
+            joints=tuple(joint.state() for joint in joints),
+        )
+
+    def put_into(self, mbs: Any, joints: Sequence[Any]) -> None:
+        """Make this the initial state of a system of the same build, and of its joints."""
+        data, initial = mbs.systemData, exu.ConfigurationType.Initial
+        own = [np.size(part) for part in data.GetSystemState(initial)]
+        given = [part.size for part in self.coordinates]
+        if own != given:
+            raise InputError(
+                f"SystemState: it belongs to another system: {dict(zip(_PARTS, given, strict=True))} coordinates are stored, this one has "
+                f"{dict(zip(_PARTS, own, strict=True))}."
+            )
+        if len(joints) != len(self.joints):
+            raise InputError(
+                f"SystemState: it belongs to another system: {len(self.joints)} lubricated joints are stored, this one has {len(joints)}."
+            )
+        for joint, state in zip(joints, self.joints, strict=True):
+            check_owner(joint, state)
+        data.SetSystemState([part.tolist() for part in self.coordinates], initial)
+        accelerations = self.accelerations if self.algorithmic is None else self.algorithmic
+        data.SetODE2Coordinates_tt(accelerations, initial)
+        data.SetTime(self.time, initial)
+        for joint, state in zip(joints, self.joints, strict=True):
+            joint.restore_state(state)
+
+    def save(self, path: str | pathlib.Path) -> None:
+        """Write to a NumPy file (npz), whole or not at all."""
+        if pathlib.Path(path).suffix != ".npz":
+            raise InputError(f"SystemState.save: path must end in .npz, got '{path}'.")
+        arrays: dict[str, Any] = dict(zip(_PARTS, self.coordinates, strict=True))
+        arrays["accelerations"] = self.accelerations
+        if self.algorithmic is not None:
+            arrays["algorithmic"] = self.algorithmic
+        heads = []
+        for k, joint in enumerate(self.joints):
+            arrays[f"{k} rows"] = joint.rows
+            heads.append(
+                {"name": joint.name, "bearing": joint.bearing, "time": joint.time, "memory": joint.memory is not None}
+            )
+            if joint.memory is not None:
+                for field in dataclasses.fields(joint.memory):
+                    value = getattr(joint.memory, field.name)
+                    if value is not None:
+                        arrays[f"{k} {field.name}"] = np.asarray(value, dtype=float)
+        with replacing(path, binary=True) as file:
+            np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": heads}), **arrays)
+
+
+def load_state(path: str | pathlib.Path) -> SystemState:
+    """Read what `SaveState` has written.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it is damaged or holds something else.
+    """
+    if not isinstance(path, (str, pathlib.Path)):
+        raise InputError(
+            f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
+        )
+    try:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
+            if "format" not in file.files or str(file["format"]) != _FORMAT:
+                raise InputError(
+                    f"SolveDynamic.restart: '{path}' holds no state of this version; write it with SaveState."
+                )
+            arrays = {name: file[name] for name in file.files}
+        head = json.loads(str(arrays["head"]))
+        joints = tuple(_joint(arrays, k, entry) for k, entry in enumerate(head["joints"]))
+        return SystemState(
+            time=float(head["time"]),
+            coordinates=tuple(arrays[name] for name in _PARTS),
+            accelerations=arrays["accelerations"],
+            algorithmic=arrays.get("algorithmic"),
+            joints=joints,
+        )
+    except InputError:
+        raise
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        ValueError,
+        EOFError,
+        TypeError,
+        AttributeError,
+        KeyError,
+        NotImplementedError,
+    ):
+        raise InputError(
+            f"SolveDynamic.restart: '{path}' is damaged or holds something else; give a file written by SaveState."
+        ) from None
+
+
+def _joint(arrays: dict[str, np.ndarray], k: int, head: dict[str, Any]) -> JointState:
+    memory = None
+    if head["memory"]:
+        stored = {field.name: arrays.get(f"{k} {field.name}") for field in dataclasses.fields(History)}
+        values: dict[str, Any] = {
+            name: value if value is None or value.ndim else float(value) for name, value in stored.items()
+        }
+        memory = History(**values)
+    return JointState(
+        name=head["name"], bearing=head["bearing"], time=head["time"], memory=memory, rows=arrays[f"{k} rows"]
+    )
+
+
+def digest(bearing: Any) -> str:
+    """Short digest of a bearing's description; meshes of bushes count by their type alone."""
+    described = bearing
+    bush = getattr(bearing, "bush", None)
+    if bush is not None and hasattr(bush, "mesh"):
+        described = (dataclasses.replace(bearing, bush=None), type(bush).__name__)
+    return hashlib.sha256(repr(described).encode()).hexdigest()[:16]
+
+
+def check_owner(joint: Any, state: JointState) -> None:
+    """Refuse a state of another joint or bearing."""
+    if state.name != joint.name:
+        raise InputError(
+            f"LubricatedJoint.restore_state: the state is of joint '{state.name}', this one is '{joint.name}'."
+        )
+    if state.bearing != digest(joint.bearing):
+        raise InputError(
+            f"LubricatedJoint.restore_state: the state of joint '{state.name}' comes from another bearing (geometry, oil, grid or effects "
+            "differ); build the joint with the bearing of the stored run."
+        )

@@ -1,0 +1,263 @@
+"""Exudyn's implicit integrator with an own sparse factorisation: `SolveDynamicSparse`.
+
+Exudyn keeps the time stepping (generalized-alpha predictor, step control, output, sensors); its Newton loop is replaced
+through ``MainSolverImplicitSecondOrder.SetUserFunctionNewton``. The unknowns are increments d of displacements and
+Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
+
+    [M / f + beta h^2 K + gamma h D   C^T] [d_q               ]   [r]
+    [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
+
+after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
+factor is kept over iterations and steps until convergence slows down (modified Newton).
+
+Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product with their exact
+tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES
+(Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r. The bush answers a film's short waves weakly, so that
+some eight products do. Newton then takes the iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and
+hardly changing, lasts. The matrix is put together in `system_matrix`.
+
+Additive coordinates only: Lie group nodes and first-order coordinates are refused.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
+
+from exudyn_ehd.coupling.run.solve import own_errors, start_guess
+from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
+from exudyn_ehd.status import require_integer, require_number
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+# Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of products.
+FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
+
+
+@dataclass(frozen=True, kw_only=True)
+class FactorReuse:
+    """When the sparse factor is renewed.
+
+    Parameters
+    ----------
+    contractivity : float
+        Renew if an iteration reduces the residual by less than this factor.
+    maximum_iterations : int
+        Renew after so many iterations of one step.
+    worth : int
+        Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent
+        beyond those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
+    """
+
+    contractivity: float = 0.5
+    maximum_iterations: int = 10
+    worth: int = 40
+
+    def __post_init__(self) -> None:
+        require_number("FactorReuse.contractivity", self.contractivity, above=0.0)
+        require_integer("FactorReuse.maximum_iterations", self.maximum_iterations, at_least=1)
+        require_integer("FactorReuse.worth", self.worth, at_least=1)
+
+
+@dataclass(kw_only=True)
+class SparseRun:
+    """What a run cost.
+
+    Attributes
+    ----------
+    success : bool
+    steps, rejected : int
+        Newton solutions that converged, and those that did not (Exudyn then halves the step).
+    iterations, jacobians : int
+        Of Newton's method.
+    products : int
+        Products with the tangents of films on nodal bushes.
+    seconds, seconds_jacobian, seconds_solve : float
+        Wall clock of the run, of Jacobians with factorisations, of back substitutions.
+    factor_bytes : int
+        Memory of the last factor.
+    """
+
+    success: bool = False
+    steps: int = 0
+    rejected: int = 0
+    iterations: int = 0
+    jacobians: int = 0
+    products: int = 0
+    seconds: float = 0.0
+    seconds_jacobian: float = 0.0
+    seconds_solve: float = 0.0
+    factor_bytes: int = 0
+
+    def report(self) -> str:
+        """Return one line for people."""
+        steps = max(self.steps, 1)
+        return (
+            f"{self.steps} steps in {self.seconds:.2f} s = {1e3 * self.seconds / steps:.1f} ms per step, "
+            f"{self.iterations / steps:.2f} iterations and {self.jacobians / steps:.3f} Jacobians per step, "
+            f"{self.rejected} rejected, factor {self.factor_bytes / 1e6:.0f} MB"
+        )
+
+
+def SolveDynamicSparse(
+    mbs: Any,
+    simulationSettings: Any | None = None,
+    *,
+    reuse: FactorReuse | None = None,
+) -> SparseRun:
+    """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
+
+    Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        Assembled.
+    simulationSettings : exudyn.SimulationSettings, optional
+        Tolerances, steps and spectral radius are taken from ``timeIntegration``.
+    reuse : FactorReuse, optional
+
+    Returns
+    -------
+    SparseRun
+
+    Raises
+    ------
+    InputError
+        The model holds coordinates that this solver can't update.
+    FilmError, RunError
+        As `SolveDynamic`; ``joint.history`` holds all accepted steps.
+    """
+    settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
+    run = SparseRun()
+    loop = _Newton(
+        matrix=SystemMatrix.of(mbs), guess=start_guess(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run
+    )
+    solver = exu.MainSolverImplicitSecondOrder()
+    solver.SetUserFunctionNewton(mbs, loop)
+    # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
+    mbs.sys["dynamicSolver"] = solver
+    start = time.perf_counter()
+    chosen = settings.linearSolver.solverType
+    # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    try:
+        with own_errors(mbs, "SolveDynamicSparse"):
+            run.success = bool(solver.SolveSystem(mbs, settings))
+            if not run.success:
+                raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
+    finally:
+        settings.linearSolver.solverType = chosen
+    run.seconds = time.perf_counter() - start
+    return run
+
+
+@dataclass(kw_only=True, eq=False)
+class _Newton:
+    """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
+
+    matrix: SystemMatrix
+    guess: StartGuess
+    reuse: FactorReuse
+    run: SparseRun
+    factor: SuperLU | None = None
+    step_size: float = 0.0
+    baseline: int = 0
+    excess: int = 0
+
+    def __call__(self, solver: Any, mbs: Any, settings) -> bool:
+        newton = settings.timeIntegration.newton
+        solver.ComputeNewtonUpdate(mbs, settings, True)
+        self.guess(mbs, mbs.systemData.GetTime(), 0, 0)
+        error = first = solver.ComputeNewtonResidual(mbs, settings)
+        if solver.it.currentStepSize != self.step_size:
+            self.factor = None
+            self.step_size = solver.it.currentStepSize
+        if self.excess >= self.reuse.worth:
+            self.factor = None
+        age, renewable = 0, True
+        for iteration in range(1, newton.maxIterations + 1):
+            if not np.isfinite(error):
+                break
+            if self.factor is None or age >= self.reuse.maximum_iterations:
+                if not self._factorise(solver, mbs):
+                    break
+                # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
+                age, renewable = 0, False
+            self._update(solver, mbs)
+            age += 1
+            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
+            if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
+                self.run.steps += 1
+                self.baseline = self.baseline or iteration
+                self.excess += iteration - self.baseline
+                return True
+            if iteration == 1 and newton.adaptInitialResidual:
+                first = max(first, error)
+            if error > self.reuse.contractivity * previous and (renewable or not self.matrix.films):
+                self.factor = None
+        self.factor = None
+        self.run.rejected += 1
+        return False
+
+    def _factorise(self, solver, mbs) -> bool:
+        """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
+        start = time.perf_counter()
+        self.factor = None
+        system = self.matrix.assemble(mbs, solver)
+        constraints = self.matrix.constraints
+        try:
+            self.factor = splu(
+                system,
+                permc_spec="MMD_AT_PLUS_A",
+                diag_pivot_thresh=0.01 if constraints else 0.0,
+                options={"SymmetricMode": True},
+            )
+        except RuntimeError:
+            return False
+        self.baseline = self.excess = 0
+        self.run.jacobians += 1
+        self.run.factor_bytes = 12 * (self.factor.nnz)
+        self.run.seconds_jacobian += time.perf_counter() - start
+        return True
+
+    def _solve(self, solver: Any, mbs: Any, residual: np.ndarray) -> np.ndarray:
+        """Newton's step: with the factor, or with it and the films' operators."""
+        assert self.factor is not None
+        films = self.matrix.film_operators(mbs, solver)
+        if not films:
+            return self.factor.solve(residual)
+        factor = self.factor
+
+        def product(v: np.ndarray) -> np.ndarray:
+            d, out = factor.solve(v), v.copy()
+            for places, film in films:
+                out[places] += film(d[places])
+            self.run.products += 1
+            return out
+
+        operator = LinearOperator((residual.size, residual.size), matvec=product, dtype=float)
+        y, _ = gmres(operator, residual, rtol=FILM_TOLERANCE, atol=0.0, restart=FILM_PRODUCTS, maxiter=1)
+        return factor.solve(y)
+
+    def _update(self, solver, mbs) -> None:
+        start = time.perf_counter()
+        assert self.factor is not None
+        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
+        self.run.seconds_solve += time.perf_counter() - start
+        self.run.iterations += 1
+        data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
+        square = solver.newmarkBeta * h * h
+        dq = d[:n]
+        data.SetODE2Coordinates(data.GetODE2Coordinates() - dq)
+        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq)
+        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square))
+        if len(d) > n:
+            data.SetAECoordinates(data.GetAECoordinates() - d[n:] / square)

@@ -1,0 +1,232 @@
+"""The iteration matrix of a system, assembled object by object, for `exudyn_ehd.coupling.run.sparse`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn
+import numpy as np
+from scipy.sparse import coo_matrix, csc_matrix
+
+from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
+from exudyn_ehd.status import InputError
+
+# the index types exist at run time, but not in the type stubs
+exu: Any = exudyn
+# Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
+_SIMPLE = ("Ground", "RigidBody", "RigidBody2D", "MassPoint", "MassPoint2D", "Mass1D", "RotationalMass1D")
+# Exudyn's steps of numerical differentiation: settings.timeIntegration.newton.numericalDifferentiation.
+RELATIVE_STEP, SMALLEST_COORDINATE = 1e-7, 1e-2
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SystemMatrix:
+    """The system's iteration matrix, assembled object by object.
+
+    Parameters
+    ----------
+    coordinates, constraints : int
+        Second-order coordinates and algebraic equations.
+    parts : tuple
+        One function (mbs, M factor, K factor, D factor) -> (rows, columns, values) per object.
+    """
+
+    coordinates: int
+    constraints: int
+    parts: tuple[Callable, ...]
+    films: tuple[tuple[Any, np.ndarray], ...]
+
+    @classmethod
+    def of(cls, mbs: Any) -> SystemMatrix:
+        """Look up the objects of an assembled model."""
+        data = mbs.systemData
+        for number in range(data.NumberOfNodes()):
+            kind = mbs.GetNode(exu.NodeIndex(number))["nodeType"]
+            if "LG" in kind or "LieGroup" in kind:
+                raise InputError(
+                    f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
+                    "create rigid bodies with nodeType=exu.NodeType.RotationEulerParameters or RotationRxyz, or use "
+                    "mbs.SolveDynamic."
+                )
+        n = len(data.GetODE2Coordinates())
+        films: list[tuple[Any, np.ndarray]] = []
+        parts: list[Callable] = [
+            _euler_parameters(mbs, exu.NodeIndex(number), n)
+            for number in range(data.NumberOfNodes())
+            if mbs.GetNode(exu.NodeIndex(number))["nodeType"] == "RigidBodyEP"
+        ]
+        if len(data.GetODE1Coordinates()):
+            raise InputError(
+                "SolveDynamicSparse mbs must have second-order coordinates only, got "
+                f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
+            )
+        for number in range(data.NumberOfObjects()):
+            item = exu.ObjectIndex(number)
+            places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
+            if len(places) == 0:
+                continue
+            film = _nodal_film(mbs, item)
+            if film is not None:
+                films.append((film, places))
+            elif mbs.GetObject(item)["objectType"] == "GenericODE2":
+                parts.append(_generic(mbs, item, places))
+            else:
+                parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
+        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
+
+    def film_operators(self, mbs: Any, solver: Any) -> list[tuple[np.ndarray, Callable]]:
+        """Places and operators of the films on nodal bushes at the current state, scaled by beta h^2."""
+        if not self.films:
+            return []
+        h, data = solver.it.currentStepSize, mbs.systemData
+        q, q_t, t = (np.asarray(data.GetODE2Coordinates()), np.asarray(data.GetODE2Coordinates_t()), data.GetTime())
+        factors = solver.newmarkBeta * h * h, solver.newmarkGamma * h
+        made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
+        return [(places, operator) for places, operator in made if operator is not None]
+
+    def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
+        """Return the iteration matrix of the current state, scaled by beta h^2."""
+        h = solver.it.currentStepSize
+        factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
+        triplets = [part(mbs, *factors) for part in self.parts]
+        rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
+        size = self.coordinates + self.constraints
+        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        if self.constraints:
+            # rows of inactive constraints are lambda = 0
+            empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
+            system = (system + coo_matrix((np.ones(len(empty)), (empty, empty)), shape=(size, size))).tocsc()
+        return system
+
+
+def _nodal_film(mbs: Any, item: Any) -> NodalFilmElement | None:
+    """The film element behind an object, if its bore is that of a nodal bush."""
+    if mbs.GetObject(item)["objectType"] != "GenericODE2":
+        return None
+    jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
+    element = getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
+    return element if isinstance(element, NodalFilmElement) else None
+
+
+def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
+    """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
+
+    def function(name: str) -> Callable | None:
+        value = mbs.GetObjectParameter(item, name)
+        return value["function"] if isinstance(value, dict) else None
+
+    def constant(name: str) -> coo_matrix | None:
+        matrix = as_sparse(mbs.GetObjectParameter(item, name))
+        return None if matrix is None or matrix.nnz == 0 else matrix
+
+    jacobian, mass_function = function("jacobianUserFunction"), function("massMatrixUserFunction")
+    if jacobian is None and function("forceUserFunction") is not None:
+        raise InputError(
+            f"SolveDynamicSparse: object {int(item)} has a forceUserFunction, so it must have a jacobianUserFunction, "
+            "got none; add one, or use mbs.SolveDynamic, which differentiates numerically."
+        )
+    mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
+
+    def part(mbs, fM, fK, fD):
+        data = mbs.systemData
+        q = np.asarray(data.GetODE2Coordinates())[places]
+        q_t = np.asarray(data.GetODE2Coordinates_t())[places]
+        t = data.GetTime()
+        terms = [(f, m) for f, m in ((fM, mass), (fK, stiffness), (fD, damping)) if m is not None]
+        if jacobian is not None:
+            terms.append((1.0, as_sparse(jacobian(mbs, t, int(item), q, q_t, fK, fD))))
+        if mass_function is not None:
+            terms.append((fM, as_sparse(mass_function(mbs, t, int(item), q, q_t))))
+        return tuple(
+            np.concatenate(x)
+            for x in (
+                [places[m.row] for _, m in terms],
+                [places[m.col] for _, m in terms],
+                [f * m.data for f, m in terms],
+            )
+        )
+
+    return part
+
+
+def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) -> Callable:
+    """Triplets of a body, connector or constraint through Exudyn's own matrices."""
+    kind = exu.ComputeItemType
+    offered = mbs.ComputeItem(item)
+    terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
+    constrained = kind.ConstraintJacobian in offered and len(equations) > 0
+    object_type = mbs.GetObject(item)["objectType"]
+    own_mass: Callable | None = None
+    if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
+        # Exudyn keeps these mass matrices sparse and can't return them
+        terms = [(what, i) for what, i in terms if what is not kind.MassMatrix]
+        own_mass = planar_mass(mbs, item) if object_type == "RigidBody2D" else point_mass(mbs, item, len(places))
+    for what, _ in terms:
+        try:
+            mbs.ComputeItem(item, what)
+        except exu.ExudynError as error:
+            raise InputError(
+                f"SolveDynamicSparse mbs must hold objects whose matrices Exudyn returns, got object {int(item)} of "
+                f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
+            ) from error
+    differs = kind.ODE2LHS in offered and kind.JacobianODE2 not in offered and object_type not in _SIMPLE
+    rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
+
+    def part(mbs, *factors):
+        values = np.zeros((len(places), len(places))) if own_mass is None else factors[0] * own_mass(mbs)
+        for what, i in terms:
+            matrix = np.asarray(mbs.ComputeItem(item, what))
+            if matrix.size:
+                values += factors[i] * matrix
+        if differs:
+            values += _differences(mbs, item, places, *factors[1:])
+        if not constrained:
+            return rows, columns, values.ravel()
+        C = coo_matrix(np.asarray(mbs.ComputeItem(item, kind.ConstraintJacobian)))
+        a, q = equations[C.row], places[C.col]
+        return (
+            np.concatenate([rows, a, q]),
+            np.concatenate([columns, q, a]),
+            np.concatenate([values.ravel(), C.data, C.data]),
+        )
+
+    return part
+
+
+def _differences(mbs: Any, item: Any, places: np.ndarray, fK: float, fD: float) -> np.ndarray:
+    """fK K + fD D (n, n) of an object whose forces Exudyn differentiates by differences too, in its own steps."""
+    kind, data = exu.ComputeItemType.ODE2LHS, mbs.systemData
+    out = np.zeros((len(places), len(places)))
+    for factor, read, write in (
+        (fK, data.GetODE2Coordinates, data.SetODE2Coordinates),
+        (fD, data.GetODE2Coordinates_t, data.SetODE2Coordinates_t),
+    ):
+        if factor == 0.0:
+            continue
+        state = np.array(read())
+        still = np.array(mbs.ComputeItem(item, kind))
+        for column, place in enumerate(places):
+            moved = state.copy()
+            step = RELATIVE_STEP * (SMALLEST_COORDINATE + abs(state[place]))
+            moved[place] += step
+            write(moved)
+            out[:, column] += factor / step * (np.array(mbs.ComputeItem(item, kind)) - still)
+        write(state)
+    return out
+
+
+def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
+    """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
+    data = mbs.systemData
+    columns = np.array(data.GetNodeLTGODE2(int(node)), dtype=np.int32)[3:]
+    rows = np.full(4, n + data.GetNodeLTGAE(int(node))[0], dtype=np.int32)
+    reference = np.array(mbs.GetNode(node)["referenceCoordinates"], dtype=float)[3:]
+
+    def part(mbs, *factors):
+        slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
+        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
+
+    return part

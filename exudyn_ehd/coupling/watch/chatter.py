@@ -1,0 +1,95 @@
+"""Explicit integrators beyond their stability limit, recognised from the accepted steps of a joint.
+
+A film is a damper C between masses: beyond h C / m = 2 (forward Euler), 2.51 (RK33) or 2.79 (RK44) the journal's velocity is a product of
+the step size h. The film's stiffening keeps it finite, so that the journal chatters about a wrong place. What tells is that velocities
+are no longer the rates of the positions: with the displacement d of a step and the velocities v0, v1 at its ends,
+
+    s = |d - h (v0 + v1) / 2| / (h max(|v0|, |v1|))
+
+is |sin(a) / a - cos(a)|, a = pi / n, for an oscillation with n steps per period: 0.05 at eight, 0.19 at four, 0.64 at two. For
+v' = -lambda v a Runge-Kutta method has d = h v0 (1 - R) / z, with z = h lambda and its stability function R(z): s = |(1 - R) / z - (1 + R) / 2| is
+2 / z at the limit R = -1 and 1 at the limit R = 1, however slow the growth. Single steps of that kind belong to impacts, and
+those that die away to transients that end within some steps: neither counts.
+
+Far beyond the limit a step throws the journal out of the thin film, where its damping is a hundredth; it flies back for some
+well resolved steps and is thrown again, each time by another amount. Film and walls slow a journal down: a step that is
+not resolved and makes it faster is such a kick, and kicks in short succession count however unequal they are.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.coupling.record.history import eccentricity_ratios
+
+# Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
+UNRESOLVED = 0.25
+# Position error below which a step counts as resolved, share of the gap (or of a hundredth of the clearance), and m: rounding of
+# positions some metres from the origin stays below.
+SMALLEST_SHARE, SMALLEST_GAP_SHARE, ROUNDING = 1e-6, 1e-2, 1e-14
+# A step counts if its error is still so large a share of the largest one before, which fades by so much per step.
+LASTING_SHARE, FADING = 0.15, 0.99
+# A step that counts adds two, any other takes one.
+LIMIT = 32
+# A step is a kick if it makes the journal faster by this factor; a kick adds seven and any other step takes one, so that one in eight lasts.
+KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
+
+
+class ChatterWatch:
+    """Watches one joint under an explicit solver.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+
+    Attributes
+    ----------
+    error : float
+        |d - h (v0 + v1) / 2| of the last step, m; tilts count by half the length.
+    """
+
+    def __init__(self, bearing: Any) -> None:
+        self.clearance = bearing.radial_clearance
+        self.lever = 0.5 * bearing.length
+        self.begin_anew()
+
+    def begin_anew(self) -> None:
+        """Forget all steps."""
+        self.time = np.inf
+        self.place = self.rate = np.zeros(4)
+        self.error = self.largest = 0.0
+        self.score = self.kicks = 0
+
+    def sees_chatter(self, time: float, motion: np.ndarray) -> bool:
+        """Take an accepted state; whether the last steps were not resolved.
+
+        Parameters
+        ----------
+        time : float
+            s.
+        motion : (10,) array
+            In the joint frame.
+        """
+        place, rate = motion[:4].copy(), motion[4:8].copy()
+        place[2:] *= self.lever
+        rate[2:] *= self.lever
+        step, before, rate_before = time - self.time, self.place, self.rate
+        self.time, self.place, self.rate = time, place, rate
+        if not step > 0.0:
+            self.error = self.largest = 0.0
+            self.score = self.kicks = 0
+            return False
+        mismatch = place - before - 0.5 * step * (rate + rate_before)
+        self.error = float(np.sqrt(mismatch @ mismatch))
+        speed, speed_before = float(np.sqrt(rate @ rate)), float(np.sqrt(rate_before @ rate_before))
+        gap = 1.0 - eccentricity_ratios(motion, self.clearance, 2.0 * self.lever)[1]
+        smallest = max(ROUNDING, SMALLEST_SHARE * self.clearance * max(gap, SMALLEST_GAP_SHARE))
+        self.largest = max(self.error, FADING * self.largest)
+        unresolved = self.error > max(UNRESOLVED * step * max(speed, speed_before), smallest)
+        counts = unresolved and self.error > LASTING_SHARE * self.largest
+        self.score = self.score + 2 if counts else max(self.score - 1, 0)
+        kick = unresolved and speed > KICK * speed_before
+        self.kicks = self.kicks + KICK_WEIGHT if kick else max(self.kicks - 1, 0)
+        return self.score >= LIMIT or self.kicks >= KICK_LIMIT

@@ -1,0 +1,84 @@
+"""Steps that are too coarse for a film, rejected through Exudyn's own step size control."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.coupling.watch import solver_state as solvers
+from exudyn_ehd.status import InputError, require_number
+
+# Gap beside which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the clearance.
+SMALLEST_GAP_SHARE = 1e-3
+ROUGHNESSES = 4.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class StepControl:
+    """Limits what an implicit step may do to the film.
+
+    Newton may well converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
+    once: the motion is then wrong, without a sign. With a step control such a step is answered like a film that can't be
+    evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest
+    step size every step is accepted. Explicit and static solvers are not touched.
+
+    Parameters
+    ----------
+    largest_gap_change : float
+        Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the step (or of
+        the contact's range, if that is larger); 0.01 to 1.
+    """
+
+    largest_gap_change: float = 0.25
+
+    def __post_init__(self) -> None:
+        require_number("StepControl.largest_gap_change", self.largest_gap_change, at_least=0.01)
+        if self.largest_gap_change > 1.0:
+            raise InputError(
+                f"StepControl.largest_gap_change must be within 0.01 and 1, got {self.largest_gap_change!r}; leave the control out "
+                "with stepControl=None."
+            )
+
+
+class GapWatch:
+    """A `StepControl` at work on one joint.
+
+    Parameters
+    ----------
+    control : StepControl
+    bearing : JournalBearing
+    """
+
+    def __init__(self, control: StepControl, bearing: Any) -> None:
+        self.share = control.largest_gap_change
+        self.clearance, self.length = bearing.radial_clearance, bearing.length
+        ranges = [SMALLEST_GAP_SHARE * self.clearance]
+        if getattr(bearing, "contact", None) is not None:
+            ranges.append(bearing.contact.onset)
+        if getattr(bearing, "asperity", None) is not None:
+            ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
+        self.range = max(ranges)
+        self.gap = np.nan
+        self.rejections = 0
+
+    def start(self, motion: np.ndarray) -> None:
+        """Remember the gap at the start of a step."""
+        self.gap = self._gap(motion)
+
+    def rejects(self, motion: np.ndarray, solver: Any) -> bool:
+        """Whether the step to this motion is too coarse and can be repeated."""
+        # not true for a gap that is not finite: the film itself reports that
+        too_far = abs(self._gap(motion) - self.gap) > self.share * max(self.gap, self.range)
+        if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
+            return False
+        if not solvers.can_reject_step(solver):
+            return False
+        self.rejections += 1
+        return True
+
+    def _gap(self, motion: np.ndarray) -> float:
+        return self.clearance * (1.0 - eccentricity_ratios(motion, self.clearance, self.length)[1])

@@ -1,0 +1,382 @@
+"""Solver for the mass-conserving film that takes the cavity as what it is: oil carried along, by the film's own motion, on one way.
+
+With the pressures P of the full vertices and the fills of the cavitated ones the balance of `exudyn_ehd.film.cavitation.elrod_adams` reads
+
+    A P - E w = b,    D fill = U fill + K (P - Pc) + c,    w = R fill.
+
+A is the symmetric matrix of the Poiseuille conductances between full vertices; they end at the cavity, where the ring is cut. D
+(diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K what the pressure drives in from full
+neighbours, and w, one number per vertex of the reformation front, what the front takes over from the cavity. As the carriers in theta and
+in z have one sign each, the fills follow from each other along the flow, ``fill = T (K (P - Pc) + c)`` with ``T = (D - U)^-1``, and
+
+    (I - G) w = R T (K (y - Pc) + c),    G = R T K V,    A y = b,    A V = E,    P = y + V w,
+
+is left: as many unknowns as the front has vertices, column diagonally dominant and non-negative in G (no pivoting), because no more oil
+comes round than the front has taken in. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same way backwards.
+
+Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs half a
+solution; then the cavitated ones along the flow, row by row. All of it depends on the sets alone.
+
+Not every film is of that kind: where a row is cavitated all around, or the front is long, the caller takes a band factor of the whole.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.columns import solve_columns_from
+from exudyn_ehd.film.banded.ldl import assemble_band, factor_band, number_along, solve_one
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+# Longest front in rows of the grid: beyond, V costs more than it spares.
+FRONT_ROWS = 2
+FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, TAKEN = range(6)
+
+
+class Transport(NamedTuple):
+    """Arrays of one factor, for a grid of ``size = n m`` vertices.
+
+    Attributes
+    ----------
+    shape : (6,) int array
+        Number of full vertices, of front vertices, columns of V, half-bandwidth of A, length of the lists K and R.
+    number : (n, m) int array
+        Unknown of a full vertex, else -1.
+    place : (n, m) int array
+        Place of a cavitated vertex along the flow, else -1.
+    along, across : (size,) int arrays
+        Place of the cavitated neighbour upstream in theta and in z, or -1.
+    by_along, by_across, inverse : (size,) arrays
+        U and 1 / D.
+    driven_from, driven_to, driven_by : (4 size,) arrays
+        K as a list: full unknown, place, conductance.
+    taken_from, taken_to, taken_by : (2 size,) arrays
+        R as a list: place, front vertex, flux of a full film.
+    front : (size,) int array
+        Full unknown of every front vertex, ascending.
+    band, diagonal : (size, >= 2 m + 6), (size,) arrays
+        Factor of A.
+    spread : (size * 2 (m + 2),) array
+        V, as (full vertices, columns).
+    loop : (2 (m + 2), 2 (m + 2)) array
+        Factor L U of I - G, unit L.
+    """
+
+    shape: np.ndarray
+    number: np.ndarray
+    place: np.ndarray
+    along: np.ndarray
+    across: np.ndarray
+    by_along: np.ndarray
+    by_across: np.ndarray
+    inverse: np.ndarray
+    driven_from: np.ndarray
+    driven_to: np.ndarray
+    driven_by: np.ndarray
+    taken_from: np.ndarray
+    taken_to: np.ndarray
+    taken_by: np.ndarray
+    front: np.ndarray
+    band: np.ndarray
+    diagonal: np.ndarray
+    spread: np.ndarray
+    loop: np.ndarray
+
+
+def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
+    """Buffers for a grid of n columns and m rows; ``band`` (n m, >= 2 m + 6) is taken over."""
+    size, longest = n * m, FRONT_ROWS * (m + 2)
+
+    def places(count: int) -> np.ndarray:
+        return np.zeros(count, dtype=np.int64)
+
+    return Transport(
+        places(6), np.zeros((n, m), dtype=np.int64), np.zeros((n, m), dtype=np.int64), places(size), places(size),
+        np.zeros(size), np.zeros(size), np.zeros(size), places(4 * size), places(4 * size), np.zeros(4 * size),
+        places(2 * size), places(2 * size), np.zeros(2 * size), places(size), band, np.zeros(size),
+        np.zeros(size * longest), np.zeros((longest, longest)),
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def flow_direction(f):
+    """1 or -1 if no link carries oil the other way, 0 if some do."""
+    least = 0.0
+    most = 0.0
+    for i in range(f.shape[0]):
+        for j in range(f.shape[1]):
+            least = min(least, f[i, j])
+            most = max(most, f[i, j])
+    if least >= 0.0:
+        return 1
+    return -1 if most <= 0.0 else 0
+
+
+@njit(cache=True)
+def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
+    """Append the cavitated vertices to ``order`` along the flow; returns their number, -1 if oil goes round in one of the rows."""
+    n, m = full.shape
+    placed = 0
+    for row in range(m):
+        j = row if across > 0 else m - 1 - row
+        first = -1
+        ruptured = False
+        for i in range(n):
+            place_out[i, j] = -1
+            if full[i, j] or fixed[i, j]:
+                first = i
+            else:
+                ruptured = True
+        if not ruptured:
+            continue
+        if first < 0:
+            for i in range(n):
+                if fx[(i - 1 + n) % n if along > 0 else i, j] == 0.0:
+                    first = i
+                    break
+            if first < 0:
+                return -1
+        for s in range(n):
+            i = (first + along * s + n) % n
+            if not (full[i, j] or fixed[i, j]):
+                place_out[i, j] = placed
+                order[count + placed] = i * m + j
+                placed += 1
+    return placed
+
+
+@njit(cache=True)
+def _gather(kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, count, placed, P, t, x_out):
+    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R; returns the number of front vertices, -1 for a singular D."""
+    n, m = H.shape
+    driven = taken = fronts = 0
+    for r in range(count + placed):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        is_full = full[i, j]
+        c = r - count
+        if inverse_step > 0.0:
+            rhs = area[i, j] * mass_old[i, j] * inverse_step
+            store = area[i, j] * H[i, j] * inverse_step
+        else:
+            rhs = 0.0
+            store = area[i, j] * H_t[i, j]
+        along = across = -1
+        by_along = by_across = 0.0
+        fresh = True
+        for side in range(4):
+            if side == 0:
+                a, b, k, inflow = prv, j, kx[prv, j], fx[prv, j]
+            elif side == 1:
+                a, b, k, inflow = nxt, j, kx[i, j], -fx[i, j]
+            elif side == 2:
+                if j == 0:
+                    continue
+                a, b, k, inflow = i, j - 1, kz[i, j - 1], fz[i, j - 1]
+            else:
+                if j + 1 == m:
+                    break
+                a, b, k, inflow = i, j + 1, kz[i, j], -fz[i, j]
+            known = fixed[a, b]
+            if is_full:
+                if known:
+                    rhs += k * P[a, b]
+                elif not full[a, b]:
+                    rhs += k * pc
+            elif known:
+                rhs += k * (P[a, b] - pc)
+            elif full[a, b] and k != 0.0:
+                rhs -= k * pc
+                t.driven_from[driven] = t.number[a, b]
+                t.driven_to[driven] = c
+                t.driven_by[driven] = k
+                driven += 1
+            if inflow <= 0.0:
+                store -= inflow
+            elif known or full[a, b]:
+                rhs += inflow
+            elif is_full:
+                if fresh:
+                    t.front[fronts] = r
+                    fronts += 1
+                    fresh = False
+                t.taken_from[taken] = t.place[a, b]
+                t.taken_to[taken] = fronts - 1
+                t.taken_by[taken] = inflow
+                taken += 1
+            elif side < 2:
+                along = t.place[a, b]
+                by_along = inflow
+            else:
+                across = t.place[a, b]
+                by_across = inflow
+        if is_full:
+            x_out[r] = rhs - store
+            continue
+        if not abs(store) > 1e-300:
+            return -1
+        x_out[r] = rhs
+        t.along[c] = along
+        t.across[c] = across
+        t.by_along[c] = by_along
+        t.by_across[c] = by_across
+        t.inverse[c] = 1.0 / store
+    t.shape[DRIVEN] = driven
+    t.shape[TAKEN] = taken
+    return fronts
+
+
+@njit(cache=True)
+def _carry(t, placed, P, fill):
+    """fill = T (K P + fill), in place, for one film."""
+    e = 0
+    driven = t.shape[DRIVEN]
+    for c in range(placed):
+        s = fill[c]
+        while e < driven and t.driven_to[e] == c:
+            s += t.driven_by[e] * P[t.driven_from[e]]
+            e += 1
+        if t.along[c] >= 0:
+            s += t.by_along[c] * fill[t.along[c]]
+        if t.across[c] >= 0:
+            s += t.by_across[c] * fill[t.across[c]]
+        fill[c] = s * t.inverse[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _carry_columns(t, placed, P, fill_out):
+    """fill_out = T K P, for every column of P (full vertices, sides)."""
+    e = 0
+    driven = t.shape[DRIVEN]
+    sides = P.shape[1]
+    for c in range(placed):
+        target = fill_out[c]
+        inverse = t.inverse[c]
+        if t.along[c] >= 0:
+            f = t.by_along[c] * inverse
+            known = fill_out[t.along[c]]
+            for q in range(sides):
+                target[q] = f * known[q]
+        else:
+            for q in range(sides):
+                target[q] = 0.0
+        if t.across[c] >= 0:
+            f = t.by_across[c] * inverse
+            known = fill_out[t.across[c]]
+            for q in range(sides):
+                target[q] += f * known[q]
+        while e < driven and t.driven_to[e] == c:
+            k = t.driven_by[e] * inverse
+            known = P[t.driven_from[e]]
+            for q in range(sides):
+                target[q] += k * known[q]
+            e += 1
+
+
+@njit(cache=True, fastmath=_FAST)
+def _factor_loop(t, placed):
+    """I - G, factored; False if a pivot vanishes."""
+    count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
+    loop = t.loop
+    fill = np.empty((placed, stride))
+    _carry_columns(t, placed, t.spread[: count * stride].reshape(count, stride), fill)
+    for a in range(fronts):
+        for b in range(fronts):
+            loop[a, b] = 1.0 if a == b else 0.0
+    for e in range(t.shape[TAKEN]):
+        row = loop[t.taken_to[e]]
+        known = fill[t.taken_from[e]]
+        f = t.taken_by[e]
+        for b in range(fronts):
+            row[b] -= f * known[b]
+    for k in range(fronts):
+        if not abs(loop[k, k]) > 1e-300:
+            return False
+        inverse = 1.0 / loop[k, k]
+        for a in range(k + 1, fronts):
+            f = loop[a, k] * inverse
+            loop[a, k] = f
+            for b in range(k + 1, fronts):
+                loop[a, b] -= f * loop[k, b]
+    return True
+
+
+@njit(cache=True)
+def factor_transport(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, P, t, x_out
+):  # fmt: skip
+    """Factor for the given sets; returns (ok, number of unknowns).
+
+    Parameters
+    ----------
+    kx, ..., pc, P
+        As in `exudyn_ehd.film.cavitation.elrod_adams.solve_elrod`.
+    full : (n, m) bool array
+        Full vertices that are not prescribed.
+    along, across : int
+        `flow_direction` of fx and fz, not 0.
+    order : (n m,) int array
+        Out: flat vertex of every unknown.
+    t : Transport
+        Out.
+    x_out : (n m,) array
+        Right-hand sides b and c.
+    """
+    # against the flow
+    count, width = number_along(full, kx, -along, order, t.number)
+    placed = _order_cavity(full, fixed, fx, along, across, count, order, t.place)
+    if placed < 0:
+        return False, 0
+    fronts = _gather(
+        kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, count, placed, P, t, x_out
+    )
+    if fronts < 0 or fronts > t.loop.shape[0]:
+        return False, 0
+    stride = fronts + -fronts % 4
+    t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE], t.shape[WIDTH] = count, fronts, stride, width
+    assemble_band(kx, kz, t.number, order, count, width, 0, t.band)
+    if not factor_band(t.band, count, width, 0, t.diagonal):
+        return False, 0
+    if fronts > 0:
+        V = t.spread[: count * stride].reshape(count, stride)
+        V[:] = 0.0
+        for b in range(fronts):
+            V[t.front[b], b] = 1.0
+        solve_columns_from(t.front[0], t.band, t.band, t.diagonal, True, count, width, V)
+        if not _factor_loop(t, placed):
+            return False, 0
+    return True, count + placed
+
+
+@njit(cache=True)
+def solve_transport(t, unknowns, x):
+    """Solve for one right-hand side x (unknowns,), in place."""
+    count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
+    placed = unknowns - count
+    P, fill = x[:count], x[count:unknowns]
+    solve_one(t.band, t.diagonal, count, t.shape[WIDTH], P)
+    if fronts > 0:
+        trial = fill.copy()
+        _carry(t, placed, P, trial)
+        w = np.zeros(fronts)
+        for e in range(t.shape[TAKEN]):
+            w[t.taken_to[e]] += t.taken_by[e] * trial[t.taken_from[e]]
+        for a in range(fronts):
+            for b in range(a):
+                w[a] -= t.loop[a, b] * w[b]
+        for a in range(fronts - 1, -1, -1):
+            for b in range(a + 1, fronts):
+                w[a] -= t.loop[a, b] * w[b]
+            w[a] /= t.loop[a, a]
+        V = t.spread[: count * stride].reshape(count, stride)
+        for r in range(count):
+            s = 0.0
+            for b in range(fronts):
+                s += V[r, b] * w[b]
+            P[r] += s
+    _carry(t, placed, P, fill)

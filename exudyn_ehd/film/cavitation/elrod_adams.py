@@ -1,0 +1,354 @@
+"""Mass-conserving cavitation (Jakobsson-Floberg-Olsson condition in the form of Elrod and Adams).
+
+Every vertex is either full (``P >= Pc``, fill = 1, unknown P) or cavitated (``P = Pc``, 0 <= fill <= 1, unknown fill). Its
+balance is
+
+    sum over links of [k (P - P_neighbour) + f fill_upstream] + area (fill H - (fill H)_old) / dt = 0,
+
+with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), backward Euler in the
+mass (fill H), whose old value is the film's history. Without a history the film is steady and the last term is
+``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth Newton method in
+one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so that the film exists
+and is unique. Should the sets not settle, the steady film is approached through growing pseudo time steps, whose storage
+makes the matrices dominant enough.
+
+Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows the oil through the cavity and is left
+with a symmetric film, and for the rest (oil that goes round in a cavity, fronts longer than a few columns) a band of the folded ring.
+The sets alone decide which.
+
+Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
+Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58 (2015) 18.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.ldl import PAD, Workspace, number_cells, solve_four_by_dots, solve_one
+from exudyn_ehd.film.banded.lu import factor_lu, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.banded.tiles import solve_in_tiles
+from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
+from exudyn_ehd.film.cavitation.cavity_transport import (
+    FULL_COUNT,
+    WIDTH,
+    Transport,
+    factor_transport,
+    flow_direction,
+    solve_transport,
+    transport_buffers,
+)
+from exudyn_ehd.film.cavitation.closures import FilmSystem, SwiftStieber
+from exudyn_ehd.status import Status, require_number
+
+MAX_NEWTON_STEPS = 60
+MAX_PSEUDO_STEPS = 60
+SET_TOLERANCE = 1e-12
+# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no such film exists.
+LARGEST_DEFICIT = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElrodAdams:
+    """Mass-conserving cavitation: rupture and reformation, with the oil content of the cavity as history.
+
+    For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a joint it
+    needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity pressure.
+
+    Parameters
+    ----------
+    cavity_pressure : float
+        Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
+    """
+
+    cavity_pressure: float = 0.0
+
+    cavity_shear = 1.0
+    conserves_mass = True
+    clips = False
+
+    def __post_init__(self) -> None:
+        require_number("ElrodAdams.cavity_pressure", self.cavity_pressure, "Pa")
+
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
+        """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
+        steps = 0
+        if not work.warm:
+            np.logical_not(system.fixed, out=work.active)
+            steps = SwiftStieber().solve(system, work)[1]
+            system.fill[:] = 1.0
+        was_warm = work.warm
+        ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
+        steps += count
+        if not ok and was_warm:
+            # A film at rest leaves the fill of a cavity of the warm start open; its closing side is a full film.
+            np.logical_not(system.fixed, out=work.active)
+            ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
+            steps += count
+        if not ok:
+            ok, count = self._pseudo_transient(system, work)
+            steps += count
+        work.warm = ok
+        return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
+
+    def _newton(
+        self,
+        s: FilmSystem,
+        work: Workspace,
+        inverse_step: float,
+        mass_old: np.ndarray,
+    ) -> tuple[bool, int]:
+        lower, upper = _lu_buffers(work)
+        ok, steps, work.count, work.width, work.carried = solve_elrod(
+            s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, inverse_step, mass_old, s.fixed, s.cavity_pressure,
+            work.active, work.order, work.number, lower, upper, work.inv_diag, _transport(work), work.unknowns, s.pressure,
+            s.fill,
+        )  # fmt: skip
+        return ok, steps
+
+    def _pseudo_transient(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
+        """Implicit steps towards the target, from short to long and from a full film; the last one is the target itself."""
+        largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
+        largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
+        rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
+        if rate == 0.0:
+            rate = 1.0
+        mass = s.mass_old if s.inverse_step > 0.0 else s.H.copy()
+        np.logical_not(s.fixed, out=work.active)
+        s.fill[:] = 1.0
+        extra, total = 4.0 * rate, 0
+        for _ in range(MAX_PSEUDO_STEPS):
+            inverse = s.inverse_step + extra
+            blend = (s.inverse_step * s.mass_old + extra * mass) / inverse
+            ok, steps = self._newton(s, work, inverse, blend)
+            total += steps
+            if ok:
+                mass = s.fill * s.H
+                extra *= 0.5
+                if extra < 1e-6 * rate:
+                    ok, steps = self._newton(s, work, s.inverse_step, s.mass_old)
+                    return ok, total + steps
+            else:
+                extra *= 8.0
+        return False, total
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the transposed system for every row of rhs (k, count), in place."""
+        if work.carried:
+            t = _transport(work)
+            if t.shape[FULL_COUNT] < work.count:
+                reduce_transposed(t, work.count, rhs)
+            fours = rhs.shape[0] - rhs.shape[0] % 4
+            for k in range(0, fours, 4):
+                solve_four_by_dots(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k : k + 4])
+            for k in range(fours, rhs.shape[0]):
+                solve_one(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k])
+            return
+        lower, upper = _lu_buffers(work)
+        solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)
+
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the transposed system for every column of tiles rhs, in place."""
+        if work.carried:
+            for tile in rhs:
+                solve_transport_transposed(_transport(work), work.count, tile[: work.count])
+            return
+        lower, upper = _lu_buffers(work)
+        solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the system of the last solution for rhs (count,), in place."""
+        if work.carried:
+            solve_transport(_transport(work), work.count, rhs)
+            return
+        lower, upper = _lu_buffers(work)
+        solve_lu(lower, upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
+
+
+def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
+    """The workspace's L and U, allocated when first needed."""
+    if work.lower is None or work.upper is None:
+        n, m = work.shape
+        work.lower = np.zeros((n * m, 2 * m + 2 + PAD))
+        work.upper = np.zeros((n * m, 2 * m + 2 + PAD))
+    return work.lower, work.upper
+
+
+def _transport(work: Workspace) -> Transport:
+    """The workspace's factor along the flow, allocated when first needed; it shares the symmetric band."""
+    if work.transport is None:
+        work.transport = transport_buffers(*work.shape, work.band)
+    return work.transport
+
+
+@njit(cache=True)
+def _add_entry(lower, upper, row, col, value):
+    if col >= row:
+        upper[row, col - row] += value
+    else:
+        lower[col, row - col] += value
+
+
+@njit(cache=True)
+def _add_link(full_a, full_b, fixed_a, fixed_b, Pa, Pb, ra, rb, k, f, pc, lower, upper, rhs):
+    """One link a -> b: Poiseuille k (Pa - Pb) and Couette f fill_up; ra, rb are unknowns or -1."""
+    # Poiseuille part: pressure is an unknown at full vertices, known (prescribed or pc) elsewhere.
+    if ra >= 0 and full_a:
+        upper[ra, 0] += k
+        if rb >= 0:
+            _add_entry(lower, upper, rb, ra, -k)
+    else:
+        known = Pa if fixed_a else pc
+        if ra >= 0:
+            rhs[ra] -= k * known
+        if rb >= 0:
+            rhs[rb] += k * known
+    if rb >= 0 and full_b:
+        upper[rb, 0] += k
+        if ra >= 0:
+            _add_entry(lower, upper, ra, rb, -k)
+    else:
+        known = Pb if fixed_b else pc
+        if rb >= 0:
+            rhs[rb] -= k * known
+        if ra >= 0:
+            rhs[ra] += k * known
+    # Couette part: fill of the upstream vertex, an unknown if that one is cavitated.
+    if f >= 0.0:
+        up, up_full = ra, full_a
+    else:
+        up, up_full = rb, full_b
+    if up >= 0 and not up_full:
+        if ra >= 0:
+            _add_entry(lower, upper, ra, up, f)
+        if rb >= 0:
+            _add_entry(lower, upper, rb, up, -f)
+    else:
+        if ra >= 0:
+            rhs[ra] -= f
+        if rb >= 0:
+            rhs[rb] += f
+
+
+@njit(cache=True)
+def assemble_elrod(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, number, count, width, P, lower, upper, rhs
+):  # fmt: skip
+    """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones."""
+    n, m = H.shape
+    for r in range(count):
+        rhs[r] = 0.0
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a = number[i, j]
+            b = number[nxt, j]
+            if (a >= 0 or b >= 0) and (kx[i, j] != 0.0 or fx[i, j] != 0.0):
+                _add_link(
+                    full[i, j], full[nxt, j], fixed[i, j], fixed[nxt, j], P[i, j], P[nxt, j], a, b,
+                    kx[i, j], fx[i, j], pc, lower, upper, rhs,
+                )  # fmt: skip
+            if j + 1 < m:
+                b = number[i, j + 1]
+                if a >= 0 or b >= 0:
+                    _add_link(
+                        full[i, j], full[i, j + 1], fixed[i, j], fixed[i, j + 1], P[i, j], P[i, j + 1], a, b,
+                        kz[i, j], fz[i, j], pc, lower, upper, rhs,
+                    )  # fmt: skip
+            if a >= 0:
+                w = area[i, j]
+                if inverse_step > 0.0:
+                    rhs[a] += w * mass_old[i, j] * inverse_step
+                    s = w * H[i, j] * inverse_step
+                else:
+                    s = w * H_t[i, j]
+                if full[i, j]:
+                    rhs[a] -= s
+                else:
+                    upper[a, 0] += s
+
+
+@njit(cache=True)
+def _solve_sets(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower, upper,
+    inv_diag, t, x, P
+):  # fmt: skip
+    """Unknowns x for the given sets; returns (ok, count, width, carried)."""
+    if along != 0 and across != 0:
+        ok, count = factor_transport(
+            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, P, t, x
+        )
+        if ok:
+            solve_transport(t, count, x)
+            return True, count, 1, True
+    # oil also links columns that exchange no pressure flow (short bearings)
+    count, width = number_cells(np.logical_not(fixed), np.abs(kx) + np.abs(fx), order, number)
+    assemble_elrod(
+        kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full | fixed, number, count, width, P, lower,
+        upper, x,
+    )  # fmt: skip
+    if not factor_lu(lower, upper, count, width, inv_diag):
+        return False, count, width, False
+    solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+    return True, count, width, False
+
+
+@njit(cache=True)
+def solve_elrod(
+    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill
+):  # fmt: skip
+    """Newton on the sets; returns (ok, steps, count, width, carried). ``full`` is the start and, on return, the result.
+
+    ``t`` holds the factor if ``carried``, else ``lower``, ``upper`` and ``inv_diag`` do.
+    """
+    n, m = H.shape
+    for i in range(n):
+        for j in range(m):
+            if fixed[i, j]:
+                full[i, j] = False
+                fill[i, j] = 1.0
+    along = flow_direction(fx)
+    across = flow_direction(fz)
+    for step in range(MAX_NEWTON_STEPS):
+        ok, count, width, carried = _solve_sets(
+            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower,
+            upper, inv_diag, t, x, P,
+        )  # fmt: skip
+        if not ok:
+            return False, step + 1, count, width, carried
+        peak = 0.0
+        for r in range(count):
+            if full[order[r] // m, order[r] % m]:
+                peak = max(peak, abs(x[r] - pc))
+        changes = 0
+        for r in range(count):
+            i = order[r] // m
+            j = order[r] % m
+            if full[i, j]:
+                P[i, j] = x[r]
+                fill[i, j] = 1.0
+                if x[r] < pc - SET_TOLERANCE * peak:
+                    full[i, j] = False
+                    changes += 1
+            else:
+                P[i, j] = pc
+                fill[i, j] = x[r]
+                if x[r] > 1.0 + SET_TOLERANCE:
+                    full[i, j] = True
+                    changes += 1
+        if changes == 0:
+            sound = True
+            for i in range(n):
+                for j in range(m):
+                    if full[i, j]:
+                        P[i, j] = max(P[i, j], pc)
+                    else:
+                        sound = sound and fill[i, j] > -LARGEST_DEFICIT
+                        fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
+            return sound, step + 1, count, width, carried
+    return False, MAX_NEWTON_STEPS, count, width, carried

@@ -1,0 +1,12 @@
+"""Oil.
+
+Module map
+----------
+lubricant              what a scene names
+named_oils             viscosity grades
+pressure_viscosity     Barus, Roelands and the Kirchhoff transform
+temperature_viscosity  Reynolds, Vogel, Walther
+shear_thinning         Carreau
+density                Dowson-Higginson
+density_field          kernels of that law
+"""

@@ -1,0 +1,382 @@
+"""Compressible film: the density follows the pressure, on any closure.
+
+With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of `exudyn_ehd.film.lubricant.density`, scaled to P, the mass balance
+of a control volume reads
+
+    sum over its links of (sigma V H - H^3 dP/ds) + d(rho fill H)/dt area = 0,
+
+the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled form of
+`exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's ends (second order) times the fill of its upstream end. The closures
+are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over the whole film, cut off afterwards; the density
+answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
+
+Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history there is no rate
+of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as the strain of the oil, dp / K
+with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H: 1 % for 10 MPa during which the gap
+changes by half. The rates at an instant (a history without a time step) leave it out likewise. A flooded start
+holds oil of ambient density, so that its film builds up the pressure over some steps.
+
+Newton's method with the exact non-symmetric matrix starts from the last film, else from the incompressible one. Should it fail, the
+density's departure from a constant is switched on in steps. Oil that no pressure of the law's range carries has no film.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.banded.lu import solve_lu
+from exudyn_ehd.film.banded.tiles import solve_in_tiles
+from exudyn_ehd.film.cavitation.elrod_adams import _lu_buffers
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
+from exudyn_ehd.film.reynolds.density_sweep import (
+    carry_density,
+    carry_density_plain,
+    dense_link_derivatives,
+    link_factors,
+)
+from exudyn_ehd.film.reynolds.flux import FluxEffect
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, flux_link_derivatives, plain_link_derivatives
+from exudyn_ehd.film.solvers.density_matrix import Balance, compressible_balance, dense_band
+from exudyn_ehd.film.solvers.density_newton import (
+    CLIPPED,
+    COMPLEMENTARY,
+    FILLED,
+    FULL,
+    Buffers,
+    factor_compressible,
+    raise_to,
+    solve_compressible,
+    solve_exact_transposed,
+)
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.status import Status
+
+SMALLEST_SHARE = 1.0 / 64.0
+# Share of the law's range at which a film that was not found presses against its end.
+AT_THE_END = 1.0 - 1e-9
+
+
+class CompressibleFilmSolver(FilmSolver):
+    """`FilmSolver` with a density that follows the pressure; flows are mass flows over the density at ambient pressure.
+
+    Parameters
+    ----------
+    grid, closure, squeeze, flux_effects
+        As for `FilmSolver`.
+    law : CompressibleLaw
+
+    Attributes
+    ----------
+    pressure_scale : float
+        Pa per unit of the scaled pressure; set by the caller before ``solve``.
+    rho : (n, m) array
+        Density over that at ambient pressure, of the last solution.
+    """
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        law: CompressibleLaw,
+        *,
+        squeeze: bool = True,
+        flux_effects: tuple[FluxEffect, ...] = (),
+    ) -> None:
+        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
+        shape = grid.shape
+        self.law, self.pressure_scale = law, 1.0
+        w, s = self.work, self.system
+        # without a history, what full films store grows with the gap
+        grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
+        self.film = Balance(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
+        lower, upper = _lu_buffers(w)
+        self.buffers = Buffers(
+            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
+            np.zeros(shape), np.zeros(shape),
+        )  # fmt: skip
+        self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
+        self.sigma_known = False
+        self.exact = False
+        self.held = False
+        if closure.conserves_mass:
+            self.kind = FILLED
+        elif closure.clips:
+            self.kind = CLIPPED
+        else:
+            self.kind = COMPLEMENTARY if np.isfinite(closure.cavity_pressure) else FULL
+
+    @property
+    def rho(self) -> np.ndarray:
+        """Density ratio of the last solution (n, m)."""
+        return self.buffers.rho
+
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled mass rho fill H of the last solution (n, m)."""
+        return self.rho * self._fill * self.H
+
+    @property
+    def _floor(self) -> float:
+        """Scaled pressure below which the density stays."""
+        return -np.inf if self.kind == FULL else self.system.cavity_pressure
+
+    @property
+    def _fill(self) -> np.ndarray:
+        return self.system.fill if self.closure.conserves_mass else self.ones
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """Solve for the gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        w = self.work
+        if mass_old is not None and step <= 0.0:
+            # What an instant keeps is the volume: a full film follows the gap with the density that its pressure gives it.
+            at_cavity = self.law.density.ratio(self._cavity_in_pascal(cavity_pressure))
+            mass_old = np.minimum(mass_old / at_cavity, self.H)
+        steps = 0
+        if w.warm:
+            self._prepare(vx, vz, cavity_pressure, mass_old, step)
+            ok, steps = self._newton(1.0)
+            if ok:
+                return self._finish(steps)
+        w.warm = self.held = False
+        status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
+        steps += count
+        w.warm = False
+        if status is not Status.CONVERGED:
+            return status, steps
+        if self.closure.conserves_mass:
+            self._set_store()
+        # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
+        out = self._reaches(self.law.kernel_table.highest)
+        ok, count = self._newton(1.0) if out else self._switch_on()
+        steps += count
+        if not ok:
+            out = out or self._reaches(AT_THE_END * self.law.kernel_table.highest)
+            return (Status.NO_PRESSURE if out else Status.NOT_CONVERGED), steps
+        return self._finish(steps)
+
+    def _reaches(self, transformed: float) -> bool:
+        """Whether the film's transformed pressure, Pa, reaches a value."""
+        return bool(np.any(self.system.linear_pressure * self.pressure_scale >= transformed))
+
+    def _cavity_in_pascal(self, cavity_pressure: float) -> np.ndarray:
+        q = np.array([[cavity_pressure * self.pressure_scale]])
+        p, ratio, slope = np.zeros((1, 1)), np.zeros((1, 1)), np.zeros((1, 1))
+        self.law.inverse(q, p, ratio, slope)
+        return p[0, 0]
+
+    def _prepare(self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None, step: float) -> None:
+        """Coefficients of this film, as `FilmSolver.solve` sets them."""
+        s = self.system
+        self.vx, self.vz = vx, vz
+        self._set_links()
+        s.cavity_pressure = cavity_pressure
+        if self.closure.clips:
+            s.linear_pressure[self.grid.fixed] = s.pressure[self.grid.fixed]
+        if self.closure.conserves_mass:
+            self._set_storage(mass_old, step)
+            self._set_store()
+
+    def _set_store(self) -> None:
+        """Coefficients of a mass-conserving film's storage term; see `Balance`."""
+        s, f = self.system, self.film
+        f.known[:] = 0.0
+        f.kept[:] = 0.0
+        if s.inverse_step > 0.0:
+            np.multiply(self.H, s.inverse_step, out=f.grow)
+            np.multiply(s.mass_old, -s.inverse_step, out=f.known if self.instant else f.kept)
+        else:
+            np.copyto(f.grow, self.H_t if self.squeeze else self.nothing)
+
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        self.held = False
+        super().refresh_fixed()
+
+    def _newton(self, share: float) -> tuple[bool, int]:
+        s, w = self.system, self.work
+        ok, steps, self.exact, w.count, w.width = solve_compressible(
+            self.film, self.pressure_scale, s.cavity_pressure, self.kind, self.law.kernel_table, share, self.held, w.count,
+            w.width, w.active, self.buffers, s.linear_pressure, self._fill,
+        )  # fmt: skip
+        self.held = ok
+        return ok, steps
+
+    def _switch_on(self) -> tuple[bool, int]:
+        """The law at once, or in steps from the constant density of the present film."""
+        s, w = self.system, self.work
+        done, share, total = 0.0, 1.0, 0
+        start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
+        while done < 1.0:
+            ok, steps = self._newton(min(1.0, done + share))
+            total += steps
+            if ok:
+                done = min(1.0, done + share)
+                start = s.linear_pressure.copy(), s.fill.copy(), w.active.copy()
+                share *= 2.0
+                continue
+            if self._reaches(AT_THE_END * self.law.kernel_table.highest):
+                return False, total
+            s.linear_pressure[:], s.fill[:], w.active[:] = start
+            share *= 0.25
+            if share < SMALLEST_SHARE:
+                return False, total
+        return True, total
+
+    def _finish(self, steps: int) -> tuple[Status, int]:
+        """Clip what the closure clips; factors of the Couette flows on the links."""
+        s, w, fixed = self.system, self.work, self.grid.fixed
+        P = s.linear_pressure
+        w.warm = True
+        if self.kind == CLIPPED:
+            np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
+            np.logical_and(~fixed, s.cavity_pressure <= P, out=w.active)
+        elif self.kind != FULL:
+            raise_to(P, fixed, s.cavity_pressure)
+            if self.kind == FILLED:
+                np.clip(s.fill, 0.0, 1.0, out=s.fill)
+        self.sigma_known = False
+        return Status.CONVERGED, steps
+
+    def _sigma(self) -> tuple[np.ndarray, np.ndarray]:
+        """Fill times density on the links in theta and z (n, m)."""
+        if not self.sigma_known:
+            s = self.system
+            link_factors(self._fill, self.rho, s.fx, s.fz, self.sigma_x, self.sigma_z)
+            self.sigma_known = True
+        return self.sigma_x, self.sigma_z
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of the last solution (n, m) with their derivatives to the transformed pressure.
+
+        False where that has no pressure.
+        """
+        s, b = self.system, self.buffers
+        if viscosity_at(
+            s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, b.known, b.rho, p_out, ratio_out, ratio_P_out,
+            p_P_out,
+        ):  # fmt: skip
+            return True
+        if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
+            return False
+        p_out /= self.pressure_scale
+        ratio_P_out *= self.pressure_scale
+        np.divide(ratio_out, self.rho, out=p_P_out)
+        return True
+
+    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure of the last solution (n, m) and its derivative to the transformed one; False where that has no pressure."""
+        s, table = self.system, self.law.kernel_table
+        if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.buffers.known, p_out, p_P_out):
+            return True
+        rest = np.empty((2, *p_out.shape))
+        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette mass flows of the links in theta and z, and the rate at which a full film's mass grows with its gap."""
+        sigma_x, sigma_z = self._sigma()
+        return self.system.fx * sigma_x, self.system.fz * sigma_z, self.rho * self.H_t
+
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled true pressures P; see `DowsonHigginson.flow_work`."""
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
+
+    def inflow(self) -> np.ndarray:
+        """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
+        balance = np.empty(self.grid.shape)
+        compressible_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
+        return np.where(self.grid.fixed, balance, 0.0)
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w = self.work
+        solve_exact_transposed(
+            self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
+            self.law.kernel_table, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs,
+        )  # fmt: skip
+        self.exact = True
+        fields = np.empty((rhs.shape[0], *self.grid.shape))
+        scatter(rhs, w.order, w.count, fields)
+        return fields
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
+
+    def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
+        """L and U of Newton's matrix at the solution, factored if the last one was before."""
+        w, b = self.work, self.buffers
+        if not self.exact:
+            factor_compressible(
+                self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
+                self.law.kernel_table, 1.0, self._unknown_pressure(), b,
+            )  # fmt: skip
+            self.exact = True
+        return dense_band(b.lower, w.count, w.width), dense_band(b.upper, w.count, w.width)
+
+    def _unknown_pressure(self) -> np.ndarray:
+        return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m)."""
+        d = self.link_derivatives()
+        by_rate, by_gap = self.storage_weights()
+        along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
+        half = -0.5 * across * d.DZ[:, :-1]
+        cell = -lam * by_gap
+        cell[:, :, :-1] += half
+        cell[:, :, 1:] += half
+        turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
+        sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
+        return Sensitivities(cell, -along * d.DX, -lam * by_rate, -np.stack([turning, sliding], axis=1))
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
+        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
+        if f is None and self.kind != FILLED:
+            dense_link_derivatives(
+                s.linear_pressure, self.rho, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x,
+                g.link_z, d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            return d
+        sigma_x, sigma_z = self._sigma()
+        if f is None:
+            plain_link_derivatives(
+                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            carry_density_plain(
+                sigma_x, sigma_z, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+            return d
+        flux_link_derivatives(
+            s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
+            self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
+        )  # fmt: skip
+        carry_density(
+            sigma_x, sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+            d.DX, d.DZ, d.SX, d.SZ,
+        )  # fmt: skip
+        return d
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s, content = self.system, self.area * self.rho
+        if self.kind == FILLED:
+            content *= s.fill
+        if s.inverse_step > 0.0 and not self.instant:
+            return self.nothing, content * s.inverse_step
+        return (content if self.squeeze else self.nothing), self.nothing

@@ -1,0 +1,347 @@
+"""Impedance map: the force of an aligned plain journal bearing from a table, in about a microsecond.
+
+For an aligned journal at e = (x, y) with the spin omega, the right side of the Reynolds equation is
+
+    omega / 2 dh/dtheta + dh/dt = -V . n,   V = (dx/dt + omega y / 2, dy/dt - omega x / 2),   n = (cos theta, sin theta):
+
+seen from a frame that turns with half the spin every motion is a pure squeeze with the velocity V (J. F. Booker, J. Basic
+Engineering 87 (1965) 537; D. Childs, H. Moes, H. van Leeuwen, J. Lubrication Technology 99 (1977) 198). With p = 0 at the ends
+and in the cavity the pressure is homogeneous of first degree in V and does not know the housing's orientation, so that
+
+    F = -(L D mu / psi^2) |V| / c  exp(m) (cos(phi_V + sign g), sin(phi_V + sign g)),   phi_V = angle of V,
+
+with two functions m, g of the eccentricity ratio eps and of the angle alpha in 0 .. pi between e and V; sign is that of the turn
+from e to V. They are smooth where the force itself changes by four orders of magnitude: the logarithm of the size and the
+deviation from the direction of V, over s = -ln(1 - eps), in which the size grows like a power of the gap. The error is thus
+relative to the force at that very state, also where the film nearly unloads (alpha above 90 degrees).
+
+m and g are bicubic Hermite functions on a uniform (s, alpha) grid with spline slopes (C1; the symmetries at alpha = 0, pi and at
+eps = 0 hold exactly), so that their derivatives are exact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.interpolate import CubicSpline
+
+from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.loads import pressure_integrals
+from exudyn_ehd.film.reynolds.gap import rigid_gap
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
+from exudyn_ehd.storage import Shapes, cached_arrays
+
+FORMAT = 2
+SAMPLES = 1000
+# Below this eccentricity ratio the direction of e is that of V; forces change by as much.
+SMALLEST_ECCENTRICITY = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpedanceMap:
+    """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
+
+    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states beyond
+    ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum gap, but no pressure. `steady` and
+    `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the cavity, the squeeze term, a closed
+    ring and no further effect.
+
+    Parameters
+    ----------
+    n_theta, n_z, stretch
+        Grid of the film behind the map, as for `FiniteLength`. The force's ripple with the snapping of the rupture line is the
+        map's largest error, so that n_theta is large.
+    largest_eccentricity_ratio : float
+        End of the table, 0.5 to 0.995.
+    n_eccentricity, n_direction : int
+        Nodes in eccentricity and in direction.
+    """
+
+    n_theta: int = 320
+    n_z: int = 10
+    stretch: float = 0.75
+    largest_eccentricity_ratio: float = 0.99
+    n_eccentricity: int = 41
+    n_direction: int = 81
+
+    circumferential_pressure_flow = True
+
+    def __post_init__(self) -> None:
+        require_integer("ImpedanceMap.n_theta", self.n_theta, at_least=64, hint="320 is a good start.")
+        require_integer("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
+        require_integer("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
+        require_integer("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
+        if require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0) > 0.95:
+            raise InputError(
+                f"ImpedanceMap.stretch must be within 0 and 0.95, got {self.stretch!r}; 0.75 suits most bearings."
+            )
+        largest = require_number(
+            "ImpedanceMap.largest_eccentricity_ratio", self.largest_eccentricity_ratio, at_least=0.5
+        )
+        if largest > 0.995:
+            raise InputError(
+                f"ImpedanceMap.largest_eccentricity_ratio must be within 0.5 and 0.995, got {largest:g}; closer to the wall use "
+                "film=FiniteLength(...) with a contact."
+            )
+
+
+@dataclass(frozen=True, eq=False)
+class ImpedanceTable:
+    """A built map.
+
+    Attributes
+    ----------
+    nodes : (n_eccentricity, n_direction, 8) array
+        m, dm/ds, dm/dalpha, d2m/ds dalpha, then g alike.
+    step_s, step_alpha : float
+        Node distances.
+    largest_eccentricity_ratio : float
+    worst_error, median_error : float
+        Of the force relative to the force of the film at the same state, over random states (eccentricity uniform in s,
+        every direction, every orientation of the film's grid).
+    samples : int
+        Number of those states.
+    """
+
+    nodes: np.ndarray
+    step_s: float
+    step_alpha: float
+    largest_eccentricity_ratio: float
+    worst_error: float
+    median_error: float
+    samples: int
+
+
+class _SqueezeFilm:
+    """Dimensionless squeeze force of the film behind a map: f with F = -(L D mu / psi^2) |V| / c f."""
+
+    def __init__(self, film: ImpedanceMap, closure: Closure, length_to_radius: float) -> None:
+        self.grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
+        self.solver = FilmSolver(self.grid, closure)
+        self.scale = 6.0 / length_to_radius
+        self.trig = [np.cos(self.grid.x), np.sin(self.grid.x), np.cos(self.grid.x_face), np.sin(self.grid.x_face)]
+
+    def force(self, eps: float, alpha: float, turn: float = 0.0) -> np.ndarray:
+        """f (2,) along e and across, for e at the angle ``turn`` of the grid and V at ``turn + alpha``."""
+        s, z, (cx, sx, cf, sf) = self.solver, self.grid.z, self.trig
+        pose = np.array([eps * math.cos(turn), eps * math.sin(turn), 0.0, 0.0])
+        rate = np.array([math.cos(turn + alpha), math.sin(turn + alpha), 0.0, 0.0])
+        rigid_gap(pose, cx, sx, z, 1.0, s.H)
+        rigid_gap(pose, cf, sf, z, 1.0, s.HF)
+        rigid_gap(rate, cx, sx, z, 0.0, s.H_t)
+        s.pressure[:, 0] = s.pressure[:, -1] = 0.0
+        status, _ = s.solve(0.0, 0.0, 0.0)
+        if status is not Status.CONVERGED:
+            raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
+        out = np.empty(4)
+        pressure_integrals(s.pressure, self.grid.weight, cx, sx, z, out)
+        c, d = math.cos(turn), math.sin(turn)
+        return self.scale * np.array([out[0] * c + out[1] * d, out[1] * c - out[0] * d])
+
+
+def build_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
+    """Solve the film on the nodes, fit, and measure the error at random states."""
+    squeeze = _SqueezeFilm(film, closure, length_to_radius)
+    s = np.linspace(0.0, -math.log(1.0 - film.largest_eccentricity_ratio), film.n_eccentricity)
+    alpha = np.linspace(0.0, math.pi, film.n_direction)
+    f = np.empty((s.size, alpha.size, 2))
+    for i, si in enumerate(s):
+        squeeze.solver.forget()
+        for j, a in enumerate(alpha):
+            f[i, j] = squeeze.force(1.0 - math.exp(-si), a)
+    m = np.log(np.hypot(f[..., 0], f[..., 1]))
+    g = np.arctan2(f[..., 1], f[..., 0]) - alpha
+    g = np.remainder(g + math.pi, 2.0 * math.pi) - math.pi
+    g[:, 0] = g[:, -1] = 0.0
+    nodes = _fit(s, alpha, m, g)
+    errors = _sample_errors(squeeze, nodes, s[1], alpha[1], float(s[-1]))
+    return ImpedanceTable(
+        nodes=nodes,
+        step_s=float(s[1]),
+        step_alpha=float(alpha[1]),
+        largest_eccentricity_ratio=film.largest_eccentricity_ratio,
+        worst_error=float(errors.max()),
+        median_error=float(np.median(errors)),
+        samples=errors.size,
+    )
+
+
+def _fit(s: np.ndarray, alpha: np.ndarray, m: np.ndarray, g: np.ndarray) -> np.ndarray:
+    """Node values and spline slopes; m even and g odd about alpha = 0 and pi, both smooth in the plane at eps = 0."""
+    m[0], g[0] = m[0].mean(), 0.0
+    nodes = np.empty((s.size, alpha.size, 8))
+    first = (np.cos(alpha), np.sin(alpha))
+    for k, (field, ends) in enumerate(((m, "clamped"), (g, "natural"))):
+        field_s = CubicSpline(s, field, axis=0)(s, 1)
+        # Next to the centre the fields are linear in (x, y): a multiple of cos alpha, or of sin alpha.
+        wave = first[k]
+        field_s[0] = wave * (field_s[0] @ wave) / (wave @ wave)
+        nodes[..., 4 * k] = field
+        nodes[..., 4 * k + 1] = field_s
+        nodes[..., 4 * k + 2] = CubicSpline(alpha, field, axis=1, bc_type=ends)(alpha, 1)
+        nodes[..., 4 * k + 3] = CubicSpline(alpha, field_s, axis=1, bc_type=ends)(alpha, 1)
+    return nodes
+
+
+def _sample_errors(
+    squeeze: _SqueezeFilm, nodes: np.ndarray, step_s: float, step_alpha: float, largest_s: float
+) -> np.ndarray:
+    rng = np.random.default_rng(1)
+    errors, out = np.empty(SAMPLES), np.empty(6)
+    for k in range(SAMPLES):
+        eps, alpha = 1.0 - math.exp(-rng.uniform(0.0, largest_s)), rng.uniform(0.0, math.pi)
+        squeeze.solver.forget()
+        exact = squeeze.force(eps, alpha, rng.uniform(0.0, 2.0 * math.pi))
+        interpolate(nodes, step_s, step_alpha, -math.log(1.0 - eps), alpha, out)
+        guess = math.exp(out[0]) * np.array([math.cos(alpha + out[3]), math.sin(alpha + out[3])])
+        errors[k] = np.linalg.norm(guess - exact) / np.linalg.norm(exact)
+    return errors
+
+
+@njit(cache=True)
+def interpolate(nodes, step_s, step_alpha, s, alpha, out):
+    """m, dm/ds, dm/dalpha, g, dg/ds, dg/dalpha -> out (6,); bicubic Hermite, exact derivatives."""
+    i = min(max(int(s / step_s), 0), nodes.shape[0] - 2)
+    j = min(max(int(alpha / step_alpha), 0), nodes.shape[1] - 2)
+    t = s / step_s - i
+    u = alpha / step_alpha - j
+    # Hermite weights (value at 0, value at 1, slope at 0, slope at 1) and their derivatives.
+    ht = ((1 + 2 * t) * (1 - t) ** 2, t * t * (3 - 2 * t), t * (1 - t) ** 2 * step_s, t * t * (t - 1) * step_s)
+    dt = (6 * t * (t - 1) / step_s, 6 * t * (1 - t) / step_s, (1 - t) * (1 - 3 * t), t * (3 * t - 2))
+    hu = ((1 + 2 * u) * (1 - u) ** 2, u * u * (3 - 2 * u), u * (1 - u) ** 2 * step_alpha, u * u * (u - 1) * step_alpha)
+    du = (6 * u * (u - 1) / step_alpha, 6 * u * (1 - u) / step_alpha, (1 - u) * (1 - 3 * u), u * (3 * u - 2))
+    for k in range(2):
+        value = 0.0
+        by_s = 0.0
+        by_alpha = 0.0
+        for a in range(2):
+            for b in range(2):
+                c = nodes[i + a, j + b]
+                f, fs, fa, fsa = c[4 * k], c[4 * k + 1], c[4 * k + 2], c[4 * k + 3]
+                along = f * ht[a] + fs * ht[a + 2]
+                along_a = fa * ht[a] + fsa * ht[a + 2]
+                value += along * hu[b] + along_a * hu[b + 2]
+                by_alpha += along * du[b] + along_a * du[b + 2]
+                by_s += (f * dt[a] + fs * dt[a + 2]) * hu[b] + (fa * dt[a] + fsa * dt[a + 2]) * hu[b + 2]
+        out[3 * k], out[3 * k + 1], out[3 * k + 2] = value, by_s, by_alpha
+
+
+@njit(cache=True)
+def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out, tangent_out):
+    """Force (2,) / (L D mu / psi^2) and its derivatives (2, 5) to (x, y, x_t, y_t, omega); x, y over c, rates in 1/s.
+
+    Without any velocity the tangent is that of a closing journal.
+    """
+    vx, vy = x_t + 0.5 * omega * y, y_t - 0.5 * omega * x
+    q = np.sqrt(vx * vx + vy * vy)
+    eps = np.sqrt(x * x + y * y)
+    at_rest = q < 1e-200
+    if at_rest:
+        q = 1.0
+        vx, vy = (x / eps, y / eps) if eps > 0.0 else (1.0, 0.0)
+    ex, ey = x, y
+    if eps < SMALLEST_ECCENTRICITY:
+        eps = SMALLEST_ECCENTRICITY
+        ex, ey = eps * vx / q, eps * vy / q
+    cross = ex * vy - ey * vx
+    alpha = np.arctan2(abs(cross), ex * vx + ey * vy)
+    sign = 1.0 if cross >= 0.0 else -1.0
+    out = np.empty(6)
+    interpolate(nodes, step_s, step_alpha, -np.log(1.0 - eps), alpha, out)
+    size = np.exp(out[0])
+    c, s = np.cos(sign * out[3]), np.sin(sign * out[3])
+    fx, fy = -size * (vx * c - vy * s), -size * (vy * c + vx * s)
+    for k in range(5):
+        # Direction of the derivative: dx, dy, then the velocities that follow.
+        dx, dy, dvx, dvy = 0.0, 0.0, 0.0, 0.0
+        if k == 0:
+            dx, dvy = 1.0, -0.5 * omega
+        elif k == 1:
+            dy, dvx = 1.0, 0.5 * omega
+        elif k == 2:
+            dvx = 1.0
+        elif k == 3:
+            dvy = 1.0
+        else:
+            dvx, dvy = 0.5 * y, -0.5 * x
+        if at_rest and k < 2:
+            tangent_out[0, k] = tangent_out[1, k] = 0.0
+            continue
+        turn_v = (vx * dvy - vy * dvx) / (q * q)
+        turn_e = (ex * dy - ey * dx) / (eps * eps)
+        ds = (ex * dx + ey * dy) / eps / (1.0 - eps)
+        da = sign * (turn_v - turn_e)
+        growth = (vx * dvx + vy * dvy) / (q * q) + out[1] * ds + out[2] * da
+        turn = turn_v + sign * (out[4] * ds + out[5] * da)
+        tangent_out[0, k] = fx * growth - fy * turn
+        tangent_out[1, k] = fy * growth + fx * turn
+    force_out[0] = 0.0 if at_rest else fx
+    force_out[1] = 0.0 if at_rest else fy
+
+
+@njit(cache=True)
+def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
+    """Wrench (6,) on the journal and its derivatives (6, 10) to the motion, SI units; tilts have none.
+
+    p = (step_s, step_alpha, largest eps, clearance, radius, half length, force scale, Couette scale, tilt share); returns 0, or
+    1 not finite, 2 outside the map, 3 no film, 4 tilted.
+    """
+    c, R = p[3], p[4]
+    x, y, omega, w = motion[0], motion[1], motion[8], motion[9]
+    wrench_out[:] = np.nan
+    tangent_out[:] = np.nan
+    if not np.isfinite(np.sum(motion)):
+        return 1
+    eps = np.sqrt(x * x + y * y) / c
+    if eps > p[2]:
+        return 2 if eps < 1.0 else 3
+    if p[5] * np.sqrt(motion[2] ** 2 + motion[3] ** 2) > p[8] * (1.0 - eps) * c:
+        return 4
+    f, f_d = np.empty(2), np.empty((2, 5))
+    impedance_force(nodes, p[0], p[1], x / c, y / c, motion[4] / c, motion[5] / c, omega, f, f_d)
+    fx, fy = p[6] * f[0], p[6] * f[1]
+    rest = 1.0 - eps * eps
+    couette = p[7] / np.sqrt(rest)
+    # Pressure on the gap's slope: half of e x F, the sum of (h / 2) dp / dtheta by parts.
+    wrench_out[0], wrench_out[1], wrench_out[2] = fx, fy, -couette * w
+    wrench_out[3] = wrench_out[4] = 0.0
+    wrench_out[5] = -couette * R * R * omega + 0.5 * (x * fy - y * fx)
+    tangent_out[:] = 0.0
+    for k, column in enumerate((0, 1, 4, 5, 8)):
+        scale = p[6] / c if k < 4 else p[6]
+        dx, dy = scale * f_d[0, k], scale * f_d[1, k]
+        tangent_out[0, column], tangent_out[1, column] = dx, dy
+        tangent_out[5, column] = 0.5 * (x * dy - y * dx)
+    slope = couette / (rest * c * c)
+    tangent_out[5, 0] += 0.5 * fy - R * R * omega * slope * x
+    tangent_out[5, 1] -= 0.5 * fx + R * R * omega * slope * y
+    tangent_out[5, 8] -= couette * R * R
+    tangent_out[2, 0], tangent_out[2, 1], tangent_out[2, 9] = -slope * w * x, -slope * w * y, -couette
+    return 0
+
+
+def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: float) -> ImpedanceTable:
+    """The map from the disk, or built and stored there; see `exudyn_ehd.storage`."""
+
+    def compute() -> dict[str, np.ndarray]:
+        t = build_table(film, closure, length_to_radius)
+        scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
+        return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
+
+    key = repr((FORMAT, film, type(closure).__name__, float(length_to_radius), SAMPLES))
+    shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
+    data = cached_arrays("impedance", key.encode(), shapes, compute)
+    v = data["scalars"]
+    return ImpedanceTable(
+        nodes=data["nodes"],
+        step_s=float(v[0]),
+        step_alpha=float(v[1]),
+        largest_eccentricity_ratio=float(v[2]),
+        worst_error=float(v[3]),
+        median_error=float(v[4]),
+        samples=int(v[5]),
+    )

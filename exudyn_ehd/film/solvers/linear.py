@@ -1,0 +1,400 @@
+"""One film on one grid: coefficients, closure, adjoint. The straight line gap -> coefficients -> pressure -> sensitivities."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.ldl import Workspace
+from exudyn_ehd.film.cavitation.closures import FilmSystem
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.reynolds.flux import (
+    FluxEffect,
+    LinkFlux,
+    conductances_from,
+    couette_fluxes_from,
+    flux_sensitivity,
+    link_flux,
+)
+from exudyn_ehd.film.reynolds.link_derivatives import (
+    LinkDerivatives,
+    conductance_link_derivatives,
+    flux_link_derivatives,
+    plain_link_derivatives,
+    take_upstream_fill,
+)
+from exudyn_ehd.film.reynolds.links import (
+    add_squeeze,
+    conductances,
+    couette_fluxes,
+    couette_sensitivity_fill,
+    link_flow_sensitivity,
+    right_hand_side,
+    speed_sensitivity,
+    vertex_balance,
+)
+from exudyn_ehd.status import Status
+
+# Stands for a vanishing time step where only the rates at one instant are asked for, s.
+INSTANT = 1e-9
+
+
+class Closure(Protocol):
+    """What a cavitation model offers; see `exudyn_ehd.film.cavitation.closures` and `exudyn_ehd.film.cavitation.elrod_adams`."""
+
+    @property
+    def cavity_pressure(self) -> float: ...
+
+    @property
+    def cavity_shear(self) -> float: ...
+
+    @property
+    def conserves_mass(self) -> bool: ...
+
+    @property
+    def clips(self) -> bool: ...
+
+    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
+
+    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
+
+
+@dataclass(eq=False)
+class Sensitivities:
+    """Gradients of k adjoint functionals.
+
+    Attributes
+    ----------
+    cell, face : (k, n, m) arrays
+        With respect to the gap at vertices and on the links i -> i+1.
+    rate : (k, n, m) array or None
+        With respect to the gap's rate at vertices; None if the film does not depend on it.
+    speed : (k, 2) array
+        With respect to (vx, vz).
+    """
+
+    cell: np.ndarray
+    face: np.ndarray
+    rate: np.ndarray | None
+    speed: np.ndarray
+
+
+class FilmSolver:
+    """Solves the film for gaps that the caller writes into ``H``, ``HF`` and ``H_t``.
+
+    Parameters
+    ----------
+    grid : FilmGrid
+    closure : Closure
+        `FullSommerfeld`, `Gumbel`, `SwiftStieber` or `ElrodAdams`.
+    circumferential_pressure_flow : bool
+        False drops the pressure flow in theta (short bearing).
+    squeeze : bool
+        False leaves the storage term out; ``H_t`` is then never read.
+    flux_effects : tuple of FluxEffect
+        What changes conductances and carriers; empty: the plain film.
+
+    Attributes
+    ----------
+    H, HF, H_t : (n, m) arrays
+        Scaled gap at vertices, gap on the links i -> i+1, rate of the gap at vertices (1/s).
+    pressure, fill : (n, m) arrays
+        Scaled pressure (prescribed where ``grid.fixed``) and, for closures that conserve mass, the film fraction.
+    """
+
+    # False where a film model has equations of its own, so that only `sensitivities` knows its gradients.
+    plain_links = True
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        *,
+        circumferential_pressure_flow: bool = True,
+        squeeze: bool = True,
+        flux_effects: tuple[FluxEffect, ...] = (),
+    ) -> None:
+        shape = grid.shape
+        self.grid = grid
+        self.closure = closure
+        self.squeeze = squeeze
+        self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
+        self.area = np.outer(grid.width_x, grid.width_z)
+        self.system = FilmSystem(shape, grid.fixed, self.area, clips=closure.clips, fills=closure.conserves_mass)
+        self.H, self.H_t = self.system.H, self.system.H_t
+        self.HF = np.ones(shape)
+        self.work = Workspace(*shape)
+        self.flux_effects = flux_effects
+        self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
+        self.ones = np.ones(shape)
+        self.nothing = np.zeros(shape)
+        self.link_fields = LinkDerivatives(shape)
+        self.vx = 0.0
+        self.vz = 0.0
+        self.instant = False
+        coarse = grid.coarser()
+        self.coarse: FilmSolver | None = None
+        if coarse is not None and not closure.clips and np.isfinite(closure.cavity_pressure):
+            self.coarse = FilmSolver(
+                coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
+            )
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Scaled pressure of the last solution (n, m)."""
+        return self.system.pressure
+
+    @property
+    def fill(self) -> np.ndarray:
+        """Film fraction of the last solution (n, m); empty if the closure does not conserve mass."""
+        return self.system.fill
+
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled oil content fill H of the last solution (n, m), for closures that conserve mass."""
+        return self.system.fill * self.H
+
+    def forget(self) -> None:
+        """Drop the warm start; the next solution starts from a coarser grid."""
+        self.work.warm = False
+
+    def refresh_fixed(self) -> None:
+        """Hand a change of ``grid.fixed`` on to the coarser grids."""
+        if self.coarse is not None:
+            self.coarse.grid.fixed[:] = self.grid.fixed[::2, ::2]
+            self.coarse.refresh_fixed()
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """Solve for the gaps now stored.
+
+        Parameters
+        ----------
+        vx, vz : float
+            Scaled mean surface speeds U / (2 R), 1/s.
+        cavity_pressure : float
+            Scaled cavity pressure, 1/s.
+        mass_old : (n, m) array, optional
+            Old value of fill H, for closures that conserve mass; None: a steady film.
+        step : float
+            Time since ``mass_old``, s; 0 asks for the rates at that instant.
+
+        Returns
+        -------
+        status, steps : Status, int
+            Outcome and number of linear solves.
+        """
+        g, s = self.grid, self.system
+        self.vx, self.vz = vx, vz
+        self._set_links()
+        right_hand_side(s.fx, s.fz, s.b)
+        if self.squeeze:
+            add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
+        s.cavity_pressure = cavity_pressure
+        if self.closure.clips:
+            np.copyto(s.linear_pressure, s.pressure)
+        if self.closure.conserves_mass:
+            self._set_storage(mass_old, step)
+        was_warm = self.work.warm
+        steps = self._guess_from_coarse(mass_old, step) if self.coarse is not None and not was_warm else 0
+        status, fine_steps = self.closure.solve(s, self.work)
+        if status is Status.NOT_CONVERGED and was_warm and self.coarse is not None:
+            # a start from another state can mislead where the film itself is benign
+            self.forget()
+            steps += fine_steps + self._guess_from_coarse(mass_old, step)
+            status, fine_steps = self.closure.solve(s, self.work)
+        return status, steps + fine_steps
+
+    def _set_links(self) -> None:
+        """Conductances and Couette fluxes of the links."""
+        g, s = self.grid, self.system
+        if self.flux is not None:
+            self._apply_flux_effects(self.flux)
+            return
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+
+    def _apply_flux_effects(self, f: LinkFlux) -> None:
+        g, s = self.grid, self.system
+        first, *others = self.flux_effects
+        first.start(f, self.H, self.vx, self.vz)
+        for effect in others:
+            effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
+        conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
+        couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+
+    def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
+        s = self.system
+        self.instant = mass_old is not None and step <= 0.0
+        if mass_old is None:
+            s.inverse_step = 0.0
+        elif self.instant:
+            s.inverse_step = 1.0 / INSTANT
+            s.mass_old[:] = mass_old * (1.0 - INSTANT * self.H_t / self.H)
+        else:
+            s.inverse_step = 1.0 / step
+            s.mass_old[:] = mass_old
+
+    def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
+        coarse = self.coarse
+        assert coarse is not None
+        if self.grid.fixed[:, 1:-1].any() and not coarse.grid.fixed[:, 1:-1].any():
+            return 0  # the coarser grid has lost the supply and would starve
+        coarse.H[:] = self.H[::2, ::2]
+        coarse.HF[:] = self.H[1::2, ::2]
+        coarse.H_t[:] = self.H_t[::2, ::2]
+        coarse.pressure[:] = self.pressure[::2, ::2]
+        coarse.forget()
+        coarse_mass = None if mass_old is None else mass_old[::2, ::2]
+        status, steps = coarse.solve(self.vx, self.vz, self.system.cavity_pressure, coarse_mass, step)
+        if status is Status.CONVERGED:
+            prolong_set(coarse.work.active, self.grid.fixed, self.work.active)
+            self.work.warm = True
+        return steps
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w = self.work
+        self.closure.adjoint(self.system, w, rhs)
+        fields = np.empty((rhs.shape[0], *self.grid.shape))
+        scatter(rhs, w.order, w.count, fields)
+        return fields
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
+        self.closure.direct(self.work, rhs)
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
+        self.closure.adjoint_columns(self.work, rhs)
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m)."""
+        g, s = self.grid, self.system
+        cell, face = np.empty_like(lam), np.empty_like(lam)
+        speed = np.empty((lam.shape[0], 2))
+        fills = self.closure.conserves_mass
+        if self.flux is None:
+            link_flow_sensitivity(
+                lam, s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x,
+                g.width_x, g.width_z, g.link_x, g.link_z, cell, face,
+            )  # fmt: skip
+            speed_sensitivity(lam, self.H, self.HF, g.width_x, g.width_z, g.link_x, speed)
+            if fills:
+                couette_sensitivity_fill(
+                    lam, s.fill, s.fx, s.fz, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
+                    cell, face, speed,
+                )  # fmt: skip
+        else:
+            f = self.flux
+            flux_sensitivity(
+                lam, s.linear_pressure, s.fill if fills else self.ones, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h,
+                f.cz, f.cz_h, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, cell, face, speed,
+            )  # fmt: skip
+        if not fills:
+            return Sensitivities(cell, face, lam * -self.area if self.squeeze else None, speed)
+        storage = lam * (-self.area * s.fill)
+        if s.inverse_step == 0.0 or self.instant:
+            return Sensitivities(cell, face, storage if self.squeeze else None, speed)
+        cell += storage * s.inverse_step
+        return Sensitivities(cell, face, None, speed)
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
+        return self.system.fx, self.system.fz, self.H_t
+
+    def link_derivatives(self) -> LinkDerivatives:
+        """Derivatives of the links' flows with respect to their gaps and the speeds, for the last solution."""
+        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
+        if f is None:
+            plain_link_derivatives(
+                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
+                d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+        elif not (f.carriers or f.speeds):
+            conductance_link_derivatives(
+                s.linear_pressure, f.gx_h, f.gz_h, f.gap_x, f.gap_z, self.vx, self.vz, self.flow_x, g.width_x, g.width_z,
+                g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ,
+            )  # fmt: skip
+        else:
+            flux_link_derivatives(
+                s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz, self.flow_x,
+                g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
+            )  # fmt: skip
+        if self.closure.conserves_mass:
+            if f is None:
+                mean = self.H.copy()
+                mean[:, :-1] = 0.5 * (self.H[:, :-1] + self.H[:, 1:])
+                carriers = (self.ones, self.HF, self.ones, mean)
+            else:
+                carriers = (f.cx_h, f.cx, f.cz_h, f.cz)
+            take_upstream_fill(
+                s.fill, s.fx, s.fz, *carriers, self.vx, self.vz, g.width_x, g.width_z, g.link_x, d.DX, d.DZ, d.SX, d.SZ
+            )
+        return d
+
+    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
+        s = self.system
+        if not self.closure.conserves_mass:
+            return (self.area if self.squeeze else self.nothing), self.nothing
+        content = self.area * s.fill
+        if s.inverse_step == 0.0 or self.instant:
+            return (content if self.squeeze else self.nothing), self.nothing
+        return self.nothing, content * s.inverse_step
+
+    def inflow(self) -> np.ndarray:
+        """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
+        s = self.system
+        balance = np.empty(self.grid.shape)
+        if self.closure.conserves_mass:
+            fill_balance(
+                s.pressure, s.fill, s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, s.inverse_step, s.mass_old, balance
+            )
+        else:
+            vertex_balance(s.pressure, s.kx, s.kz, s.b, balance)
+        return np.where(self.grid.fixed, balance, 0.0)
+
+
+@njit(cache=True)
+def fill_balance(P, fill, kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, out):
+    """Balance of every vertex with the upstream fill in the Couette fluxes; zero at free vertices of a solved film."""
+    n, m = P.shape
+    out[:] = 0.0
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            q = kx[i, j] * (P[i, j] - P[nxt, j]) + fx[i, j] * (fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j])
+            out[i, j] += q
+            out[nxt, j] -= q
+            if j + 1 < m:
+                q = kz[i, j] * (P[i, j] - P[i, j + 1]) + fz[i, j] * (fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1])
+                out[i, j] += q
+                out[i, j + 1] -= q
+            if inverse_step > 0.0:
+                out[i, j] += area[i, j] * (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
+            else:
+                out[i, j] += area[i, j] * fill[i, j] * H_t[i, j]
+
+
+@njit(cache=True)
+def prolong_set(coarse, fixed, fine_out):
+    """Active set of a grid from that of every second vertex: active if a coarse vertex next to it is."""
+    n, m = fine_out.shape
+    nc = coarse.shape[0]
+    for i in range(n):
+        a = i // 2
+        b = (a + i % 2) % nc
+        for j in range(m):
+            c = j // 2
+            d = c + j % 2
+            fine_out[i, j] = (coarse[a, c] or coarse[a, d] or coarse[b, c] or coarse[b, d]) and not fixed[i, j]

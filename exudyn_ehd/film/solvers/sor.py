@@ -1,0 +1,260 @@
+"""The finite differences and the SOR iteration of Flores' EHD joint paper, Eqs. (8)-(11), as a reference to compare with.
+
+In scaled form (lengths over R, H = h/c, P = p c^2 / (12 mu R^2)) Eq. (8) reads
+
+    H^3 (P_xx + P_zz) + 3 H^2 (H_x P_x + H_z P_z) = vx H_x + vz H_z + H_t,   vx = omega / 2,
+
+with central differences on a uniform grid (second order, not conservative), solved by successive over-relaxation in place until
+sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Guembel).
+
+Misprints of the paper, mended here:
+
+* (9), (10): the coefficient of p(i+1, j) carries + 3 h^2 (h(i+1, j) - h(i-1, j)); printed with a minus, as that of p(i-1, j);
+* (10): dh/dt in a_0 is not squared;
+* (10): p is relaxed towards the solution of its own equation, p + lambda [(a_0 - sum a_k p_k) / a_5 - p]; printed without - p;
+* (11): the denominator is the sum of |p|; the sum of p of an unclipped periodic film vanishes;
+* (5): the middle form needs phi = theta - beta + pi; (6): the angle needs both signs (atan2). Both are avoided here by using
+  the last form of (5).
+
+The paper does not print its relaxation factor. Rule (11) stops while the true error is still larger than the tolerance by the
+number of sweeps it takes to reduce it; it can be measured against `FiniteLength` or a smaller tolerance.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.ldl import number_cells
+from exudyn_ehd.film.banded.lu import PAD, factor_lu, solve_lu_transposed
+from exudyn_ehd.film.cavitation.closures import clip_pressure
+from exudyn_ehd.film.reynolds.links import conductances, couette_fluxes, right_hand_side
+from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
+from exudyn_ehd.status import InputError, Status, require_integer, require_number
+
+LARGEST_SWEEPS = 20_000
+# Beyond this sum of |P| (1/s) the sweeps have diverged.
+LARGEST_SUM = 1e100
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClassicSOR:
+    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Guembel; see the module's docstring.
+
+    A reference, not a recommendation: `FiniteLength` is faster at the same error. Every solution starts from zero pressure, so that
+    it depends on the state alone; it still jumps by about the tolerance where the number of sweeps changes, so that an
+    implicit joint wants a tolerance of 1e-9. The tangent is that of the converged difference operator (one banded LU
+    factorisation), exact as the tolerance goes to zero. Needs ``cavitation=Gumbel()``.
+
+    Parameters
+    ----------
+    n_theta : int
+        Points around the circumference, at least 16.
+    n_z : int
+        Intervals along the bearing, at least 4.
+    tolerance : float
+        Of rule (11); the paper's is 1e-5.
+    relaxation : float or None
+        lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a constant gap.
+    """
+
+    n_theta: int = 96
+    n_z: int = 24
+    tolerance: float = 1e-5
+    relaxation: float | None = None
+
+    stretch = 0.0
+    circumferential_pressure_flow = True
+
+    def __post_init__(self) -> None:
+        require_integer("ClassicSOR.n_theta", self.n_theta, at_least=16, hint="96 is a good start.")
+        require_integer("ClassicSOR.n_z", self.n_z, at_least=4, hint="24 is a good start.")
+        require_number("ClassicSOR.tolerance", self.tolerance, above=0.0)
+        if self.relaxation is not None and require_number("ClassicSOR.relaxation", self.relaxation, above=0.0) >= 2.0:
+            raise InputError(
+                f"ClassicSOR.relaxation must be within 0 and 2, got {self.relaxation!r}; None chooses one."
+            )
+
+
+def best_relaxation(n_z: int, step_x: float, step_z: float) -> float:
+    """SOR factor for a constant gap: Young's 2 / (1 + sqrt(1 - rho^2)), rho of Jacobi on a ring with p = 0 at both ends.
+
+    Source: D. M. Young, Trans. AMS 76 (1954) 92; rho = (1/dx^2 + cos(pi / n_z) / dz^2) / (1/dx^2 + 1/dz^2).
+    """
+    x, z = 1.0 / step_x**2, 1.0 / step_z**2
+    rho = (x + z * math.cos(math.pi / n_z)) / (x + z)
+    return 2.0 / (1.0 + math.sqrt(1.0 - rho * rho))
+
+
+class ClassicSolver(FilmSolver):
+    """`FilmSolver` with the pressure from `ClassicSOR`; flows through the edges are those of the conservative links.
+
+    Parameters
+    ----------
+    film : ClassicSOR
+    grid, closure, squeeze
+        As for `FilmSolver`; the grid uniform, the closure `Gumbel`.
+    """
+
+    plain_links = False
+
+    def __init__(self, film: ClassicSOR, grid, closure, *, squeeze: bool) -> None:
+        super().__init__(grid, closure, squeeze=squeeze)
+        self.coarse = None
+        self.film = film
+        self.step_x = float(grid.width_x[0])
+        self.step_z = float(grid.z[1] - grid.z[0])
+        chosen = film.relaxation
+        self.relaxation = best_relaxation(film.n_z, self.step_x, self.step_z) if chosen is None else chosen
+        size, width = grid.x.size * grid.z.size, 2 * grid.z.size + 2 + PAD
+        self.lower, self.upper = np.zeros((size, width)), np.zeros((size, width))
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """As `FilmSolver.solve`; the second value counts sweeps."""
+        g, s, w = self.grid, self.system, self.work
+        self.vx, self.vz = vx, vz
+        s.cavity_pressure = cavity_pressure
+        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, 1.0, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        right_hand_side(s.fx, s.fz, s.b)
+        if self.squeeze:
+            s.b -= self.H_t * self.area
+        s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
+        sweeps = sor_solve(
+            self.H, self.H_t, self.squeeze, vx, vz, self.step_x, self.step_z, g.fixed, self.relaxation,
+            self.film.tolerance, LARGEST_SWEEPS, s.linear_pressure,
+        )  # fmt: skip
+        np.logical_not(g.fixed, out=w.active)
+        w.count, w.width = number_cells(w.active, s.kx, w.order, w.number)
+        clip_pressure(s.linear_pressure, g.fixed, cavity_pressure, s.pressure, w.active)
+        ok = sweeps > 0 and bool(np.all(np.isfinite(s.linear_pressure)))
+        return (Status.CONVERGED if ok else Status.NOT_CONVERGED), abs(sweeps)
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve with the transposed difference operator; see `FilmSolver.adjoint`."""
+        w = self.work
+        assemble_differences(
+            self.H, self.step_x, self.step_z, w.number, w.order, w.count, w.width, self.lower, self.upper
+        )
+        factor_lu(self.lower, self.upper, w.count, w.width, w.inv_diag)
+        solve_lu_transposed(self.lower, self.upper, w.inv_diag, w.count, w.width, rhs)
+        fields = np.zeros((rhs.shape[0], self.H.size))
+        fields[:, w.order[: w.count]] = rhs
+        return fields.reshape((rhs.shape[0], *self.grid.shape))
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m) through the difference equations."""
+        cell, speed = np.zeros_like(lam), np.zeros((lam.shape[0], 2))
+        difference_sensitivity(
+            lam, self.system.linear_pressure, self.H, self.vx, self.vz, self.step_x, self.step_z, cell, speed
+        )
+        return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else None, speed)
+
+
+@njit(cache=True)
+def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, largest_sweeps, P):
+    """SOR in place; P (n, m) holds the prescribed values at fixed vertices. Returns the sweeps, negative if not converged."""
+    n, m = H.shape
+    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
+    a = np.zeros((n, m, 5))
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(1, m - 1):
+            h = H[i, j]
+            jump_x = H[nxt, j] - H[prv, j]
+            jump_z = H[i, j + 1] - H[i, j - 1]
+            diagonal = -2.0 * h * h * h * (ix + iz)
+            a[i, j, 0] = (h * h * h - 0.75 * h * h * jump_x) * ix / diagonal
+            a[i, j, 1] = (h * h * h + 0.75 * h * h * jump_x) * ix / diagonal
+            a[i, j, 2] = (h * h * h - 0.75 * h * h * jump_z) * iz / diagonal
+            a[i, j, 3] = (h * h * h + 0.75 * h * h * jump_z) * iz / diagonal
+            source = 0.5 * (vx * jump_x / dx + vz * jump_z / dz)
+            if squeeze:
+                source += H_t[i, j]
+            a[i, j, 4] = source / diagonal
+    for sweep in range(1, largest_sweeps + 1):
+        change = 0.0
+        total = 0.0
+        for i in range(n):
+            prv = i - 1 if i > 0 else n - 1
+            nxt = i + 1 if i + 1 < n else 0
+            for j in range(1, m - 1):
+                if fixed[i, j]:
+                    continue
+                c = a[i, j]
+                target = c[4] - c[0] * P[prv, j] - c[1] * P[nxt, j] - c[2] * P[i, j - 1] - c[3] * P[i, j + 1]
+                step = relaxation * (target - P[i, j])
+                P[i, j] += step
+                change += abs(step)
+                total += abs(P[i, j])
+        if not total < LARGEST_SUM:
+            return -sweep
+        if change <= tolerance * total:
+            return sweep
+    return -largest_sweeps
+
+
+@njit(cache=True)
+def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
+    """The difference operator on the numbered vertices (fixed ones are known) in the storage of `band_lu`."""
+    n, m = H.shape
+    ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
+    for r in range(count):
+        for d in range(width + 1 + PAD):
+            lower[r, d] = 0.0
+            upper[r, d] = 0.0
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        h = H[i, j]
+        jump_x = H[nxt, j] - H[prv, j]
+        jump_z = H[i, j + 1] - H[i, j - 1]
+        upper[r, 0] = -2.0 * h * h * h * (ix + iz)
+        for col, value in (
+            (number[prv, j], (h * h * h - 0.75 * h * h * jump_x) * ix),
+            (number[nxt, j], (h * h * h + 0.75 * h * h * jump_x) * ix),
+            (number[i, j - 1], (h * h * h - 0.75 * h * h * jump_z) * iz),
+            (number[i, j + 1], (h * h * h + 0.75 * h * h * jump_z) * iz),
+        ):
+            if col > r:
+                upper[r, col - r] += value
+            elif col >= 0:
+                lower[col, r - col] += value
+
+
+@njit(cache=True)
+def difference_sensitivity(lam, P, H, vx, vz, dx, dz, cell_out, speed_out):
+    """Add ``-lam . dr`` to cell_out (k, n, m) and speed_out (k, 2), r the left minus the right side of the equation."""
+    count, n, m = lam.shape
+    for k in range(count):
+        for i in range(n):
+            prv = i - 1 if i > 0 else n - 1
+            nxt = i + 1 if i + 1 < n else 0
+            for j in range(1, m - 1):
+                g = -lam[k, i, j]
+                if g == 0.0:
+                    continue
+                h = H[i, j]
+                hx = (H[nxt, j] - H[prv, j]) / (2.0 * dx)
+                hz = (H[i, j + 1] - H[i, j - 1]) / (2.0 * dz)
+                px = (P[nxt, j] - P[prv, j]) / (2.0 * dx)
+                pz = (P[i, j + 1] - P[i, j - 1]) / (2.0 * dz)
+                curvature = (P[nxt, j] - 2.0 * P[i, j] + P[prv, j]) / (dx * dx)
+                curvature += (P[i, j + 1] - 2.0 * P[i, j] + P[i, j - 1]) / (dz * dz)
+                cell_out[k, i, j] += g * (3.0 * h * h * curvature + 6.0 * h * (hx * px + hz * pz))
+                dhx = g * (3.0 * h * h * px - vx) / (2.0 * dx)
+                dhz = g * (3.0 * h * h * pz - vz) / (2.0 * dz)
+                cell_out[k, nxt, j] += dhx
+                cell_out[k, prv, j] -= dhx
+                cell_out[k, i, j + 1] += dhz
+                cell_out[k, i, j - 1] -= dhz
+                speed_out[k, 0] -= g * hx
+                speed_out[k, 1] -= g * hz

@@ -1,0 +1,158 @@
+"""Audit of a bearing: which effects mattered in the films it has had, which were left out, and which were paid for in vain."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.joint.audit.indicators import INDICATORS, Case, Finding, Indicator
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.rigid import MOTION_SIZE, BearingModel
+from exudyn_ehd.status import FilmError, InputError, Status
+
+__all__ = ["Audit", "Finding", "audit_record", "audit_states"]
+
+# Rounds of a time measurement; the best of them counts.
+ROUNDS = 5
+_ON = {True: "on", False: "off", None: "-"}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Audit:
+    """Findings about one bearing; print it for a table.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+    """
+
+    findings: tuple[Finding, ...]
+
+    @property
+    def matters(self) -> tuple[Finding, ...]:
+        """Effects that matter, whether the bearing has them or not."""
+        return tuple(f for f in self.findings if f.matters)
+
+    @property
+    def neglected(self) -> tuple[Finding, ...]:
+        """What matters and is off, or an assumption or number that does not hold."""
+        return tuple(f for f in self.findings if f.matters and not f.on)
+
+    @property
+    def in_vain(self) -> tuple[Finding, ...]:
+        """What is paid for and does not matter."""
+        return tuple(f for f in self.findings if f.in_vain)
+
+    def __getitem__(self, effect: str) -> Finding:
+        """The finding about an effect, by its name."""
+        for finding in self.findings:
+            if finding.effect == effect:
+                return finding
+        raise KeyError(f"Audit: no finding about {effect!r}; there are {', '.join(f.effect for f in self.findings)}.")
+
+    def __str__(self) -> str:
+        rows: list[tuple[str, ...]] = [("effect", "", "value", "limit", "time", "verdict", "indicator")]
+        rows += [_row(finding) for finding in self.findings]
+        widths = [max(len(row[k]) for row in rows) for k in range(6)]
+        lines = ["  ".join(text.ljust(w) for text, w in zip((*row[:6], row[6]), (*widths, 0))).rstrip() for row in rows]
+        lines.insert(1, "-" * max(map(len, lines)))
+        advice = [f"{f.effect}: {f.advice}" for f in self.findings if f.advice]
+        return "\n".join([*lines, *([""] if advice else []), *advice])
+
+
+def _row(f: Finding) -> tuple[str, ...]:
+    verdict = "neglected" if f.matters and f.on is False else "matters" if f.matters else "in vain" if f.in_vain else ""
+    if f.matters and f.on is None:
+        verdict = "beyond limit"
+    share = "" if f.time_share is None else f"{f.time_share:.0%}"
+    limit = f"{'<' if f.below else '>'} {f.threshold:.3g}"
+    return f.effect, _ON[f.on], f"{f.value:.3g}", limit, share, verdict, f.indicator
+
+
+def audit_states(
+    model: BearingModel,
+    states: Sequence[FilmState],
+    *,
+    record: RecordedSteps | None = None,
+    liner: ElasticLiner | None = None,
+    measure_time: bool = False,
+) -> Audit:
+    """Audit a bearing by its films at some states.
+
+    Parameters
+    ----------
+    model : BearingModel
+    states : sequence of FilmState
+    record : RecordedSteps, optional
+        Where the states come from: adds how often contacts acted, mean heating and the time step.
+    liner : ElasticLiner, optional
+        Of which to say whether it would matter; for bearings without one.
+    measure_time : bool
+        Measure the share of the time that every effect takes which is on and can be left out.
+
+    Raises
+    ------
+    FilmError
+        If there is no film at any state.
+    """
+    if liner is not None and not isinstance(liner, ElasticLiner):
+        raise InputError(f"audit: liner must be ElasticLiner(...) or None, got {liner!r}.")
+    samples = take_samples(model, states, record)
+    if not samples:
+        raise FilmError(
+            "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result of `steady`."
+        )
+    case = Case(model.bearing, samples, record, liner)
+    findings = []
+    for indicator in INDICATORS:
+        finding = indicator.find(case)
+        if finding is None:
+            continue
+        if measure_time and finding.on and indicator.without is not None:
+            finding = replace(finding, time_share=_time_share(model, indicator, states))
+        findings.append(finding)
+    return Audit(findings=tuple(findings))
+
+
+def audit_record(
+    bearing: JournalBearing, record: RecordedSteps, *, liner: ElasticLiner | None = None, measure_time: bool = False
+) -> Audit:
+    """Audit a bearing by the worst states of a record; arguments as for `audit_states`.
+
+    Films that remember are run again over up to 60 recorded steps before such a state.
+    """
+    model = build_study_model(bearing, 0.0)
+    states = recorded_states(model, record)
+    return audit_states(model, states, record=record, liner=liner, measure_time=measure_time)
+
+
+def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[FilmState]) -> float | None:
+    """Share of the time of evaluations with tangent that goes into an effect; None if no film does without it."""
+    assert indicator.without is not None
+    plain = build_study_model(indicator.without(model.bearing), float(model.grid.x[0]))
+    # a history serves both: a model without an effect does not read what belongs to it; a rigid bore has no coordinates
+    rigid = not plain.bore_fields()
+    pairs = [(s, replace(s, motion=s.motion[:MOTION_SIZE]) if rigid else s) for s in states]
+    both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
+    if not both:
+        return None
+    with_it, without_it = math.inf, math.inf
+    for _ in range(ROUNDS):
+        with_it = min(with_it, sum(_seconds(model, state) for state, _ in both))
+        without_it = min(without_it, sum(_seconds(plain, state) for _, state in both))
+    return max(0.0, 1.0 - without_it / with_it)
+
+
+def _seconds(model: BearingModel, state: FilmState) -> float:
+    """Time of a warm evaluation with tangent and history, s."""
+    state.evaluate(model)
+    begin = time.perf_counter()
+    evaluation = state.evaluate(model)
+    evaluation.tangent()
+    evaluation.history()
+    return time.perf_counter() - begin

@@ -1,0 +1,296 @@
+"""What an audit looks at: recorded steps of a joint, states to evaluate again, and the numbers that one film shows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.evaluation import Evaluation
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.seams import History
+from exudyn_ehd.status import Status
+
+# Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started.
+REPLAYED = 60
+# Gauge pressure below which oil at ambient pressure would have to carry tension, Pa.
+TENSION = -1e5
+
+
+@dataclass(frozen=True, eq=False)
+class RecordedSteps:
+    """Accepted steps of a joint, as arrays over the steps; what a film model does not report is nan.
+
+    Attributes
+    ----------
+    time : (n,) array
+        s.
+    motion : (n, 10) array
+        As in `exudyn_ehd.joint.model.rigid`.
+    force : (n, 3) array
+        N, on the journal.
+    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature, bore_displacement : (n,) arrays
+        m, Pa, W, m3/s, N, K, m.
+    """
+
+    time: np.ndarray
+    motion: np.ndarray
+    force: np.ndarray
+    minimum_gap: np.ndarray
+    peak_pressure: np.ndarray
+    power_loss: np.ndarray
+    leakage: np.ndarray
+    contact_load: np.ndarray
+    film_temperature: np.ndarray
+    bore_displacement: np.ndarray
+
+    def worst(self, bearing: JournalBearing) -> list[int]:
+        """Steps with the thinnest film, highest pressure, loss and speed, largest tilt, strongest squeeze and the bore's largest share; sorted."""
+        tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
+        squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
+        speed = np.abs(self.motion[:, 8])
+        given_way = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
+        loss = np.abs(self.power_loss)
+        keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, given_way)
+        return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
+
+    def largest_advance(self, length: float) -> float:
+        """Largest motion of the journal's axis at an end of the bearing within a step, over the smaller of its two gaps."""
+        if self.time.size < 2:
+            return 0.0
+        ends = [self.motion[:, :2] + s * 0.5 * length * self.motion[:, 2:4] for s in (-1.0, 1.0)]
+        moved = np.max([np.hypot(*np.diff(e, axis=0).T) for e in ends], axis=0)
+        gap = np.minimum(self.minimum_gap[1:], self.minimum_gap[:-1])
+        return float(np.max(moved / np.maximum(gap, 1e-3 * np.abs(self.minimum_gap).max() + 1e-300)))
+
+
+@dataclass(frozen=True, eq=False)
+class FilmState:
+    """Arguments of one `BearingModel.evaluate`, with a flexible bore's coordinates and rates in the motion, and the step of a record."""
+
+    motion: np.ndarray
+    history: History | None = None
+    step: float = 0.0
+    spin: float = 0.0
+    recorded: int | None = None
+
+    def evaluate(self, model: BearingModel) -> Evaluation:
+        """The film at this state."""
+        return model.evaluate(self.motion, self.history, self.step, self.spin)
+
+
+def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmState]:
+    """The worst states of a record, with the histories that its last steps lead to (a worn depth starts at zero).
+
+    Flexible bores, which a record does not hold, settle under their films.
+    """
+    intervals = np.diff(record.time)
+    turns = 0.5 * (record.motion[1:, 8] + record.motion[:-1, 8]) * intervals
+    spin = np.concatenate([[0.0], np.cumsum(turns)])
+    flexible = bool(model.bore_fields())
+    motions = _differenced(record) if flexible else record.motion
+    replayed = REPLAYED if model.remembers else 0
+    states: list[FilmState] = []
+    reached, history, step = -1, None, 0.0
+    for k in record.worst(model.bearing):
+        first = max(0, k - replayed)
+        if reached < first:
+            reached, history, step = first, _first_history(model, record, first), 0.0
+        for i in range(reached, k):
+            if step > 0.0:
+                passed = model.evaluate_steady(motions[i], history, step, float(spin[i]))
+                history = passed.history() if passed.status is Status.CONVERGED else history
+            step = float(intervals[i])
+        reached, motion = k, motions[k]
+        if flexible:
+            motion = model.evaluate_steady(motion, history, step, float(spin[k])).motion
+        states.append(FilmState(motion, history, step, float(spin[k]), recorded=k))
+    return states
+
+
+def _differenced(record: RecordedSteps) -> np.ndarray:
+    """Motions (n, 10) with the rates of the steps' own differences.
+
+    Rates that an integrator leaves behind on a flexible bore alternate, those of the journal with those of the bore, which a record
+    does not hold.
+    """
+    motions = record.motion.copy()
+    motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
+    return motions
+
+
+def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> History | None:
+    """History of a flooded film at a recorded step, at the recorded temperature."""
+    history = model.initial_history(record.motion[k])
+    T = float(record.film_temperature[k])
+    if history is None or history.temperature is None or not math.isfinite(T):
+        return history
+    return replace(
+        history, temperature=np.full(np.shape(history.temperature), T) if np.ndim(history.temperature) else T
+    )
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Numbers of one evaluated film.
+
+    Attributes
+    ----------
+    speed : float
+        Sliding speed of the surfaces, m/s.
+    minimum_gap, peak_pressure, load : float
+        m, Pa, N (film and contact).
+    contact_load, power_loss, flow : float
+        N, W, m3/s (out of the ends or out of the supply, the larger one).
+    viscosity : float
+        Smallest in the film at ambient pressure, Pa s.
+    rise : float
+        Largest temperature of the film above that of the supply, K; 0 for an isothermal film.
+    cavitated, tension : float
+        Shares of the bore.
+    tilt_loss, squeeze_share : float
+        See the functions of these names.
+    deflection, shape : float
+        Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
+    columns, rows : float
+        Intervals of the grid across the pressure peak at half its height.
+    """
+
+    speed: float
+    minimum_gap: float
+    peak_pressure: float
+    load: float
+    contact_load: float
+    power_loss: float
+    flow: float
+    viscosity: float
+    rise: float
+    cavitated: float
+    tension: float
+    tilt_loss: float
+    squeeze_share: float
+    deflection: float
+    shape: float
+    columns: float
+    rows: float
+
+
+def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
+    """Evaluate a state and read its numbers; None if there is no film."""
+    evaluation = state.evaluate(model)
+    if evaluation.status is not Status.CONVERGED:
+        return None
+    q, s, g, b = model.quantities(), model.solver, model.grid, model.bearing
+    pressure = model.P * model.pressure_scale
+    weight = g.weight / g.weight.sum()
+    unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
+    i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
+    thermal = b.thermal
+    shape = model.shape()
+    return Sample(
+        speed=math.hypot(g.reference_length * model.omega, model.axial_speed),
+        minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
+        peak_pressure=q["peak_pressure"],
+        load=math.hypot(evaluation.wrench[0], evaluation.wrench[1]),
+        contact_load=q["contact_load"],
+        power_loss=q["power_loss"],
+        flow=max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
+        viscosity=_smallest_viscosity(model),
+        rise=0.0 if thermal is None else q["peak_temperature"] - thermal.supply_temperature,
+        cavitated=float(np.sum(weight[~unbroken])),
+        tension=float(np.sum(weight[pressure < TENSION])),
+        tilt_loss=tilt_loss(b, model.motion),
+        squeeze_share=squeeze_share(b, model.motion),
+        deflection=_deflection(model),
+        shape=0.0 if shape is None else float(np.ptp(shape)) * b.radial_clearance,
+        columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
+        rows=intervals_at_half(pressure[i], int(j)),
+    )
+
+
+def take_samples(model: BearingModel, states: Iterable[FilmState], record: RecordedSteps | None = None) -> list[Sample]:
+    """Samples of all states that have a film; on a flexible bore with what the record knows of it in motion."""
+    samples = []
+    for state in states:
+        sample = take_sample(model, state)
+        if sample is not None and record is not None and state.recorded is not None and model.bore_fields():
+            sample = _as_recorded(sample, record, state.recorded)
+        if sample is not None:
+            samples.append(sample)
+    return samples
+
+
+def _as_recorded(sample: Sample, record: RecordedSteps, k: int) -> Sample:
+    """The sample of a settled bore with the numbers of the bore in motion."""
+    return replace(
+        sample,
+        minimum_gap=max(float(record.minimum_gap[k]), 1e-9 * float(np.max(record.minimum_gap))),
+        peak_pressure=float(record.peak_pressure[k]),
+        load=math.hypot(record.force[k, 0], record.force[k, 1]),
+        contact_load=float(record.contact_load[k]),
+        power_loss=float(record.power_loss[k]),
+        deflection=float(record.bore_displacement[k]),
+    )
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(np.abs(values).max())
+
+
+def _smallest_viscosity(model: BearingModel) -> float:
+    """Reference viscosity of the film, thinned by shear and heat but not thickened by pressure, Pa s."""
+    viscosity = model.pressure_scale * model.bearing.radial_clearance**2 / (12.0 * model.bearing.journal_radius**2)
+    return viscosity * (1.0 if model.ratio is None else min(1.0, float(model.ratio.min())))
+
+
+def tilt_loss(bearing: JournalBearing, motion: np.ndarray) -> float:
+    """Share of the smallest mid-plane gap that is lost at an end of a tilted journal, 0 to 1 (rigid cylinders)."""
+    x, y, bx, by = motion[:4].tolist()
+    c, half = bearing.radial_clearance, 0.5 * bearing.length
+    middle = c - math.hypot(x, y)
+    end = c - max(math.hypot(x + s * half * bx, y + s * half * by) for s in (-1.0, 1.0))
+    if end >= middle:
+        return 0.0
+    return min(1.0, (middle - end) / max(middle, 1e-3 * c))
+
+
+def squeeze_share(bearing: JournalBearing, motion: np.ndarray) -> float:
+    """Share of the squeeze term among the sources of the Reynolds equation, 0 to 1: v / (v + e |omega| / 2).
+
+    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes of dh/dt and
+    (omega / 2) dh/dtheta.
+    """
+    half = 0.5 * bearing.length
+    e, v = (
+        max(math.hypot(a[0] + s * half * a[2], a[1] + s * half * a[3]) for s in (-1.0, 1.0))
+        for a in (motion[:4].tolist(), motion[4:8].tolist())
+    )
+    total = v + 0.5 * abs(float(motion[8])) * e
+    return v / total if total > 0.0 else 0.0
+
+
+def intervals_at_half(values: np.ndarray, peak: int) -> float:
+    """Intervals between the two points beside ``peak`` where ``values`` (n,) fall to half the peak, by linear interpolation."""
+    half = 0.5 * float(values[peak])
+    if not half > 0.0:
+        return float(values.size)
+    width = 0.0
+    for side in (values[peak::-1], values[peak:]):
+        below = np.flatnonzero(side < half)
+        if below.size == 0:
+            width += side.size - 1.0
+            continue
+        k = int(below[0])
+        width += k - float((half - side[k]) / (side[k - 1] - side[k]))
+    return width
+
+
+def _deflection(model: BearingModel) -> float:
+    """Largest deflection of a liner or of a flexible bore, m."""
+    if model.liner_solver is not None:
+        return _largest(model.liner_solver.deflection) * model.bearing.radial_clearance
+    fields = model.bore_fields()
+    return _largest(fields["bore_displacement"]) if fields else 0.0

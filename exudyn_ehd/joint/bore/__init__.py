@@ -1,0 +1,7 @@
+"""Elastic bore.
+
+Module map
+----------
+shapes       displacement of the bore on the film's grid
+equilibrium  bore in balance with its film
+"""

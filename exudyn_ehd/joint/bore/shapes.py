@@ -1,0 +1,260 @@
+"""The bore of a flexible bush on the film grid: ``delta = S q``, its rate ``S q_t``, and generalised loads ``S^T (p A)``.
+
+Modal and nodal bushes differ in S (and in what resists q) only. delta > 0 points outward and opens the gap. Displacements
+are those in the joint frame, q in m; loads are carried back by the transpose, so that the film's work on the bush is its work on q.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from exudyn_ehd.film.banded.tiles import TILE
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.sensitivity.bore_stencil import add_transposed, put_rows, sparse_product
+from exudyn_ehd.film.sensitivity.mirror_symmetry import (
+    courses,
+    fold_adjoints,
+    folded_displacements,
+    folded_loads,
+    folded_rows,
+    place_columns,
+    stencil_by_vertices,
+)
+from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.mesh import Surface
+from exudyn_ehd.solid.static_modes import BoreModes
+
+# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue problems.
+ASYMMETRY = 1e-9
+
+
+class Bore(Protocol):
+    """What a bearing model needs from a flexible bore with k coordinates on an (n, m) film grid."""
+
+    @property
+    def size(self) -> int:
+        """k, the number of coordinates."""
+
+    @property
+    def order(self) -> np.ndarray:
+        """Coordinates (k,) in the sequence of `fill_rows`."""
+
+    def displacement(self, q: np.ndarray) -> np.ndarray:
+        """S q (n, m) for coordinates or rates q (k,)."""
+
+    def load(self, field: np.ndarray) -> np.ndarray:
+        """S^T f (k,) for a field f (n, m)."""
+
+    def contract(self, fields: np.ndarray) -> np.ndarray:
+        """Every field's S^T f, (r, k) for (r, n, m)."""
+
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `tiles.make_tiles` from column ``first`` on.
+
+        The coordinates come in the sequence ``order``.
+        """
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B of `stencil.gap_stencil`.
+
+        B has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
+        """
+
+    def product(self, field: np.ndarray) -> np.ndarray:
+        """S^T diag(f) S (k, k)."""
+
+
+class ModalBore:
+    """Bore that moves in modes.
+
+    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows (see
+    `film.folding`).
+
+    Parameters
+    ----------
+    modes : BoreModes or ReducedBore
+    grid : FilmGrid
+
+    Attributes
+    ----------
+    stiffness : (k,) array
+        Modal stiffness, N/m.
+    modes : BoreModes or ReducedBore
+    order : (k,) int array
+        Modes in the sequence of `fill_rows`: the even ones first.
+    mirrored : int
+        Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
+    """
+
+    def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
+        self.modes = modes
+        self.grid_shape = grid.shape
+        self.stiffness = modes.stiffness
+        whole = modes.radial(grid.x, grid.z * grid.reference_length)
+        is_even = _snap_parity(whole)
+        n, m = grid.shape
+        self.mirrored = 0 if is_even is None else m // 2
+        is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
+        self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
+        even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
+        self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
+        self._odd = np.ascontiguousarray(odd).reshape(n * self.mirrored, np.count_nonzero(~is_even))
+        self._along_even, even_courses = courses(self._even, n)
+        self._along_odd, odd_courses = courses(self._odd, n)
+        # twice around: every run of columns is one block
+        self._even_courses, self._odd_courses = np.tile(even_courses, (2, 1)), np.tile(odd_courses, (2, 1))
+
+    @property
+    def size(self) -> int:
+        """k, the number of modes."""
+        return self.stiffness.size
+
+    def displacement(self, q: np.ndarray) -> np.ndarray:
+        """S q (n, m)."""
+        return self.displacements(q, q)[0]
+
+    def load(self, field: np.ndarray) -> np.ndarray:
+        """S^T f (k,)."""
+        return self.contract(field[None])[0]
+
+    def contract(self, fields: np.ndarray) -> np.ndarray:
+        """Every field's S^T f, (r, k)."""
+        out = np.empty((len(fields), self.size))
+        folded_loads(fields, self._even, self._odd, self.order, out)
+        return out
+
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
+        folded_displacements(self._even, self._odd, self.order, q, q_t, place, rate)
+        return place, rate
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at vertices, weighted, into columns of out."""
+        folded_rows(self._even, self._odd, *self.grid_shape, places, weight, first, out)
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        if not len(places):
+            return np.zeros((size, self.size))
+        out = np.empty((size, self.size))
+        first, by_vertex, row = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
+        along = self._along_even, self._along_odd
+        # one tile after the other: a tile's fields stay in the cache until they are multiplied
+        for start in range(0, size, TILE):
+            tile, rows = start // TILE, min(TILE, size - start)
+            even, odd = fold_adjoints(by_vertex, row, self.grid_shape, self.mirrored, *along, fields[tile])
+            # columns behind the last one are the first ones again
+            by_even = even[:, :rows].T @ self._even_courses[first * len(along[0]) :][: len(even)]
+            by_odd = odd[:, :rows].T @ self._odd_courses[first * len(along[1]) :][: len(odd)]
+            place_columns(by_even, by_odd, self.order, out[start : start + rows])
+        return out
+
+    def product(self, field: np.ndarray) -> np.ndarray:
+        """S^T diag(f) S (k, k)."""
+        n, m = self.grid_shape
+        upper, mirrored, split = m - self.mirrored, self.mirrored, self._even.shape[1]
+        even = field[:, :upper].copy()
+        even[:, :mirrored] += field[:, ::-1][:, :mirrored]
+        odd = (field - field[:, ::-1])[:, :mirrored]
+        # the even part of the field keeps the symmetry of a shape, the odd part turns it
+        halves = self._even.reshape(n, upper, -1)[:, :mirrored].reshape(n * mirrored, split)
+        out = np.empty((self.size, self.size))
+        out[:split, :split] = (self._even * even.reshape(-1, 1)).T @ self._even
+        out[split:, split:] = (self._odd * even[:, :mirrored].reshape(-1, 1)).T @ self._odd
+        out[:split, split:] = (halves * odd.reshape(-1, 1)).T @ self._odd
+        out[split:, :split] = out[:split, split:].T
+        back = np.argsort(self.order)
+        return out[np.ix_(back, back)]
+
+
+def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
+    """Which of the shapes (n, m, k) are even in z, the others being odd; rounding is taken off them. None if any is neither."""
+    mirror = shapes[:, ::-1]
+    even, odd = 0.5 * (shapes + mirror), 0.5 * (shapes - mirror)
+    sizes = np.abs(even).max(axis=(0, 1)), np.abs(odd).max(axis=(0, 1))
+    if np.any(np.minimum(*sizes) > ASYMMETRY * np.maximum(*sizes)):
+        return None
+    is_even = sizes[0] >= sizes[1]
+    shapes[:] = np.where(is_even, even, odd)
+    return is_even
+
+
+class NodalBore:
+    """Bore that moves with the nodes of a mesh; q holds their x and y displacements in the joint frame, node by node.
+
+    Parameters
+    ----------
+    surface : Surface
+        The mesh's bore.
+    grid : FilmGrid
+
+    Attributes
+    ----------
+    shapes : csr matrix (n m, k)
+        S, k twice the number of nodes.
+    values : csr matrix (n m, nodes)
+        Shape functions at the film's vertices.
+    order : (k,) int array
+        0 to k - 1.
+    """
+
+    def __init__(self, surface: Surface, grid: FilmGrid) -> None:
+        self.grid_shape, self.grid = grid.shape, grid
+        T, Z = np.meshgrid(grid.x, grid.z * grid.reference_length, indexing="ij")
+        full = surface.radial_interpolation(T.ravel(), Z.ravel())
+        columns = (3 * np.arange(len(surface.nodes))[:, None] + np.arange(2)).ravel()
+        self.values: csr_matrix = surface.interpolation(T.ravel(), Z.ravel())
+        self.shapes: csr_matrix = full[:, columns].tocsr()
+        self.transposed: csr_matrix = self.shapes.T.tocsr()
+        self.order = np.arange(len(columns))
+
+    @property
+    def size(self) -> int:
+        """k, two coordinates per node."""
+        return self.shapes.shape[1]
+
+    def displacement(self, q: np.ndarray) -> np.ndarray:
+        """S q (n, m)."""
+        return (self.shapes @ q).reshape(self.grid_shape)
+
+    def load(self, field: np.ndarray) -> np.ndarray:
+        """S^T f (k,)."""
+        T, out = self.transposed, np.empty(self.size)
+        sparse_product(T.indptr, T.indices, T.data, np.ascontiguousarray(field).reshape(-1), out)
+        return out
+
+    def contract(self, fields: np.ndarray) -> np.ndarray:
+        """Every field's S^T f, (r, k)."""
+        return fields.reshape(len(fields), -1) @ self.shapes
+
+    def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """S q and S q_t (n, m)."""
+        place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
+        S = self.shapes
+        sparse_product(S.indptr, S.indices, S.data, q, place.reshape(-1))
+        sparse_product(S.indptr, S.indices, S.data, q_t, rate.reshape(-1))
+        return place, rate
+
+    def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
+        """Rows of S at vertices, weighted, into columns of out."""
+        rows = self.shapes[places].toarray()
+        put_rows(rows, np.arange(len(places)), weight, first, out)
+
+    def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
+        """X^T B S (size, k)."""
+        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], len(fields) * TILE)
+        known = np.ascontiguousarray(known[: len(weight), :size])
+        at_vertices = np.zeros((self.shapes.shape[0], size))
+        add_transposed(weight, places, known, at_vertices)
+        return (self.transposed @ at_vertices).T
+
+    def product(self, field: np.ndarray) -> np.ndarray:
+        """S^T diag(f) S (k, k)."""
+        return (self.transposed.multiply(field.ravel()) @ self.shapes).toarray()

@@ -1,0 +1,322 @@
+"""Temperature of a bearing's film: heat balance at accepted steps, viscosity for the next one, and the settled steady state."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.banded.ldl import number_cells
+from exudyn_ehd.film.banded.lu import PAD, factor_lu, solve_lu
+from exudyn_ehd.film.heat.energy import assemble_energy, film_heat
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.reynolds.flux import FluxEffect, LinkFlux
+from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
+from exudyn_ehd.joint.seams import History
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.model.rigid import BearingModel
+
+# Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
+STAGNANT = 1e-14
+# Rounding of the flow through the ends, as a share of the largest flow over a link.
+NO_FLOW = 1e-11
+
+
+def reference_viscosity(lubricant: Lubricant) -> float:
+    """Of the lubricant's temperature law at the lubricant's own temperature, Pa s."""
+    law = lubricant.temperature_law
+    assert law is not None
+    return float(law.viscosity(float(lubricant.temperature), lubricant.density))
+
+
+def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float, reference: float) -> np.ndarray:
+    """mu(T) / mu at the lubricant's own temperature, ``reference`` of the law there."""
+    law = lubricant.temperature_law
+    assert law is not None
+    return law.viscosity(temperature, lubricant.density) / reference
+
+
+class LumpedTemperature:
+    """`LumpedThermal` of one bearing model.
+
+    Parameters
+    ----------
+    spec : LumpedThermal
+    bearing : JournalBearing
+    """
+
+    def __init__(self, spec: LumpedThermal, bearing: JournalBearing) -> None:
+        self.spec = spec
+        self.lubricant = oil = bearing.lubricant
+        self.reference = reference_viscosity(oil)
+        supply = spec.supply_temperature
+        self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
+        self.housing = supply if spec.housing_temperature is None else spec.housing_temperature
+        self.flow_capacity = oil.density * oil.specific_heat
+        volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
+        self.capacity = self.flow_capacity * volume + spec.capacity
+        self.temperature = math.nan
+
+    def initial_temperature(self, model: BearingModel) -> float:
+        """K, at the start of a motion."""
+        return self.initial
+
+    def begin(self, model: BearingModel, history: History | None) -> None:
+        """Set the film's viscosity for the temperature at the start of the step."""
+        T = self.initial if history is None or history.temperature is None else float(history.temperature)
+        if self.temperature != T:
+            self.temperature = T
+            model.set_viscosity_ratio(float(viscosity_ratio(self.lubricant, T, self.reference)))
+
+    def _rates(self, model: BearingModel) -> tuple[float, float]:
+        """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
+        heat, leaving = heat_and_leakage(model)
+        return heat, self.flow_capacity * model.flow_scale * leaving
+
+    def advance(self, model: BearingModel) -> float:
+        """Temperature at the end of the step that was evaluated last."""
+        if model.start[1] <= 0.0:
+            return self.temperature
+        heat, flow = self._rates(model)
+        store, G = self.capacity / model.start[1], self.spec.housing_conductance
+        rise = heat + flow * self.spec.supply_temperature + G * self.housing + store * self.temperature
+        return rise / (store + flow + G)
+
+    def steady_temperature(self, model: BearingModel) -> float:
+        """Temperature in balance with the heat of the last evaluation; inf without a way out for the heat."""
+        heat, flow = self._rates(model)
+        G = self.spec.housing_conductance
+        if flow + G <= 0.0:
+            return math.inf if heat > 0.0 else self.temperature
+        return (heat + flow * self.spec.supply_temperature + G * self.housing) / (flow + G)
+
+    def balance(self, model: BearingModel, temperature: float) -> dict[str, float]:
+        """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
+        heat, flow = self._rates(model)
+        stored = self.capacity * (temperature - self.temperature) / model.start[1] if model.start[1] > 0.0 else 0.0
+        return {
+            "heat_in": heat,
+            "carried_out": flow * (temperature - self.spec.supply_temperature),
+            "conducted": self.spec.housing_conductance * (temperature - self.housing),
+            "stored": stored,
+        }
+
+    def quantities(self) -> dict[str, float]:
+        """Mean and largest temperature of the film that was evaluated last, K."""
+        return {"film_temperature": self.temperature, "peak_temperature": self.temperature}
+
+
+class ViscosityField(FluxEffect):
+    """Viscosity ratio of a temperature field at vertices and links: flux effect and shear factor."""
+
+    changes_carriers = False
+    depends_on_speed = False
+
+    def __init__(self) -> None:
+        self.ratio = np.ones((1, 1))
+        self.inverse_x = self.inverse_z = self.ratio
+
+    def set(self, ratio: np.ndarray) -> None:
+        """Take over the ratio at the vertices (n, m); links take the mean of their vertices."""
+        self.ratio = ratio
+        self.inverse_x = 2.0 / (ratio + np.roll(ratio, -1, axis=0))
+        self.inverse_z = 1.0 / ratio
+        self.inverse_z[:, :-1] = 2.0 / (ratio[:, :-1] + ratio[:, 1:])
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Divide the conductances by the ratio on the link."""
+        for conductance in (flux.gx, flux.gx_h, flux.gx_v)[: 2 + flux.speeds]:
+            conductance *= self.inverse_x
+        for conductance in (flux.gz, flux.gz_h, flux.gz_v)[: 2 + flux.speeds]:
+            conductance *= self.inverse_z
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """The ratio at the vertices; it depends neither on the gap nor on the speed."""
+        ratio_out[:] = self.ratio
+        ratio_h_out[:] = 0.0
+        ratio_v_out[:] = 0.0
+
+
+class FilmTemperature:
+    """`FilmEnergy` of one bearing model.
+
+    Parameters
+    ----------
+    spec : FilmEnergy
+    bearing : JournalBearing
+    field : ViscosityField
+        Takes the viscosity of the temperature field to the film.
+    """
+
+    def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField) -> None:
+        self.spec = spec
+        self.field = field
+        self.lubricant = oil = bearing.lubricant
+        self.reference = reference_viscosity(oil)
+        supply = spec.supply_temperature
+        self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
+        bush = supply if spec.bush_temperature is None else spec.bush_temperature
+        journal = supply if spec.journal_temperature is None else spec.journal_temperature
+        self.flow_capacity = oil.density * oil.specific_heat
+        self.transfer = spec.bush_coefficient + spec.journal_coefficient
+        self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
+        self.temperature = np.zeros((0, 0))
+        self.start: np.ndarray | None = None
+        self.number: np.ndarray | None = None
+
+    def initial_temperature(self, model: BearingModel) -> np.ndarray:
+        """(n, m) array, K, at the start of a motion."""
+        if self.start is None:
+            self.start = np.full(model.grid.shape, float(self.initial))
+        return self.start
+
+    def begin(self, model: BearingModel, history: History | None) -> None:
+        """Set the film's viscosity field for the temperatures at the start of the step."""
+        known = history is not None and history.temperature is not None
+        T = np.asarray(history.temperature) if known else self.initial_temperature(model)  # type: ignore[union-attr]
+        if T is not self.temperature:
+            self.temperature = T
+            self.field.set(viscosity_ratio(self.lubricant, T, self.reference))
+
+    def advance(self, model: BearingModel) -> np.ndarray:
+        """Temperatures at the end of the step that was evaluated last (n, m)."""
+        if model.start[1] <= 0.0:
+            return self.temperature
+        return self._solve(model, model.start[1])[0]
+
+    def steady_temperature(self, model: BearingModel) -> np.ndarray:
+        """Temperatures in balance with the heat of the last evaluation (n, m); not finite without a way out for the heat.
+
+        The heat is taken to follow the viscosity, linearised at the temperatures of that evaluation, so that repeated use
+        converges where the heating is strong; the fixed point is that of the heat itself.
+        """
+        flows = OilFlows(model)
+        if (
+            self.transfer == 0.0
+            and flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
+            and self._heat(model).max() > 0.0
+        ):
+            return np.full(model.grid.shape, np.inf)
+        return self._solve(model, 0.0)[0]
+
+    def balance(self, model: BearingModel, temperature: np.ndarray) -> dict[str, float]:
+        """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
+        return self._solve(model, model.start[1], temperature)[1]
+
+    def _wall(self, model: BearingModel) -> tuple[float | np.ndarray, float | np.ndarray]:
+        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K: floats, or (n, m) with a conductivity.
+
+        A parabola across the film with mean T and the surfaces' s_1, s_2 passes ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the
+        like on the other side; both solved for the surfaces.
+        """
+        (U1, T1), (U2, T2) = self.walls
+        if self.spec.conductivity is None or self.transfer == 0.0:
+            return self.transfer, (U1 * T1 + U2 * T2) / max(self.transfer, 1e-300)
+        film = self.spec.conductivity / (model.bearing.radial_clearance * model.solver.H)
+        both = U1 * U2 + film * self.transfer
+        return (
+            12.0 * film * both / (U1 * U2 + 4.0 * film * self.transfer + 12.0 * film**2),
+            (0.5 * U1 * U2 * (T1 + T2) + film * (U1 * T1 + U2 * T2)) / both,
+        )
+
+    def _heat(self, model: BearingModel) -> np.ndarray:
+        """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
+        s, R = model.solver, model.grid.reference_length
+        area = s.area * R**2
+        speed = R * model.omega
+        ratio = 1.0 if model.ratio is None else model.ratio
+        couette = (
+            model.shear_scale
+            * (model.omega**2 + (model.axial_speed / R) ** 2)
+            * s.area
+            * R**2
+            * model.share()
+            * ratio
+            / s.H
+        )
+        contact = model.pressing
+        if contact is not None:
+            for k, effect in enumerate(model.effects.contacts):
+                g_theta, g_z, _ = model.slip(effect)
+                work = effect.friction_coefficient * (g_theta * speed + g_z * model.axial_speed)
+                couette = couette + work * contact.P[k] * area
+        flow_power = model.flow_scale * model.pressure_scale
+        heat = np.empty(model.grid.shape)
+        # The links' flows of a compressible film are mass flows, which dissipate the drop of the flow work.
+        drop = model.P if model.compressible is None else model.compressible.flow_work(model.P)
+        film_heat(drop, s.pressure, s.system.kx, s.system.kz, couette / flow_power, heat)
+        return heat * flow_power
+
+    def _solve(
+        self, model: BearingModel, step: float, known: np.ndarray | None = None
+    ) -> tuple[np.ndarray, dict[str, float]]:
+        """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
+        area, shape = model.solver.area, model.grid.shape
+        supply, old = self.spec.supply_temperature, self.temperature
+        scale = self.flow_capacity * model.flow_scale
+        heat, flows = self._heat(model), OilFlows(model)
+        leaving = np.maximum(-flows.outside, 0.0)
+        found, lost = np.maximum(flows.found, 0.0), np.maximum(-flows.found, 0.0)
+        total_found, total_lost = float(found.sum()), float(lost.sum())
+        back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
+        weight = lost / total_lost if total_lost > 0.0 else lost
+        store = area * flows.content / step if step > 0.0 else np.zeros(shape)
+        transfer, wall = self._wall(model)
+        walls = transfer * area * model.grid.reference_length**2 / scale
+        if known is None:
+            rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
+            # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
+            thinning = self._thinning() * heat / scale if step == 0.0 else 0.0
+            diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
+            rhs = np.empty((2, *shape))
+            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
+            rhs[1] = back * found
+            T0, T1 = self._solve_band(flows.x, flows.z, diagonal, rhs)
+            mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
+            T = supply + T0 + mixed * T1
+        else:
+            T = known
+        rise = T - supply
+        mixed = float(np.sum(weight * rise))
+        stored = float(np.sum(store * (T - old))) if step > 0.0 else 0.0
+        carried = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
+        return T, {
+            "heat_in": float(heat.sum()),
+            "carried_out": scale * carried,
+            "conducted": scale * float(np.sum(walls * (T - wall))),
+            "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
+        }
+
+    def _thinning(self) -> np.ndarray:
+        """-d ln(mu) / dT at the film's temperatures, 1/K (n, m)."""
+        thicker, thinner = (
+            viscosity_ratio(self.lubricant, self.temperature + d, self.reference) for d in (-0.05, 0.05)
+        )
+        return np.log(thicker / thinner) / 0.1
+
+    def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:
+        """Solve the upwind system for the fields rhs (k, n, m)."""
+        n, m = qx.shape
+        if self.number is None:
+            self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
+            _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
+            self.lower, self.upper = np.zeros((n * m, self.width + 2 + PAD)), np.zeros((n * m, self.width + 2 + PAD))
+            self.inverse = np.zeros(n * m)
+        assemble_energy(qx, qz, diagonal, self.number, self.width, self.lower, self.upper)
+        x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
+        if not factor_lu(self.lower, self.upper, n * m, self.width, self.inverse):
+            return np.full(rhs.shape, np.inf)
+        solve_lu(self.lower, self.upper, self.inverse, n * m, self.width, x)
+        out = np.empty_like(x)
+        out[:, self.order] = x
+        return out.reshape(rhs.shape)
+
+    def quantities(self) -> dict[str, float]:
+        """Mean and largest temperature of the film that was evaluated last, K."""
+        return {"film_temperature": float(self.temperature.mean()), "peak_temperature": float(self.temperature.max())}

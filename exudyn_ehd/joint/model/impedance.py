@@ -1,0 +1,142 @@
+"""A bearing model from an impedance map; the same interface as `exudyn_ehd.joint.model.rigid`, for aligned plain bearings."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, ImpedanceTable, impedance_table, impedance_wrench
+from exudyn_ehd.status import FilmError, Status
+
+# Tilt that counts as none: share of the smallest gap that it may take at the ends. Its effect on the force is of second order.
+NEGLIGIBLE_TILT = 0.01
+_TILTED = 4
+_OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)
+
+
+class ImpedanceEvaluation:
+    """One evaluation; see `exudyn_ehd.joint.evaluation.Evaluation`."""
+
+    __slots__ = ("_model", "_tangent", "iterations", "motion", "status", "wrench")
+
+    def __init__(
+        self, model: ImpedanceModel, status: Status, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray
+    ) -> None:
+        self._model = model
+        self._tangent = tangent
+        self.status = status
+        self.motion = motion
+        self.wrench = wrench
+        self.iterations = 0
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10), exact; columns and rows of the tilt are zero; nan without a film."""
+        return self._tangent
+
+    def quantities(self) -> dict[str, float]:
+        """``minimum_gap``, ``eccentricity_ratio``, ``friction_torque``, ``friction_torque_bush``, ``power_loss``, ``contact_load``."""
+        return self._model.quantities(self)
+
+    def history(self) -> None:
+        """The map has no memory."""
+        return None
+
+
+class ImpedanceModel:
+    """Force of a plain aligned bearing from its impedance map.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        With ``film=ImpedanceMap(...)``.
+
+    Attributes
+    ----------
+    table : ImpedanceTable
+        With the map's measured error (``worst_error``, ``median_error``).
+    """
+
+    remembers = False
+    needs_spin = False
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        assert isinstance(bearing.film, ImpedanceMap)
+        self.bearing = bearing
+        ratio = bearing.length / bearing.journal_radius
+        self.table: ImpedanceTable = impedance_table(bearing.film, bearing.cavitation, ratio)
+        R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
+        self.force_scale = 2.0 * R * bearing.length * mu * (R / c) ** 2
+        self.shear_scale = mu * R**2 / c
+        t = self.table
+        self.parameters = np.array(
+            [
+                t.step_s,
+                t.step_alpha,
+                t.largest_eccentricity_ratio,
+                c,
+                R,
+                0.5 * bearing.length,
+                self.force_scale,
+                self.shear_scale * 2.0 * math.pi * ratio,
+                NEGLIGIBLE_TILT,
+            ]
+        )
+
+    def forget(self) -> None:
+        """There is no warm start."""
+
+    def initial_history(self, motion: np.ndarray) -> None:
+        """There is no memory."""
+        return None
+
+    def evaluate(
+        self, motion: np.ndarray, history: None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ImpedanceEvaluation:
+        """Force at a motion (10,) in the joint frame, SI units; the other arguments are not used.
+
+        Raises
+        ------
+        FilmError
+            If the journal is tilted by more than is negligible.
+        """
+        motion = np.array(motion, dtype=float)
+        wrench, tangent = np.empty(6), np.empty((6, 10))
+        code = impedance_wrench(self.table.nodes, self.parameters, motion, wrench, tangent)
+        if code == _TILTED:
+            self._refuse_tilt(motion)
+        return ImpedanceEvaluation(self, _OUTCOMES[code], motion, wrench, tangent)
+
+    def _refuse_tilt(self, motion: np.ndarray) -> None:
+        b = self.bearing
+        slope = math.hypot(motion[2], motion[3])
+        gap = b.radial_clearance - math.hypot(motion[0], motion[1])
+        raise FilmError(
+            f"ImpedanceMap: the journal is tilted by {slope:.3g} rad, which takes {0.5 * slope * b.length:.3g} m of the {gap:.3g} m "
+            f"gap at the ends; the map is for aligned journals (up to {NEGLIGIBLE_TILT:.0%} of the gap): guide the journal's axis, or "
+            "use film=FiniteLength(...)."
+        )
+
+    def quantities(self, evaluation: ImpedanceEvaluation) -> dict[str, float]:
+        """Scalars of an evaluation; see `ImpedanceEvaluation.quantities`."""
+        x, y, _, _, x_t, y_t, _, _, omega, w = evaluation.motion.tolist()
+        eps = math.hypot(x, y) / self.bearing.radial_clearance
+        out = {
+            "minimum_gap": self.bearing.radial_clearance * (1.0 - eps),
+            "minimum_gap_angle": math.atan2(y, x) % (2.0 * math.pi),
+            "minimum_gap_z": 0.0,
+            "eccentricity_ratio": eps,
+            "largest_eccentricity_ratio": eps,
+        }
+        if evaluation.status is not Status.CONVERGED:
+            return out
+        fx, fy, fz, _, _, torque = evaluation.wrench.tolist()
+        friction = torque - (x * fy - y * fx)
+        power = fx * x_t + fy * y_t + friction * omega + fz * w
+        return out | {
+            "friction_torque": friction,
+            "friction_torque_bush": -torque,
+            "power_loss": -power,
+            "contact_load": 0.0,
+        }

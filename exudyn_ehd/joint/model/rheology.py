@@ -1,0 +1,135 @@
+"""From a lubricant's laws to the seams of a bearing model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.options import LumpedThermal
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
+from exudyn_ehd.joint.seams import FluxEffect, PressureLaw, ShearFactor, ThermalEffect
+from exudyn_ehd.status import InputError
+
+
+@dataclass(frozen=True)
+class Rheology:
+    """What the lubricant and the thermal effect contribute to a model; absent laws leave None.
+
+    Attributes
+    ----------
+    flux : tuple of FluxEffect
+    pressure_law : PressureLaw or None
+    shear_factor : ShearFactor or None
+    thermal : ThermalEffect or None
+    density : CompressibleLaw or None
+        Of a compressible film; the same object as ``pressure_law``.
+    """
+
+    flux: tuple[FluxEffect, ...] = ()
+    pressure_law: PressureLaw | None = None
+    shear_factor: ShearFactor | None = None
+    thermal: ThermalEffect | None = None
+    density: CompressibleLaw | None = None
+
+
+class ProductFactor:
+    """Product of two shear factors."""
+
+    def __init__(self, first: ShearFactor, second: ShearFactor) -> None:
+        self.first, self.second = first, second
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """Product rule for the ratio and its derivatives to H and vx."""
+        r, r_h, r_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
+        self.first.factor(H, vx, r, r_h, r_v)
+        self.second.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
+        ratio_h_out *= r
+        ratio_h_out += r_h * ratio_out
+        ratio_v_out *= r
+        ratio_v_out += r_v * ratio_out
+        ratio_out *= r
+
+
+def collect_rheology(bearing: JournalBearing) -> Rheology:
+    """Laws of the lubricant and the thermal effect of a bearing.
+
+    Raises
+    ------
+    InputError
+        For a thermal effect whose lubricant has no temperature law.
+    """
+    oil, thermal = bearing.lubricant, bearing.thermal
+    if oil.pressure_law is None and oil.shear_law is None and oil.density_law is None and thermal is None:
+        return Rheology()
+    law: PressureLaw | None = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
+    density = compressible_law(oil)
+    if density is not None:
+        law = density
+    flux: tuple[FluxEffect, ...] = ()
+    factor: ShearFactor | None = None
+    if oil.shear_law is not None:
+        thinning = ShearThinning(oil.shear_law, bearing.journal_radius, bearing.radial_clearance)
+        flux, factor = (thinning,), thinning
+    if thermal is None:
+        return Rheology(flux, law, factor, None, density)
+    if oil.temperature_law is None:
+        raise InputError(
+            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on temperature, "
+            'got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
+        )
+    if isinstance(thermal, LumpedThermal):
+        return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing), density)
+    field = ViscosityField()
+    product = field if factor is None else ProductFactor(field, factor)
+    return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field), density)
+
+
+def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
+    """The lubricant's density law with its viscosity's pressure law; None for an incompressible one."""
+    if lubricant.density_law is None:
+        return None
+    viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
+    return lubricant.density_law.bound(viscosity)
+
+
+def _transform_law(lubricant: Lubricant) -> PressureLaw | None:
+    density = compressible_law(lubricant)
+    if density is not None or lubricant.pressure_law is None:
+        return density
+    return lubricant.pressure_law.bound(lubricant.viscosity)
+
+
+def known_pressures(lubricant: Lubricant, boundary: float | np.ndarray, cavity: float) -> tuple[np.ndarray, float]:
+    """Prescribed pressures and cavity pressure in the transformed variable, Pa.
+
+    Raises
+    ------
+    InputError
+        For a shear law: a film of any gap has no single sliding speed.
+    """
+    if lubricant.shear_law is not None:
+        raise InputError(
+            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs the sliding "
+            "speed of a JournalBearing (steady)."
+        )
+    law = _transform_law(lubricant)
+    if law is None:
+        return np.asarray(boundary), cavity
+    return law.transform(np.asarray(boundary, dtype=float)), float(law.transform(np.array([cavity]))[0])
+
+
+def true_pressure(lubricant: Lubricant, q: np.ndarray, scale: float) -> np.ndarray | None:
+    """Pressure (n, m) from the transformed one, both divided by ``scale`` in Pa; None if there is none."""
+    law = _transform_law(lubricant)
+    if law is None:
+        return q
+    p, ratio, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
+    found = law.inverse(q * scale, p, ratio, slope)
+    return p / scale if found else None

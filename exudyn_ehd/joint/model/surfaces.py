@@ -1,0 +1,134 @@
+"""Effects of the surfaces, from a bearing's description: profile, wear, roughness and asperity contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FiniteLength
+from exudyn_ehd.film.models import film_grid
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.asperity import AsperityContact
+from exudyn_ehd.film.surfaces.average_gap import AverageGap
+from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
+from exudyn_ehd.film.surfaces.profile import ProfileTerm
+from exudyn_ehd.film.surfaces.wear import WearDepth
+from exudyn_ehd.joint.seams import Contact, FluxEffect, GapLimiter, GapTerm, History, ShearFactor, Wear
+from exudyn_ehd.status import InputError
+
+
+@dataclass(frozen=True)
+class SurfaceEffects:
+    """What the surfaces of a bearing contribute to its model; empty for smooth ones."""
+
+    gap_terms: tuple[GapTerm, ...] = ()
+    wear: Wear | None = None
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    shear_factor: ShearFactor | None = None
+    uneven_drag: bool = False
+
+
+def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffects:
+    """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``.
+
+    Raises
+    ------
+    InputError
+        For options that exclude or contradict each other.
+    """
+    c = bearing.radial_clearance
+    gap_terms: list[GapTerm] = []
+    wear = None
+    if bearing.profiles or bearing.wear is not None:
+        grid = film_grid(bearing.film, bearing.journal_radius, bearing.length, start_angle=start_angle, open_ring=False)
+        if bearing.profiles:
+            gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
+        if bearing.wear is not None:
+            _check_wear(bearing)
+            wear = WearDepth(bearing.wear, grid.shape, c)
+            gap_terms.append(WearTerm(wear))
+    if bearing.asperity is None and bearing.roughness is None:
+        return SurfaceEffects(gap_terms=tuple(gap_terms))
+    return replace(_rough_effects(bearing), gap_terms=tuple(gap_terms), wear=wear)
+
+
+class WearTerm:
+    """The worn depth at the start of the step as a gap term."""
+
+    def __init__(self, wear: WearDepth) -> None:
+        self.wear = wear
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled depth (n, m)."""
+        return self.wear.depth(None if history is None else history.wear)
+
+
+def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
+    _check(bearing)
+    c = bearing.radial_clearance
+    contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
+    if bearing.roughness is None:
+        return SurfaceEffects(limiter=contact, contacts=() if contact is None else (contact,))
+    residual = 0.0 if contact is None else contact.residual
+    return SurfaceEffects(
+        limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
+        contacts=() if contact is None else (contact,),
+        flux=(RoughFlow(bearing.roughness, c, residual),),
+        shear_factor=RoughShear(bearing.roughness, c, residual),
+        uneven_drag=bearing.roughness.journal_share != 0.5,
+    )
+
+
+def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
+    """The bearing's elastic liner, if it can be solved with the other options.
+
+    Raises
+    ------
+    InputError
+        For options that a liner does not go with.
+    """
+    if not isinstance(bearing.bush, ElasticLiner):
+        return None
+    excluded = {
+        f"film={type(bearing.film).__name__}()": not isinstance(bearing.film, FiniteLength),
+        "lubricant.density_law": bearing.lubricant.density_law is not None,
+    }
+    for option, present in excluded.items():
+        if present:
+            raise InputError(
+                f"JournalBearing.bush=ElasticLiner(...) can't be combined with {option}: its film is solved in two dimensions, with "
+                "constant density; leave one of the two out."
+            )
+    return bearing.bush
+
+
+def _check_wear(bearing: JournalBearing) -> None:
+    if bearing.asperity is None:
+        raise InputError(
+            "JournalBearing.wear=ArchardWear(...) needs a contact pressure to wear with; give the bearing "
+            "asperity=GreenwoodTripp(...), or leave wear out."
+        )
+
+
+def _check(bearing: JournalBearing) -> None:
+    asperity, roughness = bearing.asperity, bearing.roughness
+    if bearing.contact is not None:
+        raise InputError(
+            "JournalBearing.contact=RegularisedWall(...) and the gap of rough surfaces (asperity, roughness) exclude each other: "
+            "both say which gap the film sees where surfaces touch; keep asperity=GreenwoodTripp(...) and leave out the wall."
+        )
+    if asperity is not None and roughness is not None and asperity.composite_roughness != roughness.composite_roughness:
+        raise InputError(
+            f"PatirCheng.composite_roughness ({roughness.composite_roughness:g} m) must equal "
+            f"GreenwoodTripp.composite_roughness ({asperity.composite_roughness:g} m); they describe the same surfaces."
+        )
+    sigma = (roughness if asperity is None else asperity).composite_roughness  # type: ignore[union-attr]
+    if not 4.0 * sigma < bearing.radial_clearance:
+        raise InputError(
+            f"JournalBearing: the composite roughness {sigma:g} m must be below a quarter of the radial clearance "
+            f"{bearing.radial_clearance:g} m; it is the standard deviation of the heights, in metres."
+        )

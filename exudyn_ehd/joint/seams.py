@@ -1,0 +1,224 @@
+"""The seams of a bearing model: what an effect must offer to take part. Absent effects are absent from these tuples.
+
+All fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by the model's ``pressure_scale``; contact pressures and
+pressure laws are in Pa.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
+
+import numpy as np
+
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.reynolds.flux import FluxEffect
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.model.rigid import BearingModel
+
+__all__ = [
+    "Contact",
+    "Effects",
+    "FluxEffect",
+    "GapLimiter",
+    "GapTerm",
+    "History",
+    "PressureLaw",
+    "ShearFactor",
+    "ShearProduct",
+    "ThermalEffect",
+    "Wear",
+]
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What a bearing remembers between accepted steps; absent effects leave None.
+
+    Attributes
+    ----------
+    mass : (n, m) array or None
+        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
+    wear : (n, m) array or None
+        Scaled wear depth of the bore.
+    temperature : float, (n, m) array or None
+        Film temperature, K.
+    deflection : (n, m) array or None
+        Scaled deflection of an elastic liner.
+    density : (n, m) array or None
+        Density ratio of a compressible film (mass-conserving closures with a heat balance).
+    """
+
+    mass: np.ndarray | None = None
+    wear: np.ndarray | None = None
+    temperature: float | np.ndarray | None = None
+    deflection: np.ndarray | None = None
+    density: np.ndarray | None = None
+
+
+class GapTerm(Protocol):
+    """Adds to the gap of the rigid surfaces; must not depend on the motion."""
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
+
+
+class GapLimiter(Protocol):
+    """Keeps the gap that the film sees above zero where surfaces touch."""
+
+    @property
+    def limits_below(self) -> float:
+        """Scaled gap from which on the film sees the gap itself."""
+
+    def limit(
+        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
+        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
+    ) -> None:  # fmt: skip
+        """Replace gaps at vertices (H) and links (HF) and the gap's rate (H_t) by the film's, in place.
+
+        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the gap's rate.
+        """
+
+
+class Contact(Protocol):
+    """A pressure between the surfaces that depends on the true gap alone."""
+
+    @property
+    def presses_below(self) -> float:
+        """Scaled gap from which on there is no pressure."""
+
+    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
+        """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
+
+    def settle(
+        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
+    ) -> None:
+        """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place, with ``pressure`` (Pa) there and its slope over ``scale``."""
+
+    @property
+    def friction_coefficient(self) -> float:
+        """Boundary friction coefficient; 0 for a frictionless contact."""
+
+    @property
+    def transition_speed(self) -> float:
+        """Sliding speed over which Coulomb friction is regularised, m/s."""
+
+
+class Wear(Protocol):
+    """A depth that the contact pressure adds to the gap, step by accepted step."""
+
+    def depth(self, wear: np.ndarray | None) -> np.ndarray:
+        """Scaled depth (n, m) of a history; zero for None."""
+
+    def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
+        """Scaled depth (n, m) after a step (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
+
+
+class PressureLaw(Protocol):
+    """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
+
+    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever the law: the
+    complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
+    """
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
+
+    def transform(self, p: np.ndarray) -> np.ndarray:
+        """q(p), Pa."""
+
+    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
+        """p(q), mu(p)/mu_0 (= dp/dq but for a compressible film) and its derivative to q (1/Pa); False where q has no p."""
+
+
+class ShearFactor(Protocol):
+    """Factor on the viscosity of Couette shear and of the fluxes that depends on the gap and on the sliding speed."""
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """mu/mu_0 at the vertices with its derivatives with respect to H and vx."""
+
+
+class ThermalEffect(Protocol):
+    """Temperature of the film: history of accepted steps, and viscosity of the next one.
+
+    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it will become.
+    """
+
+    @property
+    def temperature(self) -> float | np.ndarray:
+        """K, of the film that was evaluated last."""
+
+    def initial_temperature(self, model: BearingModel) -> float | np.ndarray:
+        """K, at the start of a motion."""
+
+    def begin(self, model: BearingModel, history: History | None) -> None:
+        """Set the viscosity for the temperature of the history."""
+
+    def advance(self, model: BearingModel) -> float | np.ndarray:
+        """Temperature at the end of the step that was evaluated last, K."""
+
+    def steady_temperature(self, model: BearingModel) -> float | np.ndarray:
+        """Temperature in balance with the heat of the last evaluation, K; not finite if there is none."""
+
+    def quantities(self) -> dict[str, float]:
+        """``film_temperature`` and ``peak_temperature`` of the film that was evaluated last, K."""
+
+
+class ShearProduct:
+    """Two shear factors that act together: their product, with the product rule for the derivatives."""
+
+    def __init__(self, first: ShearFactor, second: ShearFactor) -> None:
+        self.first, self.second = first, second
+
+    def factor(
+        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
+    ) -> None:
+        """Product of both factors with its derivatives with respect to H and vx."""
+        other, other_h, other_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
+        self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
+        self.second.factor(H, vx, other, other_h, other_v)
+        ratio_h_out *= other
+        ratio_h_out += ratio_out * other_h
+        ratio_v_out *= other
+        ratio_v_out += ratio_out * other_v
+        ratio_out *= other
+
+
+@dataclass(frozen=True)
+class Effects:
+    """What takes part in a bearing model beside the plain film; empty by default.
+
+    Attributes
+    ----------
+    gap_terms : tuple of GapTerm
+    limiter : GapLimiter or None
+    contacts : tuple of Contact
+    flux : tuple of FluxEffect
+    pressure_law : PressureLaw or None
+    shear_factor : ShearFactor or None
+    thermal : ThermalEffect or None
+    density : CompressibleLaw or None
+        Of a compressible film; then also the ``pressure_law``.
+    wear : Wear or None
+        Grows with the pressure of the contacts; its depth takes part through one of ``gap_terms``.
+    liner : ElasticLiner or None
+    uneven_drag : bool
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.drag`.
+    """
+
+    gap_terms: tuple[GapTerm, ...] = ()
+    limiter: GapLimiter | None = None
+    contacts: tuple[Contact, ...] = ()
+    flux: tuple[FluxEffect, ...] = ()
+    pressure_law: PressureLaw | None = None
+    shear_factor: ShearFactor | None = None
+    thermal: ThermalEffect | None = None
+    density: CompressibleLaw | None = None
+    wear: Wear | None = None
+    liner: ElasticLiner | None = None
+    uneven_drag: bool = False

@@ -1,0 +1,289 @@
+"""The position in which a film carries a steady load, without a multibody model, with stiffness, damping and whirl threshold."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, evaluate_at, history_at, require_oil, result_at
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
+
+LARGEST_LOAD_STEPS = 100
+LOADS = {"smallest": 1e-30, "largest": 1e15}
+LARGEST_CREEP_STEPS = 300
+STEP_HALVINGS = 8
+LOAD_TOLERANCE = 1e-10
+# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
+FORCE_ROUNDING = 1e-16
+
+
+@dataclass(frozen=True, eq=False)
+class EquilibriumResult:
+    """Equilibrium of an aligned or tilted journal under a steady load.
+
+    Attributes
+    ----------
+    position : (2,) array
+        x, y of the journal axis at the mid-plane, m.
+    eccentricity_ratio, attitude_angle : float
+        e/c; angle from the load to the eccentricity in the sense of rotation, rad.
+    stiffness, damping : (2, 2) arrays
+        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame.
+    whirl_ratio : float
+        Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
+    critical_mass : float
+        Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at any.
+    residual : float
+        Largest component of film force + load, divided by the load.
+    iterations : int
+        Film evaluations.
+    film : SteadyResult
+    """
+
+    position: np.ndarray
+    eccentricity_ratio: float
+    attitude_angle: float
+    stiffness: np.ndarray
+    damping: np.ndarray
+    whirl_ratio: float
+    critical_mass: float
+    residual: float
+    iterations: int
+    film: SteadyResult = field(repr=False)
+
+
+def equilibrium(
+    bearing: JournalBearing, *, speed: float, load: tuple[float, float], tilt: tuple[float, float] = (0.0, 0.0)
+) -> EquilibriumResult:
+    """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
+
+    Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
+    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a falling resistance.
+
+    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping that of a
+    sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion. A transient
+    joint has what lies between.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        With ``inlet=Periodic()``.
+    speed : float
+        Relative spin, rad/s, not 0.
+    load : (float, float)
+        Force on the journal in x and y, N, not zero.
+    tilt : (float, float)
+        Slopes (bx, by), held fixed, rad.
+
+    Raises
+    ------
+    InputError
+        For a zero load or speed, or an inlet that a moving journal can't have.
+    FilmError
+        If no equilibrium was found.
+    """
+    force = require_vector("equilibrium: load", load, 2, "N")
+    omega = require_number("equilibrium: speed", speed, "rad/s")
+    b = require_vector("equilibrium: tilt", tilt, 2, "rad")
+    size = float(np.hypot(*force))
+    if size == 0.0 or omega * bearing.journal_radius == 0.0:
+        raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
+    require_size("equilibrium: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("equilibrium: load", size, "N", **LOADS)
+    if isinstance(bearing.inlet, MaximumGap):
+        raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
+    require_oil(bearing, "equilibrium")
+    model = build_study_model(bearing, 0.0)
+    motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
+    motion[:2] = first_guess(bearing, omega, force, b)
+    tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * bearing.reference_force(omega) / size)
+    start = motion[:2].copy()
+    count, residual, tangent = _newton(model, motion, force, tolerance)
+    if residual > tolerance:
+        motion[:2] = start
+        more, residual, tangent = _creep(model, motion, force, tolerance)
+        count += more
+    if residual > tolerance:
+        raise FilmError(
+            f"equilibrium: no position found that carries {size:.4g} N in {count} steps; the nearest is off by {residual:.2g} of the "
+            f"load, at eccentricity ratio {np.hypot(*motion[:2]) / bearing.radial_clearance:.4f}. A load this high may need "
+            "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film may carry "
+            "no such load at any position: look at ehd.steady(...) around there."
+        )
+    K, C = -tangent[:2, :2], -_rate_tangent(model, tangent)[:2, 4:6]
+    ratio, mass = whirl_threshold(K, C, abs(omega))
+    film = result_at(model, motion, "equilibrium")
+    return EquilibriumResult(
+        position=motion[:2].copy(),
+        eccentricity_ratio=float(np.hypot(*motion[:2])) / bearing.radial_clearance,
+        attitude_angle=film.attitude_angle,
+        stiffness=K,
+        damping=C,
+        whirl_ratio=ratio,
+        critical_mass=mass,
+        residual=residual,
+        iterations=count,
+        film=film,
+    )
+
+
+def _newton(
+    model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
+) -> tuple[int, float, np.ndarray]:
+    """Newton's method from ``motion`` (changed in place): steps, unbalance over load, tangent at the end."""
+    size = float(np.hypot(*force))
+    count, residual = 0, math.inf
+    wrench = evaluate_at(model, motion, "equilibrium")
+    tangent = model.steady_tangent()
+    while count < LARGEST_LOAD_STEPS:
+        count += 1
+        unbalance = wrench[:2] + force
+        residual = float(np.max(np.abs(unbalance))) / size
+        if residual <= tolerance:
+            break
+        try:
+            wrench = _move(model, motion, _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance)))
+        except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
+            break
+        tangent = model.steady_tangent()
+    return count, residual, tangent
+
+
+def _creep(
+    model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
+) -> tuple[int, float, np.ndarray]:
+    """As `_newton`, by way of the journal's creep: a viscous resistance r holds it back, which falls as the unbalance does.
+
+    ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure where Newton's
+    method jumps over a film that starves or touches.
+    """
+    size = float(np.hypot(*force))
+    unbalance = evaluate_at(model, motion, "equilibrium")[:2] + force
+    tangent = model.steady_tangent()
+    resistance, count = 10.0 * size / model.bearing.radial_clearance, 1
+    while count < LARGEST_CREEP_STEPS and float(np.max(np.abs(unbalance))) > tolerance * size:
+        try:
+            step = np.linalg.solve(resistance * np.eye(2) - tangent[:2, :2], unbalance)
+        except np.linalg.LinAlgError:
+            resistance *= 4.0
+            count += 1
+            continue
+        base = motion[:2].copy()
+        motion[:2] += _limited_step(model, motion, step)
+        count += 1
+        try:
+            trial = evaluate_at(model, motion, "equilibrium")[:2] + force
+        except FilmError:
+            trial = np.full(2, math.inf)
+        if float(np.hypot(*trial)) < float(np.hypot(*unbalance)):
+            unbalance, tangent = trial, model.steady_tangent()
+            resistance /= 5.0
+        else:
+            motion[:2] = base
+            resistance *= 4.0
+    evaluate_at(model, motion, "equilibrium")
+    return count, float(np.max(np.abs(unbalance))) / size, tangent
+
+
+def _rate_tangent(model: BearingModel, tangent: np.ndarray) -> np.ndarray:
+    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner; see `equilibrium`."""
+    if model.liner_solver is not None:
+        return model.tangent(slow_motion=True)
+    if not model.remembers_mass:
+        return tangent
+    model.evaluate(model.motion, model.history())
+    return model.steady_tangent()
+
+
+def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
+    """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
+
+    The guess only saves steps. It stays inside the gap that the tilt leaves.
+    """
+    target = float(np.hypot(*force)) / bearing.reference_force(omega)
+    ratio = (0.5 * bearing.length / bearing.journal_radius) ** 2
+    room = 1.0 - 0.5 * bearing.length * float(np.hypot(*tilt)) / bearing.radial_clearance
+    lower, upper = 0.0, 1.0
+    for _ in range(40):
+        eps = 0.5 * (lower + upper)
+        s = 1.0 - eps * eps
+        short = ratio * eps / (2.0 * s * s) * math.sqrt(math.pi**2 * s + 16.0 * eps * eps)
+        long = 3.0 * eps * math.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps * eps) * s)
+        if short * long / (short + long + 1e-300) < target:
+            lower = eps
+        else:
+            upper = eps
+    eps = lower * max(room, 0.02)
+    angle = math.atan2(force[1], force[0]) + math.copysign(
+        math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps), omega
+    )
+    return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
+
+
+def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
+    motion[:2] += step
+    if hasattr(model, "bore"):
+        for _ in range(STEP_HALVINGS):
+            evaluation = model.evaluate_steady(motion, history_at(model, motion, "equilibrium"))
+            if evaluation.status is Status.CONVERGED:
+                return evaluation.wrench
+            step = 0.5 * step
+            motion[:2] -= step
+    return evaluate_at(model, motion, "equilibrium")
+
+
+def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
+    if model.effects.contacts or hasattr(model, "bore"):
+        longest = 0.3 * model.bearing.radial_clearance
+        return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
+    c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length
+    scale = 1.0
+    for s in (-half, half):
+        e = motion[:2] + s * motion[2:4]
+        allowed = float(np.hypot(*e)) + 0.6 * (c - float(np.hypot(*e)))
+        a, b, d = float(step @ step), float(e @ step), float(e @ e) - allowed**2
+        if a > 0.0:
+            scale = min(scale, (-b + math.sqrt(b * b - a * d)) / a)
+    return scale * step
+
+
+def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:
+    """Whirl ratio and critical mass of a rigid rotor on one bearing (half of a symmetric rotor on two).
+
+    With ``det(M s^2 + C s + K) = 0`` at ``s = i gamma omega``::
+
+        k = (Kxx Cyy + Kyy Cxx - Kxy Cyx - Kyx Cxy) / (Cxx + Cyy),
+        (gamma omega)^2 = ((k - Kxx)(k - Kyy) - Kxy Kyx) / (Cxx Cyy - Cxy Cyx),   M = k / (gamma omega)^2.
+
+    Source: J. W. Lund, J. Tribology 109 (1987) 37, derived again from the determinant.
+
+    Parameters
+    ----------
+    stiffness, damping : (2, 2) arrays
+    omega : float
+        Spin, rad/s, > 0.
+
+    Returns
+    -------
+    whirl_ratio, critical_mass : float
+        (nan, inf) if stable at any mass; (nan, 0) if k is not positive, that is unstable at any mass.
+    """
+    (kxx, kxy), (kyx, kyy) = stiffness
+    (cxx, cxy), (cyx, cyy) = damping
+    trace = cxx + cyy
+    if trace <= 0.0:
+        return math.nan, 0.0
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
+    if k <= 0.0:
+        return math.nan, 0.0
+    square = ((k - kxx) * (k - kyy) - kxy * kyx) / (cxx * cyy - cxy * cyx)
+    if square <= 0.0:
+        return math.nan, math.inf
+    return math.sqrt(square) / omega, k / square

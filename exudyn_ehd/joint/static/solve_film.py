@@ -1,0 +1,178 @@
+"""Film of any gap, on a bearing's ring or on a slider, without a journal: `solve_film`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
+from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.joint.model.rheology import compressible_law, known_pressures, true_pressure
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
+
+
+@dataclass(frozen=True, eq=False)
+class FilmResult:
+    """Film of any gap, from `solve_film`.
+
+    Attributes
+    ----------
+    status : Status
+    iterations : int
+        Linear solves.
+    pressure : (n, m) array
+        Gauge pressure, Pa.
+    gap : (n, m) array
+        m.
+    unbroken : (n, m) bool array
+        Where the film is not cavitated (prescribed vertices excluded).
+    inflow : (n, m) array
+        Volume flow that every prescribed vertex feeds into the film, m3/s; zero elsewhere.
+    load : float
+        Integral of the pressure, N.
+    fill : (n, m) array
+        Film fraction; ones for closures that do not conserve mass.
+    content : (n, m) array
+        fill times gap, m, and times the density over that at ambient pressure if the lubricant has a density law: the
+        ``history`` of the next step.
+    """
+
+    status: Status
+    iterations: int
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    inflow: np.ndarray
+    load: float
+    fill: np.ndarray
+    content: np.ndarray
+
+
+def solve_film(
+    grid: FilmGrid,
+    gap: np.ndarray,
+    *,
+    lubricant: Lubricant,
+    surface_speed: tuple[float, float] = (0.0, 0.0),
+    gap_rate: np.ndarray | None = None,
+    cavitation: Closure | None = None,
+    boundary: float | np.ndarray = 0.0,
+    stepped_gap: bool = False,
+    history: np.ndarray | None = None,
+    step: float = 0.0,
+) -> FilmResult:
+    """Solve the Reynolds equation for any gap, on a bearing's ring or on a slider.
+
+    Parameters
+    ----------
+    grid : FilmGrid
+        From `bearing_grid` or `slider_grid`.
+    gap : (n, m) array
+        Film thickness at the vertices, m, > 0. On links the mean of both neighbours is used, unless ``stepped_gap``.
+    lubricant : Lubricant
+        Its pressure and density laws take part; a shear law needs a bearing.
+    surface_speed : (float, float)
+        Sum of both surfaces' speeds in theta (or x) and z, m/s, in the frame in which the gap is given.
+    gap_rate : (n, m) array, optional
+        dh/dt at fixed position, m/s; None: steady.
+    cavitation : closure, optional
+        Default `SwiftStieber`.
+    boundary : float or (n, m) array
+        Gauge pressure at the prescribed vertices ``grid.fixed``, Pa.
+    stepped_gap : bool
+        True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
+        `exudyn_ehd.film.reynolds.stepped_gap`.
+    history : (n, m) array, optional
+        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its squeeze, so
+        that ``gap_rate`` is not needed. None: the film is steady.
+    step : float
+        Time since ``history``, s, > 0 with it.
+
+    Raises
+    ------
+    InputError
+        For shapes that do not fit or a gap that is not positive.
+    FilmError
+        If the film could not be solved.
+    """
+    gap = np.asarray(gap, dtype=float)
+    closure = SwiftStieber() if cavitation is None else cavitation
+    _check_film(grid, gap, gap_rate, closure, history, step)
+    speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
+    c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
+    scale = 12.0 * lubricant.viscosity * R**2 / c**2
+    H = gap / c
+    rate, mass = None if gap_rate is None else np.asarray(gap_rate) / c, None
+    if history is not None:
+        mass = np.asarray(history) / c
+        rate = (H - mass) / step
+    solver = _any_gap_solver(grid, closure, lubricant, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
+    solver.H[:] = H
+    solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
+    if rate is not None:
+        solver.H_t[:] = rate
+    boundary, cavity = known_pressures(lubricant, boundary, closure.cavity_pressure)
+    solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
+    solver.coarse = None
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), cavity / scale, mass, step)
+    pressure = true_pressure(lubricant, solver.pressure, scale) if status is Status.CONVERGED else None
+    if pressure is None and status is Status.CONVERGED:
+        status = Status.NO_PRESSURE
+    if status is not Status.CONVERGED or pressure is None:
+        raise FilmError(f"solve_film: {status.name}: {status.advice}")
+    fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
+    return FilmResult(
+        status=status,
+        iterations=iterations,
+        pressure=pressure * scale,
+        gap=gap,
+        unbroken=solver.work.active.copy(),
+        inflow=solver.inflow() * c * R**2,
+        load=float(np.sum(pressure * grid.weight)) * scale * R**2,
+        fill=fill,
+        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
+    )
+
+
+def _any_gap_solver(
+    grid: FilmGrid, closure: Closure, lubricant: Lubricant, squeeze: bool, steps: SteppedGap | None, scale: float
+) -> FilmSolver:
+    effects = () if steps is None else (steps,)
+    law = compressible_law(lubricant)
+    if law is None:
+        return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
+    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+    solver.pressure_scale = scale
+    return solver
+
+
+def _check_film(
+    grid: FilmGrid,
+    gap: np.ndarray,
+    gap_rate: np.ndarray | None,
+    closure: Closure,
+    history: np.ndarray | None,
+    step: float,
+) -> None:
+    if gap.shape != grid.shape or not np.all(np.isfinite(gap)) or gap.min() <= 0.0:
+        raise InputError(f"solve_film: gap must be finite, > 0 m and of shape {grid.shape}, got shape {gap.shape}.")
+    for name, field_ in (("gap_rate", gap_rate), ("history", history)):
+        if field_ is not None and np.shape(field_) != grid.shape:
+            raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {np.shape(field_)}.")
+    if history is None:
+        return
+    require_number("solve_film: step", step, "s", above=0.0, hint="it is the time since the history.")
+    if not closure.conserves_mass:
+        raise InputError(
+            f"solve_film: history is for closures that conserve mass, got {type(closure).__name__}; use "
+            "cavitation=ElrodAdams(...), or gap_rate for the squeeze of a film without memory."
+        )
+    if gap_rate is not None:
+        raise InputError(
+            "solve_film: give history or gap_rate, not both: the film's change since history is its squeeze."
+        )

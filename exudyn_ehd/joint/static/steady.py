@@ -1,0 +1,242 @@
+"""A prescribed position of the journal, without a multibody model; `exudyn_ehd.joint.static.equilibrium` finds the one that carries a load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
+from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.joint.audit.audit import Audit, audit_states
+from exudyn_ehd.joint.audit.samples import FilmState
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.fields import grid_fields
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.pictures.methods import FilmPictures
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
+
+SPEEDS = {"smallest": 1e-30, "largest": 1e6}
+
+
+@dataclass(frozen=True, eq=False)
+class SteadyResult(FilmPictures):
+    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.model.rigid`; SI units.
+
+    Attributes
+    ----------
+    theta, z : (n,), (m,) arrays
+        Grid, rad and m.
+    pressure, gap : (n, m) arrays
+        Pa (gauge) and m.
+    unbroken : (n, m) bool array
+        Where the film is not cavitated.
+    force, moment : (3,) arrays
+        On the journal, moment about the joint origin.
+    minimum_gap, peak_pressure, peak_angle : float
+        m, Pa, rad; peak from parabolas through the largest vertex.
+    friction_torque, friction_torque_unbroken, friction_torque_bush : float
+        Nm; about the journal's own axis (all of the clearance sheared, unbroken film only), and on the bush.
+    power_loss, leakage, contact_load : float
+        W, m3/s out of both ends, N.
+    supply_flows : (k,) array
+        m3/s out of every area of ``bearing.supply``.
+    contact_torque, contact_power_loss, peak_contact_pressure : float
+        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the loss it
+        makes (W, part of ``power_loss``); Pa.
+    sommerfeld_number, attitude_angle : float
+        So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
+        rotation, rad.
+    status, iterations : Status, int
+    fill : (n, m) array or None
+        Film fraction; None for closures that do not conserve mass.
+    temperature : (n, m) array, float or None
+        Of the film, K; None for an isothermal bearing.
+    bore_displacement : (n, m) array or None
+        Of a flexible bore, m, positive outward; None for a rigid one.
+    bore_coordinates : (k,) array or None
+        Of a flexible bore, m.
+    bearing : JournalBearing
+    motion : (10,) array
+        Of the journal, as in `exudyn_ehd.joint.model.rigid`; with a flexible bore followed by its coordinates and rates.
+    """
+
+    theta: np.ndarray
+    z: np.ndarray
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    force: np.ndarray
+    moment: np.ndarray
+    minimum_gap: float
+    peak_pressure: float
+    peak_angle: float
+    friction_torque: float
+    friction_torque_unbroken: float
+    friction_torque_bush: float
+    power_loss: float
+    leakage: float
+    contact_load: float
+    supply_flows: np.ndarray
+    contact_torque: float
+    contact_power_loss: float
+    peak_contact_pressure: float
+    sommerfeld_number: float
+    attitude_angle: float
+    status: Status
+    iterations: int
+    fill: np.ndarray | None = None
+    temperature: float | np.ndarray | None = None
+    bore_displacement: np.ndarray | None = None
+    bore_coordinates: np.ndarray | None = None
+    bearing: JournalBearing = field(repr=False, kw_only=True)
+    motion: np.ndarray = field(repr=False, kw_only=True)
+
+    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
+        """Which effects matter at this position, which are left out, which are paid for in vain; print it for a table.
+
+        Parameters
+        ----------
+        liner : ElasticLiner, optional
+            Of which to say whether its elasticity would matter; for bearings without one.
+        measure_time : bool
+            Measure the share of the time that every effect takes which is on.
+        """
+        open_ring = isinstance(self.bearing.inlet, MaximumGap)
+        start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
+        model = build_study_model(self.bearing, start)
+        state = FilmState(self.motion, history_at(model, self.motion, "audit"))
+        return audit_states(model, [state], liner=liner, measure_time=measure_time)
+
+
+def steady(
+    bearing: JournalBearing,
+    *,
+    speed: float,
+    eccentricity_ratio: float,
+    direction: float = 0.0,
+    tilt: tuple[float, float] = (0.0, 0.0),
+    velocity: tuple[float, float] = (0.0, 0.0),
+    axial_speed: float = 0.0,
+) -> SteadyResult:
+    """Film at a prescribed position.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    speed : float
+        Relative spin omega, rad/s.
+    eccentricity_ratio : float
+        e/c at the mid-plane.
+    direction : float
+        Angle of the eccentricity from x, rad.
+    tilt : (float, float)
+        Slopes (bx, by) of the journal axis, rad.
+    velocity : (float, float)
+        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets this
+        velocity, so that full parts are squeezed at once and cavities keep their oil content.
+    axial_speed : float
+        w, m/s.
+
+    Raises
+    ------
+    InputError
+        For values that are not numbers.
+    FilmError
+        If there is no film at this position.
+    """
+    e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
+    angle = require_number("steady: direction", direction, "rad")
+    b = require_vector("steady: tilt", tilt, 2, "rad")
+    v = require_vector("steady: velocity", velocity, 2, "m/s")
+    omega = require_number("steady: speed", speed, "rad/s")
+    w = require_number("steady: axial_speed", axial_speed, "m/s")
+    require_size("steady: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    require_size("steady: velocity", v, "m/s", **SPEEDS)
+    require_size("steady: axial_speed", w, "m/s", **SPEEDS)
+    require_oil(bearing, "steady", w)
+    position = e * math.cos(angle), e * math.sin(angle)
+    start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
+    model = build_study_model(bearing, start)
+    return result_at(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
+
+
+def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
+    """Raise `InputError` if a steady mass-conserving film has no source of oil and would starve to nothing."""
+    closure = bearing.cavitation
+    if not closure.conserves_mass or axial_speed != 0.0 or isinstance(bearing.inlet, MaximumGap) or bearing.supply:
+        return
+    if max(bearing.end_pressures) <= closure.cavity_pressure:
+        raise InputError(
+            f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity pressure "
+            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give the bearing "
+            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or ElrodAdams(cavity_pressure=-1e5) below "
+            "ambient pressure."
+        )
+
+
+def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
+    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there; None if nothing remembers."""
+    history = settle(model, motion)
+    if not model.remembers_mass or not np.any(motion[4:8]):
+        return history
+    at_rest = motion.copy()
+    at_rest[4:8] = 0.0
+    evaluate_at(model, at_rest, where)
+    content = model.history()
+    assert content is not None
+    return replace(content, temperature=None if history is None else history.temperature)
+
+
+def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
+    """Wrench (6,) of the steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
+    evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
+    if evaluation.status is not Status.CONVERGED:
+        gap = evaluation.quantities().get("minimum_gap", math.nan)
+        raise FilmError(
+            f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {advice(evaluation.status, model.bearing)}"
+        )
+    return evaluation.wrench
+
+
+def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
+    """The steady film at ``motion``; `FilmError` as by `evaluate_at`."""
+    wrench = evaluate_at(model, motion, where)
+    q = model.quantities()
+    peak, angle, _ = model.refined_peak()
+    force = math.hypot(wrench[0], wrench[1])
+    reference = model.bearing.reference_force(motion[8])
+    eccentric = math.hypot(motion[0], motion[1]) > 0.0
+    attitude = math.nan
+    if eccentric and force > 0.0:
+        turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
+        attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
+    return SteadyResult(
+        **grid_fields(model),
+        force=wrench[:3].copy(),
+        moment=wrench[3:].copy(),
+        minimum_gap=q["minimum_gap"],
+        peak_pressure=peak,
+        peak_angle=angle,
+        friction_torque=q["friction_torque"],
+        friction_torque_unbroken=q["friction_torque_unbroken"],
+        friction_torque_bush=q["friction_torque_bush"],
+        power_loss=q["power_loss"],
+        leakage=q["leakage"],
+        contact_load=q["contact_load"],
+        supply_flows=model.supply_flows(),
+        contact_torque=q["contact_torque"],
+        contact_power_loss=q["contact_power_loss"],
+        peak_contact_pressure=q["peak_contact_pressure"],
+        sommerfeld_number=force / reference if reference > 0.0 else math.nan,
+        attitude_angle=attitude,
+        status=model.status,
+        iterations=model.iterations,
+        **model.bore_fields(),
+        bearing=model.bearing,
+        motion=model.motion.copy(),
+    )

@@ -1,0 +1,305 @@
+"""Nodal bushes on every kind of body: kinematics of the slaved nodes, Jacobian, starts in motion, runs, momentum and energy."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+import pytest
+import scenes
+from elastic_scene import CYLINDER, HOUSING, STEEL, bearing
+from exudyn.utilities import InertiaCylinder
+from test_bodies import JACOBIANS
+
+import exudyn_ehd as ehd
+from exudyn_ehd.coupling.bush.object import CarriedOuter, CreateFlexibleBush
+from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.run.sparse import SystemMatrix
+
+RING = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.05, axial=1, radial=1, circumferential=6)
+SOFT = ehd.SaintVenantKirchhoff(youngs_modulus=1e8, poisson_ratio=0.3, density=2000.0)
+CURRENT = exu.ConfigurationType.Current
+
+
+def carried(kind, rates=0.0, seed=3):
+    """System with a bush on a body in a random state."""
+    mbs = scenes.new_system()
+    body = JACOBIANS[kind](mbs)
+    item = resolve(mbs, "item", body.item)
+    point = item.position if body.point is None else np.array(body.point)
+    bush = CreateFlexibleBush(
+        mbs, bush=ehd.ANCFBush(mesh=RING, material=SOFT), outer=CarriedOuter(itemNumber=body.item), position=point + [0, 0, 0.02 * (kind != "ANCF beam node")]
+    )  # fmt: skip
+    mbs.Assemble()
+    rng = np.random.default_rng(seed)
+    n = mbs.systemData.ODE2Size()
+    put(mbs, 1e-3 * rng.normal(size=n), rates * rng.normal(size=n))
+    return mbs, body, bush
+
+
+def put(mbs, q, q_t):
+    mbs.systemData.SetODE2Coordinates(np.asarray(q).tolist())
+    mbs.systemData.SetODE2Coordinates_t(np.asarray(q_t).tolist())
+
+
+def state(bush):
+    """Coordinates and rates of the carrier."""
+    n = bush.equations._count
+    return bush.coordinates()[n:], bush.coordinates_t()[n:]
+
+
+# The averaged rotation of finite elements is linear in small displacements only, 1e-3 here; a geometrically exact beam in space turns at its
+# interpolated angular velocity but for the square of its nodes' relative rotation.
+LOOSE = {"nodal FE body": 5e-3, "reduced FE body Rxyz": 3e-4, "reduced FE body EP": 3e-4, "exact beam element": 1e-4}
+
+
+@pytest.mark.parametrize("kind", [k for k in JACOBIANS if not k.endswith("RotVec") and k != "reduced FE body EP"])
+def test_slaved_nodes_move_as_their_jacobian_and_accelerations_say(kind, measured):
+    """Central differences along the rates, 1e-5 s. Random Euler parameters of Exudyn's own markers are no rotations, and rotation vectors
+    don't change by their angular velocity: those are left out."""
+    mbs, _, bush = carried(kind, rates=0.3)
+    carrier = bush.equations.carrier
+    q, q_t = state(bush)
+    carrier.move(q, q_t)
+    speed = (carrier.jacobian() @ q_t).reshape(-1, 3)
+    scale = np.abs(speed).max()
+    measured("velocity", np.abs(speed - carrier.velocities()).max() / scale, 1e-12)
+    acceleration = carrier.velocity_accelerations(q, q_t)
+    whole, rates = mbs.systemData.GetODE2Coordinates(), mbs.systemData.GetODE2Coordinates_t()
+    places, velocities, step = [], [], 1e-5
+    for s in (1.0, -1.0):
+        put(mbs, whole + s * step * rates, rates)
+        carrier.move(*state(bush))
+        places.append(carrier.positions())
+        velocities.append(carrier.velocities())
+    by_place = np.abs((places[0] - places[1]) / (2 * step) - speed).max() / scale
+    measured("place", by_place, LOOSE.get(kind, 1e-8))
+    change = (velocities[0] - velocities[1]) / (2 * step)
+    size = max(np.abs(change).max(), scale)
+    measured("acceleration", np.abs(change - acceleration).max() / size, LOOSE.get(kind, 1e-8))
+
+
+@pytest.mark.parametrize("kind", JACOBIANS)
+def test_jacobian_of_a_bush_at_rest_is_the_derivative_of_its_force(kind, measured):
+    mbs, _, bush = carried(kind)
+    equations, places = bush.equations, mbs.systemData.GetObjectLTGODE2(bush.objectNumber)
+    q = np.array(mbs.systemData.GetODE2Coordinates())
+    zero = np.zeros_like(q)
+    exact = equations.jacobian(0.0, q[places], zero[places], 1.0, 0.0).toarray()
+    rng = np.random.default_rng(5)
+    size, count = len(places), equations._count
+    for part in (slice(0, count), slice(count, size)):
+        d = np.zeros(size)
+        d[part] = rng.normal(size=d[part].size)
+        if kind.endswith("RotVec"):
+            # rotation vectors are no incremental rotations
+            d[count + 3 :] = 0.0
+        ends = []
+        for s in (1.0, -1.0):
+            moved = q.copy()
+            moved[places] += s * 1e-6 * d
+            put(mbs, moved, zero)
+            ends.append(equations.force(0.0, moved[places], zero[places]))
+        numeric = (ends[1] - ends[0]) / 2e-6
+        limit = LOOSE.get(kind, 1e-6) if part.start else 1e-6
+        measured(f"part {part}", np.abs(exact @ d - numeric).max() / np.abs(numeric).max(), limit)
+
+
+ARM, TURN, PUSH = np.array([0.05, -0.02, 0.0]), 40.0, 8e3
+BUSH = ehd.ANCFBush(mesh=CYLINDER, material=STEEL)
+JOURNAL = InertiaCylinder(7800, 0.3, 0.03, 2)
+START = np.array([0.3, -0.2, 0.0])
+
+
+def planar_tree(mbs, inertia):
+    """Free planar body as a tree of two sliders and a hinge; it starts in motion."""
+    joints, k, zero = exu.JointType, 3, [0.0] * 3
+    node = mbs.AddNode(
+        eii.NodeGenericODE2(
+            referenceCoordinates=zero, initialCoordinates=zero, initialCoordinates_t=[*START[:2], TURN], numberOfODE2Coordinates=k
+        )
+    )  # fmt: skip
+    none, masses = np.zeros((3, 3)), [0.0, 0.0, inertia.Mass()]
+    body = mbs.AddObject(
+        eii.ObjectKinematicTree(
+            nodeNumber=node, jointTypes=[joints.PrismaticX, joints.PrismaticY, joints.RevoluteZ], linkParents=[-1, 0, 1],
+            jointTransformations=exu.Matrix3DList([np.eye(3)] * k), jointOffsets=exu.Vector3DList([[0.0, 0, 0]] * k),
+            linkInertiasCOM=exu.Matrix3DList([none, none, inertia.InertiaCOM()]), linkCOMs=exu.Vector3DList([[0.0, 0, 0]] * k),
+            linkMasses=masses, baseOffset=[0.0, 0, 0],
+        )
+    )  # fmt: skip
+
+    def marker(point):
+        return mbs.AddMarker(
+            eii.MarkerKinematicTreeRigid(objectNumber=body, linkNumber=k - 1, localPosition=list(point))
+        )
+
+    return marker(ARM), marker(np.zeros(3))
+
+
+def rod(housing, bush=BUSH):
+    """A free body that turns in its plane carries the bearing off its centre; its item is planar, in space, or a tree's link."""
+    mbs = scenes.new_system()
+    motion = {"initialVelocity": list(START), "initialAngularVelocity": [0, 0, TURN]}
+    if housing == "tree":
+        item, centre = planar_tree(mbs, HOUSING)
+    else:
+        # additive angles, like the planar body's: the integrator then does the same
+        kind = {"create2D": True} if housing == "planar" else {"nodeType": exu.NodeType.RotationRxyz}
+        body = mbs.CreateRigidBody(inertia=HOUSING, **kind, **motion)
+        if housing == "space":
+            mbs.CreateGenericJoint(
+                itemNumbers=[mbs.CreateGround(), body], position=[0, 0, 0], constrainedAxes=[0, 0, 1, 1, 1, 0]
+            )
+        item = body
+        centre = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body))
+    place = ARM + 30e-6 * np.array([0.4, -0.5, 0.0])
+    journal = mbs.CreateRigidBody(
+        referencePosition=list(ARM), initialDisplacement=list(place - ARM), inertia=JOURNAL, initialVelocity=list(START + TURN * np.array([-place[1], place[0], 0.0])),
+        initialAngularVelocity=[0, 0, TURN + 314.0], create2D=True,
+    )  # fmt: skip
+    if housing == "tree":
+        journal = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
+    force = lambda mbs, t, v: [PUSH, PUSH * np.cos(2000.0 * t), 0.0]  # noqa: E731
+    mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0, 0, 0], loadVectorUserFunction=force))
+    joint = ehd.CreateLubricatedJoint(
+        mbs, name="b", itemNumbers=[item, journal], position=[] if housing == "tree" else list(ARM),
+        axis=[0, 0, 1], rotationMatrixAxes=np.eye(3), bearing=bearing(bush),
+    )  # fmt: skip
+    mbs.Assemble()
+    return mbs, joint
+
+
+def total(mbs, modes=(), matrix=None):
+    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position, ``matrix`` the `SystemMatrix`."""
+    q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
+    n, flow = len(q_t), np.zeros(len(q_t))
+    for part in (SystemMatrix.of(mbs) if matrix is None else matrix).parts:
+        rows, columns, values = (np.asarray(a) for a in part(mbs, 1.0, 0.0, 0.0))
+        own = (rows < n) & (columns < n)
+        np.add.at(flow, rows[own], values[own] * q_t[columns[own]])
+    ways = np.zeros((2, n))
+    for i in set(range(mbs.systemData.NumberOfNodes())) - {int(node) for node in modes}:
+        places = mbs.systemData.GetNodeLTGODE2(i)
+        if len(places):
+            ways[0, places[0]] = ways[1, places[1]] = 1.0
+    return ways @ flow, 0.5 * q_t @ flow
+
+
+def run(housing, steps=20, end=1e-3):
+    """History of a run, errors of momentum and energy: impulse and work of the load by the trapezoidal rule."""
+    mbs, joint = rod(housing)
+    rows = []
+
+    def record(mbs, t):
+        momentum, kinetic = total(mbs)
+        push = PUSH * np.array([1.0, np.cos(2000.0 * t)])
+        speed = np.array(mbs.systemData.GetODE2Coordinates_t()[:2])
+        rows.append((t, *push, push @ speed, *momentum, kinetic + joint.bush.energy()[0]))
+        return True
+
+    mbs.SetPostStepUserFunction(record)
+    done = ehd.SolveDynamicSparse(mbs, scenes.settings(end, steps, tolerance=1e-9))
+    assert done.rejected == 0 and done.iterations <= 9 * steps
+    t, rest = np.array(rows)[:, 0], np.array(rows)[:, 1:]
+    impulse, work = np.trapezoid(rest[:, :2], t, axis=0), np.trapezoid(rest[:, 2], t)
+    lost = np.trapezoid(joint.history.power_loss, t)
+    momentum = np.abs(rest[-1, 3:5] - rest[0, 3:5] - impulse).max() / np.abs(impulse).max()
+    return joint.history, momentum, abs(rest[-1, 5] - rest[0, 5] + lost - work) / lost
+
+
+def test_a_planar_housing_and_a_link_of_a_tree_carry_the_bush_like_a_body_in_space(measured):
+    """The same equations in other coordinates, Newton to 1e-9 of a step's first residual."""
+    expected, *_ = run("space")
+    assert np.ptp(expected.eccentricity_ratio) > 0.05
+    for housing in ("planar", "tree"):
+        record, momentum, _ = run(housing)
+        # the generalized-alpha scheme averages the load's course over steps of 0.1 rad
+        measured(f"{housing} momentum", momentum, 1e-4)
+        for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss"):
+            a, b = getattr(record, name), getattr(expected, name)
+            measured(f"{housing} {name}", np.abs(a - b).max() / np.abs(b).max(), 2e-8)
+
+
+def test_energy_of_a_planar_model_closes_to_the_order_of_the_integrator(measured):
+    coarse, fine = run("planar")[2], run("planar", 40)[2]
+    # the first step of 0.05 ms hardly resolves the squeezing that the load's sudden start brings
+    measured("20 steps", coarse, 0.05)
+    measured("40 steps", fine, coarse / 3.0)
+
+
+MODAL = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False)
+
+
+@pytest.mark.parametrize("dynamics", [False, True])
+def test_modal_bushes_on_a_link_of_a_tree_start_and_run_as_on_a_planar_body(dynamics, measured):
+    """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by differences."""
+    records = []
+    for housing in ("planar", "tree"):
+        mbs, joint = rod(housing, dataclasses.replace(MODAL, dynamics=dynamics))
+        mbs.SolveDynamic(scenes.settings(1e-3, 20, tolerance=1e-9))
+        records.append(joint.history)
+    expected, found = records
+    assert len(expected.time) == len(found.time) == 21
+    for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss"):
+        a, b = getattr(found, name), getattr(expected, name)
+        measured(name, np.abs(a - b).max() / np.abs(b).max(), 1e-6)
+
+
+def held(kind, bush):
+    """System with a body as housing, and the joint."""
+    mbs = scenes.new_system()
+    body = JACOBIANS[kind](mbs)
+    item = resolve(mbs, "item", body.item)
+    point = item.position if body.point is None else np.array(body.point)
+    journal = mbs.CreateRigidBody(
+        referencePosition=list(point), initialDisplacement=[1e-5, -1e-5, 0], inertia=JOURNAL, create2D=body.planar,
+        initialAngularVelocity=[0, 0, 314.0],
+    )  # fmt: skip
+    if item.is_marker:
+        journal = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
+    joint = ehd.CreateLubricatedJoint(
+        mbs, name="b", itemNumbers=[body.item, journal], position=[] if item.is_marker else list(point), axis=[0, 0, 1],
+        bearing=bearing(bush, n_theta=32, n_z=6, length=0.05),
+    )  # fmt: skip
+    mbs.Assemble()
+    return mbs, joint
+
+
+@pytest.mark.parametrize("dynamics", [False, True])
+@pytest.mark.parametrize("kind", JACOBIANS)
+def test_modal_bushes_start_in_equilibrium_on_every_body(kind, dynamics, measured):
+    # lighter than the beams
+    material = dataclasses.replace(STEEL, density=100.0)
+    mbs, joint = held(kind, dataclasses.replace(MODAL, mesh=RING, material=material, dynamics=dynamics))
+    element = joint.element
+    q = np.array(mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
+    evaluation = element.look_at_accepted(mbs)[1].evaluation
+    assert np.abs(q).max() > 1e-8
+    load, spring = evaluation.bore_load, element.stiffness * q
+    # velocities of markers come from differences of positions
+    measured("force on the modes", np.abs(load - spring).max() / np.abs(spring).max(), 1e-6)
+    mbs.SolveDynamic(scenes.settings(2e-5, 2, tolerance=1e-8))
+    assert len(joint.history.time) == 3
+
+
+def held_by(kind, bush, steps=10):
+    """Gain of momentum, history and Newton iterations of a short run with a body as housing, Exudyn's own full Newton."""
+    mbs, joint = held(kind, bush)
+    before, _ = total(mbs)
+    mbs.SolveDynamic(scenes.settings(steps * 2e-5, steps, tolerance=1e-8))
+    return total(mbs)[0] - before, joint.history, mbs.sys["dynamicSolver"].it.newtonStepsCount
+
+
+@pytest.mark.parametrize(
+    "kind", ["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"]
+)
+def test_flexible_bodies_carry_a_bush_under_a_film(kind, measured):
+    """The housing's load alone gives momentum, 2e-4 Ns beside a film force of 17 kN; as much as with a rigid bearing."""
+    gain, history, iterations = held_by(kind, ehd.ANCFBush(mesh=RING, material=STEEL))
+    assert len(history.time) == 11
+    measured("Newton iterations per step", iterations / 10, 6.0)
+    if "FE" not in kind:
+        measured("momentum", np.abs(gain - held_by(kind, None)[0]).max(), 1e-10)

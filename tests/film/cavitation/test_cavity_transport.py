@@ -1,0 +1,126 @@
+"""The factor along the flow against dense algebra with the matrix of the folded ring."""
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.film.banded.ldl import number_cells, solve_many
+from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
+from exudyn_ehd.film.cavitation.cavity_transport import (
+    FRONT,
+    FULL_COUNT,
+    WIDTH,
+    factor_transport,
+    flow_direction,
+    solve_transport,
+    transport_buffers,
+)
+from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod
+
+N, M, PC = 14, 6, -0.3
+CASES = {
+    "one film": {"columns": (3, 9)},
+    "against": {"columns": (3, 9), "vx": -1.0},
+    "over the end of the ring": {"columns": (11, 17), "vz": 0.4},
+    "two films": {"columns": (2, 5), "more": (8, 11), "vz": -0.7, "vx": -1.0},
+    "strips along the ends": {"columns": (4, 9), "strips": True},
+    "strips, axial flow": {"columns": (4, 9), "strips": True, "vz": 0.5},
+    "full": {"columns": (0, N)},
+    "instationary": {"columns": (5, 9), "inverse_step": 3.0},
+    "missing links": {"columns": (0, N), "gap": 6, "strips": True},
+    "missing links, against": {"columns": (0, N), "gap": 6, "vx": -1.0},
+    "pocket": {"columns": (2, 9), "pocket": True, "vz": 0.2},
+    "ragged": {"columns": (3, 9), "ragged": True, "vz": 0.3},
+    "at rest": {"columns": (0, N), "vx": 0.0},
+    "squeezed": {"columns": (3, 9), "vx": 0.0, "inverse_step": 2.0},
+}
+
+
+def film(columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap=None, pocket=False, ragged=False):
+    """Arguments of `assemble_elrod` before the numbering, and the full vertices."""
+    rng = np.random.default_rng(3)
+    H = rng.uniform(0.5, 1.5, (N, M))
+    kx, kz = rng.uniform(0.5, 2.0, (2, N, M))
+    fx, fz = vx * rng.uniform(0.5, 1.5, (N, M)), vz * rng.uniform(0.5, 1.5, (N, M))
+    kz[:, -1] = fz[:, -1] = 0.0
+    if gap is not None:
+        kx[gap] = fx[gap] = 0.0
+    area, mass_old = rng.uniform(0.5, 1.5, (2, N, M))
+    H_t = rng.uniform(-0.02, 0.02, (N, M))
+    fixed = np.zeros((N, M), dtype=bool)
+    fixed[:, [0, -1]] = True
+    fixed[5:7, 2] = pocket
+    full = np.zeros((N, M), dtype=bool)
+    for span in (columns, more):
+        if span is not None:
+            full[np.arange(*span) % N] = True
+    if strips:
+        full[:, [1, -2]] = True
+    if ragged:
+        full ^= rng.uniform(size=(N, M)) < 0.2
+    full &= ~fixed
+    P = np.where(fixed, 0.2, PC)
+    return (kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, PC, full), P
+
+
+def dense(arguments, P):
+    """Matrix, right-hand side and flat vertex of every unknown, from the kernel of the folded ring."""
+    kx, fx, fixed, full = arguments[0], arguments[2], arguments[9], arguments[11]
+    order, number = np.zeros(N * M, dtype=np.int64), np.zeros((N, M), dtype=np.int64)
+    count, width = number_cells(~fixed, np.abs(kx) + np.abs(fx), order, number)
+    lower, upper = (np.zeros((N * M, 2 * M + 2 + PAD)) for _ in range(2))
+    rhs = np.zeros(N * M)
+    assemble_elrod(*arguments[:11], full | fixed, number, count, width, P, lower, upper, rhs)
+    A = np.zeros((count, count))
+    for r in range(count):
+        for d in range(min(width, count - 1 - r) + 1):
+            A[r, r + d] = upper[r, d]
+            A[r + d, r] = lower[r, d] if d else upper[r, 0]
+    return A, rhs[:count], order[:count]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_against_dense(name):
+    arguments, P = film(**CASES[name])
+    A, b, places = dense(arguments, P)
+    t = transport_buffers(N, M, np.full((N * M, 2 * M + 2 + PAD), np.nan))
+    order, x = np.zeros(N * M, dtype=np.int64), np.zeros(N * M)
+    along, across = flow_direction(arguments[2]), flow_direction(arguments[3])
+    ok, count = factor_transport(*arguments, along, across, order, P, t, x)
+    assert ok
+    assert count == len(b)
+    # the same unknowns in another order
+    at = np.argsort(places)[np.searchsorted(np.sort(places), order[:count])]
+    np.testing.assert_array_equal(places[at], order[:count])
+    A, b = A[np.ix_(at, at)], b[at]
+    np.testing.assert_allclose(x[:count], b, atol=1e-13)  # sums of a few numbers of size 1
+    solve_transport(t, count, x)
+    np.testing.assert_allclose(x[:count], np.linalg.solve(A, b), rtol=1e-10, atol=1e-11)
+    sides = np.random.default_rng(5).normal(size=(count, 5))
+    known = sides.copy()
+    solve_transport_transposed(t, count, sides)
+    np.testing.assert_allclose(sides, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
+    rows = np.ascontiguousarray(known.T)
+    rows[0, t.shape[FULL_COUNT] :] = 0.0
+    known[t.shape[FULL_COUNT] :, 0] = 0.0
+    reduce_transposed(t, count, rows)
+    solve_many(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
+    np.testing.assert_allclose(rows.T, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
+    assert (t.shape[FRONT] > 0) == (arguments[11].sum() < count and along * arguments[2].max() != 0.0)
+
+
+def test_oil_that_goes_round_is_left_to_the_folded_ring():
+    arguments, P = film(columns=(3, 9))
+    arguments[11][:, 3] = False
+    t = transport_buffers(N, M, np.zeros((N * M, 2 * M + 2 + PAD)))
+    ok, _ = factor_transport(*arguments, 1, 1, np.zeros(N * M, dtype=np.int64), P, t, np.zeros(N * M))
+    assert not ok
+
+
+def test_flow_direction():
+    f = np.zeros((3, 2))
+    assert flow_direction(f) == 1
+    f[1, 1] = -1.0
+    assert flow_direction(f) == -1
+    f[2, 0] = 1.0
+    assert flow_direction(f) == 0

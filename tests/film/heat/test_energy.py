@@ -1,0 +1,110 @@
+"""Kernels of the energy equation against readable twins."""
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.film.banded.ldl import number_cells
+from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.heat.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
+
+SHAPE = (8, 5)
+
+
+@pytest.fixture
+def fields():
+    rng = np.random.default_rng(6)
+    names = ("P", "q", "kx", "kz", "fx", "fz", "fill", "storage", "rate")
+    out = {name: rng.uniform(0.1, 1.0, SHAPE) for name in names}
+    out["fx"] -= 0.5
+    out["fz"] -= 0.5
+    return out
+
+
+def links(shape):
+    n, m = shape
+    for i in range(n):
+        for j in range(m):
+            yield "x", (i, j), ((i + 1) % n, j)
+            if j + 1 < m:
+                yield "z", (i, j), (i, j + 1)
+
+
+def test_heat(fields):
+    f = fields
+    heat, twin = np.empty(SHAPE), f["storage"].copy()
+    film_heat(f["P"], f["q"], f["kx"], f["kz"], f["storage"], heat)
+    for kind, a, b in links(SHAPE):
+        w = f["k" + kind][a] * (f["q"][a] - f["q"][b]) * (f["P"][a] - f["P"][b])
+        twin[a] += 0.5 * w
+        twin[b] += 0.5 * w
+    np.testing.assert_allclose(heat, twin, rtol=1e-13)
+
+
+def test_flows_take_the_fill_from_upstream(fields):
+    f = fields
+    flow = {"x": np.zeros(SHAPE), "z": np.zeros(SHAPE)}
+    source = f["storage"] * f["rate"]
+    for kind, a, b in links(SHAPE):
+        couette = f["f" + kind][a]
+        flow[kind][a] = f["k" + kind][a] * (f["q"][a] - f["q"][b]) + couette * f["fill"][a if couette >= 0.0 else b]
+        source[a] += flow[kind][a]
+        source[b] -= flow[kind][a]
+    qx, qz, s = (np.empty(SHAPE) for _ in range(3))
+    film_flows(f["q"], f["fill"], f["kx"], f["kz"], f["fx"], f["fz"], f["storage"], f["rate"], qx, qz, s)
+    np.testing.assert_allclose(qx, flow["x"], rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(qz, flow["z"], rtol=1e-13, atol=1e-15)
+    np.testing.assert_allclose(s, source, rtol=1e-12, atol=1e-14)
+
+
+def test_outside_flows_are_the_balance_of_fixed_vertices(fields):
+    """Where the film next to an end is ruptured, only the link's flow passes."""
+    f = fields
+    qx, qz, source, outside = (np.empty(SHAPE) for _ in range(4))
+    args = [f[k] for k in ("q", "fill", "kx", "kz", "fx", "fz", "storage", "rate")]
+    film_flows(*args, qx, qz, source)
+    fixed = np.zeros(SHAPE, dtype=np.bool_)
+    fixed[:, [0, -1]] = fixed[2, :] = True
+    unbroken = np.random.default_rng(7).random(SHAPE) > 0.4
+    outside_flows(*args, fixed, unbroken, outside)
+    for (i, j), value in np.ndenumerate(outside):
+        twin = source[i, j] if fixed[i, j] else 0.0
+        if j == 0 and not unbroken[i, 1]:
+            twin = qz[i, 0]
+        if j == SHAPE[1] - 1 and not unbroken[i, -2]:
+            twin = -qz[i, -2]
+        assert value == pytest.approx(twin, rel=1e-12, abs=1e-14)
+
+
+def test_content_rate(fields):
+    H, H_t, fill, old, out = (fields[k] for k in ("kx", "fx", "fill", "q", "P"))
+    for inverse_step, squeeze, twin in (
+        (5.0, True, (fill * H - old) * 5.0),
+        (0.0, True, fill * H_t),
+        (0.0, False, 0.0 * H),
+    ):
+        content_rate(H, H_t, fill, old, inverse_step, squeeze, out)
+        np.testing.assert_allclose(out, twin, rtol=1e-14, atol=1e-15)
+
+
+def test_band_is_the_upwind_matrix(fields):
+    n, m = SHAPE
+    number, order = np.zeros(SHAPE, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
+    _, width = number_cells(np.ones(SHAPE, dtype=np.bool_), np.ones(SHAPE), order, number)
+    lower, upper = np.zeros((n * m, width + 2 + PAD)), np.zeros((n * m, width + 2 + PAD))
+    assemble_energy(fields["fx"], fields["fz"], fields["storage"], number, width, lower, upper)
+    band = np.zeros((n * m, n * m))
+    for r in range(n * m):
+        for d in range(width + 1):
+            if r + d < n * m:
+                band[r, r + d] += upper[r, d]
+                if d:
+                    band[r + d, r] += lower[r, d]
+    twin = np.zeros((n * m, n * m))
+    for at, value in np.ndenumerate(fields["storage"]):
+        twin[number[at], number[at]] += value
+    for kind, a, b in links(SHAPE):
+        flow = fields["f" + kind][a]
+        up, down = (a, b) if flow >= 0.0 else (b, a)
+        twin[number[down], number[down]] += abs(flow)
+        twin[number[down], number[up]] -= abs(flow)
+    np.testing.assert_allclose(band, twin, rtol=1e-14, atol=1e-15)

@@ -1,0 +1,187 @@
+"""Dowson and Higginson's density against the published forms, and the transform of a compressible film against quadrature."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.lubricant.density_field import (
+    NEAR,
+    WEAK,
+    density_at,
+    density_slope_at,
+    look_up,
+    pressure_at,
+    viscosity_at,
+)
+
+PRESSURES = np.array([0.0, 1e6, 1e8, 5e8, 1e9, 3e9])
+VISCOSITIES = {
+    "constant": None,
+    "barus": ehd.BarusPressure(coefficient=1e-8),
+    "roelands": ehd.RoelandsPressure(coefficient=2e-8).bound(0.05),
+    "barus as steep as the density": ehd.BarusPressure(coefficient=0.6e-9),
+}
+
+
+def test_published_forms():
+    """``(5.9e8 + 1.34 p) / (5.9e8 + p)`` rounds the constants: 1 / 1.7e-9 = 5.88e8 and 0.6 / 1.7 = 0.353 for 0.34."""
+    law = ehd.DowsonHigginson()
+    np.testing.assert_allclose(law.ratio(PRESSURES), 1.0 + 0.6e-9 * PRESSURES / (1.0 + 1.7e-9 * PRESSURES), rtol=1e-15)
+    np.testing.assert_allclose(law.ratio(PRESSURES), (5.9e8 + 1.34 * PRESSURES) / (5.9e8 + PRESSURES), atol=0.013)
+
+
+def test_density_is_smooth_at_ambient_pressure_and_positive_in_tension():
+    law, p = ehd.DowsonHigginson(), np.array([-1e10, -1.0, 0.0, 1.0])
+    assert np.all(law.ratio(p) > 0.0)
+    np.testing.assert_allclose(law.ratio_slope(p)[1:], 0.6e-9, rtol=1e-8)  # b times 1 Pa
+    for at in (-3e8, 2e8, 1e9):
+        slope = (law.ratio(at + 1e4) - law.ratio(at - 1e4)) / 2e4
+        assert law.ratio_slope(at) == pytest.approx(slope, rel=1e-7)  # rounding of the difference
+
+
+def test_flow_work_is_the_integral():
+    law = ehd.DowsonHigginson()
+    p = np.array([-1e8, 0.0, 1e5, 7e7, 4e8, 3e9])
+    exact = [quad(lambda x: 1.0 / float(law.ratio(x)), 0.0, end, epsabs=0.0, epsrel=1e-13)[0] for end in p]
+    np.testing.assert_allclose(law.flow_work(p), exact, rtol=1e-12)  # quad's own
+    # of oil that hardly gives way: p, without cancellation
+    np.testing.assert_allclose(ehd.DowsonHigginson(coefficient=1e-18).flow_work(p), p, rtol=1e-8)
+
+
+@pytest.mark.parametrize("name", list(VISCOSITIES))
+def test_transform_is_the_integral(name):
+    density, viscosity = ehd.DowsonHigginson(), VISCOSITIES[name]
+    law = density.bound(viscosity)
+
+    def integrand(p):
+        return float(density.ratio(p)) / (1.0 if viscosity is None else float(viscosity.ratio(np.asarray(p))))
+
+    for p in (1e5, 7e7, 4e8):
+        exact = quad(integrand, 0.0, p, epsabs=0.0, epsrel=1e-12, limit=200)[0]
+        assert float(law.transform(p)) == pytest.approx(exact, rel=1e-12)
+    tension = quad(lambda p: np.exp((0.6e-9 - (0.0 if viscosity is None else viscosity.coefficient)) * p), 0.0, -1e8)[0]
+    assert float(law.transform(-1e8)) == pytest.approx(tension, rel=1e-9)  # quad's own
+
+
+@pytest.mark.parametrize("name", list(VISCOSITIES))
+def test_inverse_gives_back_pressure_and_viscosity(name):
+    viscosity = VISCOSITIES[name]
+    law = ehd.DowsonHigginson().bound(viscosity)
+    p = np.linspace(-2e8, 5e8, 29).reshape(1, -1)
+    q = law.transform(p)
+    found, ratio, ratio_q = np.empty_like(p), np.empty_like(p), np.empty_like(p)
+    assert law.inverse(q, found, ratio, ratio_q)
+    # The spline's error, and rounding of q times dp/dq where the oil is thick.
+    np.testing.assert_allclose(found, p, rtol=1e-11, atol=1e-4)
+    above = p >= 0.0
+    np.testing.assert_allclose(ratio[above], 1.0 if viscosity is None else viscosity.ratio(p[above]), rtol=1e-10)
+    plus, minus, _ = (np.empty_like(p) for _ in range(3))
+    h = 1e-6 * np.abs(q) + 1.0
+    law.inverse(q + h, found, plus, _)
+    law.inverse(q - h, found, minus, _)
+    np.testing.assert_allclose(ratio_q, (plus - minus) / (2.0 * h), rtol=2e-5, atol=1e-14)  # rounding over the step
+
+
+def test_no_pressure_beyond_the_range():
+    law = ehd.DowsonHigginson().bound(None)
+    out = np.empty((3, 1, 1))
+    for q in (law.q[-1], 1.001 * law.q[-1], -1.0 / 0.6e-9):
+        assert not law.inverse(np.full((1, 1), q), *out)
+
+
+def asked(P, scale, floor, law, share, known):
+    """Density ratio and its derivative from the kernels."""
+    rho, rho_P = np.empty_like(P), np.empty_like(P)
+    density_at(P, scale, floor, law.kernel_table, share, known, rho)
+    density_slope_at(P, scale, floor, law.kernel_table, share, known, rho_P)
+    return rho, rho_P
+
+
+def test_weak_and_strong_tension():
+    """The exponential's series and the exponential, across the tension where they take turns."""
+    density = ehd.DowsonHigginson()
+    law = density.bound(None)
+    p = np.array([[-1e-3, -1e5, -0.99 * WEAK / 0.6e-9, 0.0, 1e6]])
+    for strong in (p, np.append(p, [[-1.01 * WEAK / 0.6e-9, -1e8]], axis=1)):
+        rho, rho_P = asked(law.transform(strong), 1.0, -np.inf, law, 1.0, np.full((6, strong.size), np.nan))
+        np.testing.assert_allclose(rho, density.ratio(strong), rtol=2e-15)
+        np.testing.assert_allclose(rho_P, density.ratio_slope(strong) / density.ratio(strong), rtol=1e-10)
+
+
+def test_density_kernel_equals_its_twin():
+    density = ehd.DowsonHigginson()
+    law = density.bound(VISCOSITIES["barus"])
+    p = np.array([[-2e7, -1e5, 0.0, 3e6, 2e8, 5e8]])
+    scale, floor, share = 1e5, -1.0, 0.7
+    P = law.transform(p) / scale
+    rho, rho_P = asked(P, scale, floor, law, share, np.full((6, P.size), np.nan))
+    kept = np.maximum(p, float(-np.log1p(1e5 * law.alpha) / law.alpha))
+    np.testing.assert_allclose(rho, 1.0 + share * (density.ratio(kept) - 1.0), rtol=1e-12)  # the spline's
+    assert rho_P[0, 0] == 0.0
+    slope = density.ratio_slope(p) * np.exp(1e-8 * p) / density.ratio(p) * share * scale
+    np.testing.assert_allclose(rho_P[0, 2:], slope[0, 2:], rtol=1e-10)
+    beyond = np.full((1, 1), 2.0 * law.q[-1] / scale)
+    rho, rho_P = asked(beyond, scale, floor, law, 1.0, np.full((6, 1), np.nan))
+    assert rho[0, 0] == pytest.approx(float(density.ratio(law.largest_pressure)), rel=1e-6)  # at the range's end
+    assert rho_P[0, 0] == 0.0
+
+
+@pytest.mark.parametrize("viscosity", [None, "barus", "roelands"])
+def test_what_is_known_near_by_serves_to_rounding(viscosity):
+    law = ehd.DowsonHigginson().bound(None if viscosity is None else VISCOSITIES[viscosity])
+    q = law.transform(np.array([[-2e7, -5e6, 3e6, 5e7, 2e8, 5e8]]))
+    known = np.full((6, q.size), np.nan)
+    asked(q, 1.0, -np.inf, law, 1.0, known)
+    at = known[0].copy()
+    moved = q + 0.9 * NEAR * np.abs(known[2] / known[3])
+    rho, rho_P = asked(moved, 1.0, -np.inf, law, 1.0, known)
+    np.testing.assert_array_equal(known[0], at)
+    fresh, fresh_P = asked(moved, 1.0, -np.inf, law, 1.0, np.full((6, q.size), np.nan))
+    np.testing.assert_allclose(rho, fresh, rtol=1e-14)
+    np.testing.assert_allclose(rho_P, fresh_P, rtol=1e-10)
+    exact, found = np.empty((3, *q.shape)), np.empty((4, *q.shape))
+    law.inverse(moved, *exact)
+    assert viscosity_at(moved, 1.0, -np.inf, law.kernel_table, known, rho, *found)
+    np.testing.assert_allclose(found[0], exact[0], rtol=3e-13)
+    np.testing.assert_allclose(found[1], exact[1], rtol=1e-10)
+    # A derivative further; where density and viscosity cancel, what the spline's second derivative rounds to.
+    np.testing.assert_allclose(found[2], exact[2], rtol=1e-9, atol=1e-7 * law.density.coefficient)
+    np.testing.assert_allclose(found[3], exact[1] / rho, rtol=1e-10)
+    asked(moved + 2.0 * (moved - q), 1.0, -np.inf, law, 1.0, known)
+    assert np.all(known[0] != at)
+    assert not pressure_at(moved, 1.0, -np.inf, law.kernel_table, known, *found[:2])
+
+
+@pytest.mark.parametrize(
+    ("floor", "beyond"), [(1e6, 9e5), (-np.inf, 1e12)], ids=["below the floor", "beyond the range"]
+)
+def test_cut_pressures_have_a_density_but_no_pressure(floor, beyond):
+    law, P, known = ehd.DowsonHigginson().bound(None), np.array([[2e6, beyond]]), np.full((6, 2), np.nan)
+    rho, rho_P = asked(P, 1.0, floor, law, 1.0, known)
+    assert np.all(rho > 1.0) and rho_P[0, 0] > 0.0 and rho_P[0, 1] == 0.0
+    found = np.empty((2, 1, 2))
+    assert not pressure_at(P, 1.0, floor, law.kernel_table, known, *found)
+    assert pressure_at(P[:, :1], 1.0, floor, law.kernel_table, known[:, :1].copy(), *found[:, :, :1].copy())
+
+
+def test_nothing_is_known_across_ambient_pressure():
+    """The law's higher derivatives jump there."""
+    law = ehd.DowsonHigginson().bound(None)
+    for start, end in ((1e3, -1e3), (0.0, 1e3), (-1e3, 1e3), (1e3, 0.0)):
+        known = np.full((6, 1), np.nan)
+        for x in (start, end):
+            look_up(np.array([x]), 1.0, -np.inf, np.inf, law.kernel_table, known)
+            assert known[0, 0] == x
+
+
+@pytest.mark.parametrize("name", ["coefficient", "saturation"])
+@pytest.mark.parametrize("value", [0.0, -1e-9, np.nan, 0.6])
+def test_impossible_coefficients_are_refused(name, value):
+    with pytest.raises(ehd.InputError, match=f"DowsonHigginson.{name}"):
+        ehd.DowsonHigginson(**{name: value})
+
+
+def test_law_is_an_object():
+    with pytest.raises(ehd.InputError, match=r"Lubricant\.density_law must be DowsonHigginson"):
+        ehd.Lubricant(viscosity=0.02, density_law="dowson")

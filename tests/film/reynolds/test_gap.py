@@ -1,0 +1,65 @@
+"""Gap of a tilted journal and its chain rule."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from exudyn_ehd.film.reynolds.gap import add_to_gap, contract_ends, contract_pose, largest_eccentricity, rigid_gap
+
+
+def _gap(pose, theta, z, base):
+    """Readable twin: distance of the bore from the journal's surface along the fixed normal, scaled by c."""
+    axis = np.array([pose[0] + pose[2] * z, pose[1] + pose[3] * z])
+    normal = np.array([np.cos(theta), np.sin(theta)])
+    return base - (axis[:, None, :] * normal[:, :, None]).sum(axis=0)
+
+
+@pytest.mark.parametrize("base", (0.0, 1.0))
+def test_rigid_gap(base):
+    rng = np.random.default_rng(1)
+    theta, z, pose = rng.uniform(0, 6, 9), np.linspace(-1, 1, 5), rng.normal(size=4)
+    out = np.empty((9, 5))
+    rigid_gap(pose, np.cos(theta), np.sin(theta), z, base, out)
+    np.testing.assert_allclose(out, _gap(pose, theta, z, base), rtol=1e-13, atol=1e-14)
+
+
+def test_largest_eccentricity_is_one_minus_the_smallest_gap():
+    rng = np.random.default_rng(2)
+    theta, z = np.linspace(0, 2 * np.pi, 20001), np.linspace(-0.7, 0.7, 41)
+    for pose in rng.uniform(-0.5, 0.5, (20, 4)):
+        # 20000 angles miss the minimum by at most (pi / 20000)^2 / 2 = 1e-8.
+        assert largest_eccentricity(pose, 0.7) == pytest.approx(1.0 - _gap(pose, theta, z, 1.0).min(), abs=2e-8)
+
+
+@pytest.mark.parametrize("where", ["vertex", "link"])
+def test_add_to_gap_finds_the_smallest(where):
+    rng = np.random.default_rng(4)
+    H, HF, extra, extra_link = rng.uniform(0.5, 1.0, (4, 6, 5))
+    (extra if where == "vertex" else extra_link)[5, 4] = -1.5
+    expected = H + extra, HF + extra_link
+    assert add_to_gap(extra, extra_link, H, HF) == min(expected[0].min(), expected[1].min()) < 0.0
+    np.testing.assert_array_equal((H, HF), expected)
+
+
+def test_contract_pose_is_the_chain_rule_and_adds():
+    rng = np.random.default_rng(3)
+    theta, z = rng.uniform(0, 6, 7), np.linspace(-1, 1, 4)
+    field, start = rng.normal(size=(3, 7, 4)), rng.normal(size=(3, 4))
+    out = start.copy()
+    contract_pose(field, np.cos(theta), np.sin(theta), z, out)
+    for k in range(3):
+        for p in range(4):
+            direction = np.eye(4)[p]  # the gap is linear in the pose
+            expected = (field[k] * _gap(direction, theta, z, 0.0)).sum()
+            assert out[k, p] - start[k, p] == pytest.approx(expected, rel=1e-12)
+
+
+def test_contract_ends_is_contract_pose_of_the_ends():
+    rng = np.random.default_rng(5)
+    theta, z, slope, out = rng.uniform(0, 6, 7), np.linspace(-1, 1.5, 4), rng.random((7, 4)), np.zeros((1, 4))
+    field = np.zeros((1, 7, 4))
+    field[0, :, 0], field[0, :, -1] = -2.0 * slope[:, 0], 3.0 * slope[:, -1]
+    contract_pose(field, np.cos(theta), np.sin(theta), z, out)
+    found = contract_ends(slope, -2.0, 3.0, np.cos(theta), np.sin(theta), z)
+    np.testing.assert_allclose(found, out[0], rtol=1e-13, atol=1e-14)

@@ -1,0 +1,63 @@
+"""Stencils of elastic gaps against numpy."""
+
+import numpy as np
+
+from exudyn_ehd.film.sensitivity.bore_stencil import (
+    add_transposed,
+    gap_slopes,
+    gap_stencil,
+    put_rows,
+    transposed_slopes,
+)
+
+
+def test_slopes_are_central_differences_and_have_a_transpose():
+    rng = np.random.default_rng(0)
+    n, m, width = 12, 7, 0.3
+    z = np.sort(rng.normal(size=m))
+    field, other = rng.normal(size=(2, n, m))
+    link, along_x, along_z, tx, tz = np.empty((5, n, m))
+    gap_slopes(field, width, z, link, along_x, along_z)
+    np.testing.assert_allclose(link, 0.5 * (field + np.roll(field, -1, axis=0)), rtol=1e-14)
+    np.testing.assert_allclose(along_x, (np.roll(field, -1, 0) - np.roll(field, 1, 0)) / (2 * width), rtol=1e-14)
+    np.testing.assert_allclose(along_z, np.gradient(field, z, axis=1), rtol=1e-12, atol=1e-12)
+    transposed_slopes(other, width, z, tx, tz)
+    np.testing.assert_allclose(
+        [np.sum(tx * field), np.sum(tz * field)], [np.sum(other * along_x), np.sum(other * along_z)]
+    )
+
+
+def test_stencil_is_the_derivative_of_the_balances():
+    rng = np.random.default_rng(1)
+    n, m = 9, 5
+    DX, DZ, slope, AR, AC = rng.normal(size=(5, n, m))
+    DZ[:, -1] = 0.0
+    H, H_t = rng.normal(size=(2, n, m))
+    balance = AC * H + AR * H_t * 0.7
+    link = DX * 0.5 * (H + np.roll(H, -1, axis=0))
+    balance += link - np.roll(link, 1, axis=0)
+    across = DZ[:, :-1] * 0.5 * (slope[:, :-1] * H[:, :-1] + slope[:, 1:] * H[:, 1:])
+    balance[:, :-1] += across
+    balance[:, 1:] -= across
+    order = rng.permutation(n * m)[:20]
+    weight, place = np.empty((20, 5)), np.empty((20, 5), dtype=np.int64)
+    gap_stencil(order, 20, DX, DZ, slope, AR, AC, 1.0, 0.0, weight, place)
+    got = np.sum(weight * H.ravel()[place], axis=1)
+    gap_stencil(order, 20, DX, DZ, slope, AR, AC, 0.0, 0.7, weight, place)
+    got += np.sum(weight * H_t.ravel()[place], axis=1)
+    np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
+
+
+def test_transposed_stencil_and_rows_in_tiles():
+    rng = np.random.default_rng(2)
+    shapes, weight, place = rng.normal(size=(30, 6)), rng.normal(size=(8, 5)), rng.integers(0, 30, (8, 5))
+    out = np.einsum("rc,rck->rk", weight, shapes[place])
+    back, fields = np.zeros((30, 3)), rng.normal(size=(8, 3))
+    add_transposed(weight, place, fields, back)
+    np.testing.assert_allclose(np.sum(back * shapes[:, :3]), np.sum(fields * out[:, :3]), rtol=1e-12)
+    for first, width in ((2, 9), (1, 3), (5, 4)):
+        tiles = np.zeros((3, 8, width))
+        put_rows(shapes, place[:, 0], weight[:, 0], first, tiles)
+        wide = tiles.transpose(1, 0, 2).reshape(8, -1)
+        np.testing.assert_allclose(wide[:, first : first + 6], shapes[place[:, 0]] * weight[:, :1], rtol=1e-15)
+        assert not wide[:, :first].any() and not wide[:, first + 6 :].any()

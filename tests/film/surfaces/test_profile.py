@@ -1,0 +1,74 @@
+"""Profiles: values, periodicity, sums and refusals."""
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.surfaces.profile import ProfileTerm
+
+LENGTH = 0.04
+THETA = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+Z = np.linspace(-LENGTH / 2, LENGTH / 2, 9)
+
+
+def test_out_of_round():
+    d = ehd.OutOfRound(order=3, amplitude=2e-6, phase=0.4).depth(THETA, Z, LENGTH)
+    np.testing.assert_allclose(d[:, 4], 2e-6 * np.cos(3 * (THETA - 0.4)), atol=1e-20)
+    assert np.ptp(d, axis=1).max() == 0.0
+
+
+def test_crown_and_edge_relief():
+    crown = ehd.Crown(drop=3e-6, exponent=4.0).depth(THETA, Z, LENGTH)[0]
+    np.testing.assert_allclose(crown, 3e-6 * (2 * Z / LENGTH) ** 4, atol=1e-20)
+    relief = ehd.EdgeRelief(drop=3e-6, relief_length=0.01).depth(THETA, Z, LENGTH)[0]
+    np.testing.assert_allclose(relief[[0, 1, 2, 4]], [3e-6, 0.75e-6, 0.0, 0.0], atol=1e-20)
+
+
+def test_axial_profile_passes_through_its_points_and_stays_between_them():
+    p = ehd.AxialProfile(positions=[-0.01, 0.0, 0.01], depths=[2e-6, 0.0, 0.0])
+    d = p.depth(THETA, np.linspace(-0.02, 0.02, 41), LENGTH)[0]
+    assert d[0] == d[10] == 2e-6 and d[20] == 0.0
+    assert d.min() == 0.0 and d.max() == 2e-6
+
+
+def test_table_is_periodic_and_exact_at_its_points():
+    angles = np.linspace(0.3, 0.3 + 2 * np.pi, 36, endpoint=False)
+    depths = 1e-6 * np.outer(np.cos(2 * angles), [1.0, 0.5, 0.2, 0.1])
+    p = ehd.ProfileTable(angles=angles, positions=[-0.02, -0.005, 0.005, 0.02], depths=depths)
+    np.testing.assert_allclose(p.depth(angles, np.array([-0.02, 0.005]), LENGTH), depths[:, [0, 2]], atol=1e-18)
+    np.testing.assert_allclose(p.depth(THETA + 4 * np.pi, Z, LENGTH), p.depth(THETA, Z, LENGTH), atol=1e-18)
+    # A cubic spline through 36 points of a second harmonic: 1e-4 of the amplitude.
+    np.testing.assert_allclose(p.depth(THETA, np.array([-0.02]), LENGTH)[:, 0], 1e-6 * np.cos(2 * THETA), atol=1e-10)
+
+
+def test_profiles_add_up():
+    one, two = ehd.Crown(drop=1e-6), ehd.OutOfRound(order=2, amplitude=2e-6)
+    both = ProfileTerm((one, two), THETA, Z, LENGTH, 20e-6).field(None)
+    np.testing.assert_allclose(both * 20e-6, one.depth(THETA, Z, LENGTH) + two.depth(THETA, Z, LENGTH), atol=1e-20)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: ehd.OutOfRound(order=1, amplitude=1e-6), "OutOfRound.order"),
+        (lambda: ehd.Crown(drop=1e-6, exponent=0.5), "Crown.exponent"),
+        (lambda: ehd.EdgeRelief(drop=1e-6, relief_length=0.0), "EdgeRelief.relief_length"),
+        (lambda: ehd.AxialProfile(positions=[0.0, 0.0], depths=[1, 2]), "AxialProfile.positions"),
+        (lambda: ehd.AxialProfile(positions=[0.0, 1.0], depths=[1, 2, 3]), "AxialProfile.depths"),
+        (lambda: ehd.AxialProfile(positions=[0.0, 1.0], depths=[1, np.nan]), "AxialProfile.depths"),
+        (lambda: ehd.AxialProfile(positions=10**400, depths=[1, 2]), "AxialProfile.positions must be finite"),
+        (lambda: ehd.AxialProfile(positions=[0.0, 1.0], depths=[0, 10**400]), "AxialProfile.depths must be finite"),
+        (
+            lambda: ehd.AxialProfile(positions=[-1.7e308, 1.7e308], depths=[0, 1]),
+            "AxialProfile.positions must not exceed",
+        ),
+        (lambda: ehd.AxialProfile(positions=[0.0, 5e-324], depths=[0, 1]), "AxialProfile.positions .* apart"),
+        (lambda: ehd.AxialProfile(positions=[0.0, 1.0], depths=[-1e308, 1e308]), "AxialProfile.depths must not exceed"),
+        (lambda: ehd.ProfileTable(angles=[0, 90, 180, 270], positions=[0, 1], depths=np.zeros((4, 2))), "2 pi"),
+        (lambda: ehd.ProfileTable(angles=[0, 1, 2, 3], positions=[0, 1], depths=np.zeros((2, 4))), "transpose"),
+        (lambda: ProfileTerm((ehd.Crown(drop=-30e-6),), THETA, Z, LENGTH, 20e-6), "closes the gap"),
+    ],
+)
+def test_refused_values(make, message):
+    with pytest.raises(ehd.InputError, match=message):
+        make()

@@ -1,0 +1,326 @@
+"""The audit: every finding flips where its effect begins to matter, whatever film model and closure a bearing has."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.audit.audit import audit_record
+from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_share, tilt_loss
+from exudyn_ehd.joint.model.build import build_model
+
+C, SPEED = 20e-6, 300.0
+LAWS = {
+    "piezoviscosity": {"pressure_law": ehd.RoelandsPressure(coefficient=2e-8)},
+    "shear thinning": {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7)},
+}
+ASPERITY = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=2e10)
+SUPPLIED = (1e5, 1e5)
+
+
+def bearing(**options):
+    oil = {"viscosity": 0.02, **{k: options.pop(k) for k in ("pressure_law", "shear_law") if k in options}}
+    plain = {"journal_radius": 0.02, "length": 0.02, "radial_clearance": C, "lubricant": ehd.Lubricant(**oil)}
+    return ehd.JournalBearing(**(plain | options))
+
+
+def audit(made, eps=0.5, speed=SPEED, **where):
+    look = {k: where.pop(k) for k in ("liner", "measure_time") if k in where}
+    return ehd.steady(made, speed=speed, eccentricity_ratio=eps, **where).audit(**look)
+
+
+def check_readable(found):
+    """No nan anywhere, one line per finding, advice for whatever is neglected or in vain."""
+    text = str(found)
+    assert "nan" not in text
+    assert all(math.isfinite(f.value) and f.value >= 0.0 for f in found.findings)
+    table = text.split("\n\n")[0].splitlines()
+    assert len(table) == 2 + len(found.findings)
+    for f in found.findings:
+        assert f.effect in text and f.indicator in text
+        assert not (f.in_vain and f.matters)
+    for f in (*found.neglected, *found.in_vain):
+        assert f.advice and f"{f.effect}: {f.advice}" in text
+    # a line of the table fits a wide terminal
+    assert max(map(len, table)) < 140
+
+
+# effect: (a position where it does not matter, one where it does), with whatever else the bearing needs
+FLIPS = {
+    "misalignment": ({}, {"tilt": (3e-4, 0.0)}),
+    "piezoviscosity": ({"eps": 0.1}, {"eps": 0.9}),
+    "shear thinning": ({"eps": 0.1}, {"eps": 0.9, "speed": 1000.0}),
+    "roughness": ({"eps": 0.8}, {"eps": 0.95}),
+    "contact": ({"eps": 0.8}, {"eps": 0.95}),
+    "squeeze": ({}, {"velocity": (1e-3, 0.0)}),
+    "mass conservation": ({"eps": 0.8}, {"eps": 0.8, "velocity": (0.0, 2e-3)}),
+    "heating": ({"speed": 0.5}, {"speed": 300.0}),
+    "grid around": ({"eps": 0.8}, {"eps": 0.99}),
+    "grid along": ({}, {"tilt": (9.8e-4, 0.0)}),
+}
+
+
+@pytest.mark.parametrize("effect", list(FLIPS))
+def test_findings_flip_with_the_position(effect):
+    calm, hard = (audit(bearing(), **where) for where in FLIPS[effect])
+    assert not calm[effect].matters and hard[effect].matters
+    for found in (calm, hard):
+        check_readable(found)
+    assert hard[effect] in hard.matters
+    if not hard[effect].on:
+        assert hard[effect] in hard.neglected
+
+
+@pytest.mark.parametrize(
+    ("effect", "small", "large"),
+    [
+        ("Taylor vortices", {"viscosity": 0.02}, {"viscosity": 1e-4}),
+        ("turbulence", {"viscosity": 0.02}, {"viscosity": 4e-5}),
+        ("fluid inertia", {"viscosity": 0.02}, {"viscosity": 4e-5}),
+    ],
+)
+def test_thin_liquids_leave_the_laminar_film(effect, small, large):
+    # 12 m/s in a film of 20 um: Re = 9 for an oil, 1700 and 4300 for gas-like liquids
+    for oil, matters in ((small, False), (large, True)):
+        found = audit(bearing(lubricant=ehd.Lubricant(**oil)), speed=900.0)
+        assert found[effect].matters is matters
+        check_readable(found)
+    assert found[effect].on is None and found[effect].advice
+
+
+def test_taylor_and_reynolds_numbers():
+    found = audit(bearing(lubricant=ehd.Lubricant(viscosity=0.01, density=1000.0)))
+    reynolds = 1000.0 * SPEED * 0.02 * C / 0.01
+    # the model's own scales give the viscosity back to rounding
+    assert found["turbulence"].value == pytest.approx(reynolds, rel=1e-12)
+    assert found["Taylor vortices"].value == pytest.approx(reynolds * math.sqrt(1e-3), rel=1e-12)
+    assert found["fluid inertia"].value == pytest.approx(reynolds * 1e-3, rel=1e-12)
+
+
+def test_full_sommerfeld_is_told_of_its_tension():
+    closure = ehd.FullSommerfeld()
+    assert audit(bearing(cavitation=closure), eps=0.8)["cavitation"].matters
+    flooded = audit(bearing(cavitation=closure, end_pressures=(5e7, 5e7)), eps=0.1)
+    assert not flooded["cavitation"].matters
+    broken = audit(bearing(), eps=0.8)["cavitation"]
+    assert broken.on and broken.matters and 0.2 < broken.value < 0.6
+
+
+def test_supply_asks_for_mass_conservation():
+    groove = ehd.AxialGroove(angle=math.pi, width_angle=0.3, pressure=1e5)
+    assert (
+        audit(bearing(supply=(groove,)), eps=0.8)["mass conservation"]
+        in audit(bearing(supply=(groove,)), eps=0.8).neglected
+    )
+    elrod = ehd.ElrodAdams()
+    assert not audit(bearing(supply=(groove,), cavitation=elrod), eps=0.8).in_vain
+    still = audit(bearing(end_pressures=SUPPLIED, cavitation=elrod), eps=0.8)
+    assert still["mass conservation"].in_vain
+
+
+def test_elasticity_of_a_liner_given_and_asked_about():
+    soft, stiff = (ehd.ElasticLiner(thickness=0.002, youngs_modulus=E) for E in (2e9, 2e11))
+    assert "elasticity" not in str(audit(bearing()))
+    asked = audit(bearing(), eps=0.8, liner=soft)
+    assert asked["elasticity"] in asked.neglected
+    assert not audit(bearing(), eps=0.8, liner=stiff)["elasticity"].matters
+    named = audit(bearing(bush=soft), eps=0.8)
+    assert named["elasticity"].matters and named["elasticity"].on and not named["elasticity"].advice
+    # a soft liner lowers the peak and widens the gap: columns under the rigid film's pressure overestimate
+    assert 0.1 < named["elasticity"].value < asked["elasticity"].value
+    assert audit(bearing(bush=stiff), eps=0.5)["elasticity"].in_vain
+    with pytest.raises(ehd.InputError, match="liner must be ElasticLiner"):
+        audit(bearing(), liner=2e11)
+
+
+ON = {
+    **LAWS,
+    "heating": {"thermal": ehd.LumpedThermal(supply_temperature=313.15), "lubricant": ehd.oil("ISO VG 46")},
+    "roughness": {"roughness": ehd.PatirCheng(composite_roughness=0.4e-6)},
+    "contact": {"asperity": ASPERITY},
+    "wear": {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-16)},
+    "elasticity": {"bush": ehd.ElasticLiner(thickness=0.002, youngs_modulus=2e11)},
+    "profile": {"profile": ehd.Crown(drop=0.1e-6)},
+    "mass conservation": {"cavitation": ehd.ElrodAdams(), "end_pressures": SUPPLIED},
+}
+
+
+@pytest.mark.parametrize("effect", list(ON))
+def test_effects_that_do_not_matter_are_in_vain(effect):
+    # slow and nearly concentric: no pressure, no heat, a thick film
+    found = audit(bearing(**ON[effect]), eps=0.05, speed=0.2, measure_time=True)
+    finding = found[effect]
+    assert finding.on and finding.in_vain and finding in found.in_vain
+    assert finding.time_share is not None and 0.0 <= finding.time_share < 1.0
+    check_readable(found)
+    assert f"{finding.time_share:.0%}" in str(found)
+
+
+HARD = {
+    "piezoviscosity": {"eps": 0.7},
+    "shear thinning": {"eps": 0.955},
+    "roughness": {"eps": 0.955},
+    "contact": {"eps": 0.98, "speed": 10.0},
+    "wear": {"eps": 0.955, "speed": 10.0},
+    "heating": {"eps": 0.8},
+    "mass conservation": {"eps": 0.8, "velocity": (0.0, 2e-3)},
+}
+
+
+@pytest.mark.parametrize("effect", list(HARD))
+def test_effects_that_matter_are_neither_neglected_nor_in_vain(effect):
+    found = audit(bearing(**ON[effect]), **HARD[effect])
+    assert found[effect].on and found[effect].matters
+    assert found[effect] not in (*found.neglected, *found.in_vain)
+
+
+def test_profile_matters_in_thin_films():
+    assert audit(bearing(profile=ehd.Crown(drop=2e-6)), eps=0.8)["profile"].matters
+
+
+def test_time_is_only_measured_when_asked():
+    assert all(f.time_share is None for f in audit(bearing(asperity=ASPERITY)).findings)
+    measured = audit(bearing(asperity=ASPERITY), measure_time=True)
+    assert [f.effect for f in measured.findings if f.time_share is not None] == ["contact"]
+    # journals in contact have no film to compare with
+    assert audit(bearing(asperity=ASPERITY), eps=1.005, measure_time=True)["contact"].time_share is None
+
+
+GROOVE = (ehd.AxialGroove(angle=math.pi, width_angle=0.3),)
+MODELS = {
+    "short": {"film": ehd.ShortBearing()},
+    "long": {"film": ehd.LongBearing(), "inlet": ehd.MaximumGap()},
+    "long with a groove": {"film": ehd.LongBearing(), "supply": GROOVE},
+    "classic": {"film": ehd.ClassicSOR(n_theta=48, n_z=8), "cavitation": ehd.Gumbel()},
+    "map": {"film": ehd.ImpedanceMap()},
+    "maximum gap": {"inlet": ehd.MaximumGap()},
+    "field": {
+        "thermal": ehd.FilmEnergy(supply_temperature=313.15, bush_coefficient=2e3),
+        "lubricant": ehd.oil("ISO VG 46"),
+    },
+    "wall": {"contact": ehd.RegularisedWall(onset=1e-6)},
+    "sommerfeld": {"cavitation": ehd.FullSommerfeld()},
+    "gumbel": {"cavitation": ehd.Gumbel()},
+    "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+    "all laws": {**LAWS["piezoviscosity"], **LAWS["shear thinning"], "asperity": ASPERITY},
+}
+
+
+@pytest.mark.parametrize("name", list(MODELS))
+@pytest.mark.parametrize("eps", [0.0, 0.7])
+def test_every_film_model_and_closure(name, eps):
+    found = audit(bearing(**MODELS[name]), eps=eps, measure_time=True)
+    check_readable(found)
+    effects = [f.effect for f in found.findings]
+    assert len(set(effects)) == len(effects)
+    assert "long" not in name or "grid along" not in effects
+    assert name != "map" or found["misalignment"].on is False
+
+
+def test_equilibrium_has_an_audit():
+    result = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -1000.0))
+    check_readable(result.film.audit())
+
+
+def test_standstill_has_an_audit():
+    check_readable(audit(bearing(), eps=0.0, speed=0.0))
+
+
+def test_unknown_effect_lists_the_known_ones():
+    with pytest.raises(KeyError, match="misalignment"):
+        audit(bearing())["phlogiston"]
+
+
+def record(made, motion, time):
+    films = [build_model(made).evaluate(m) for m in motion]
+    q, force = [film.quantities() for film in films], np.array([film.wrench[:3] for film in films])
+    names = [f.name for f in dataclasses.fields(RecordedSteps)][3:]
+    return RecordedSteps(
+        time=time, motion=motion, force=force, **{n: np.array([row.get(n, np.nan) for row in q]) for n in names}
+    )  # fmt: skip
+
+
+def orbit(n, radius=0.6, whirl=150.0):
+    angle = 2.0 * math.pi * np.arange(n + 1) / n
+    motion = np.zeros((n + 1, 10))
+    motion[:, :2] = radius * C * np.column_stack((np.cos(angle), np.sin(angle)))
+    motion[:, 4:6] = whirl * radius * C * np.column_stack((-np.sin(angle), np.cos(angle)))
+    motion[:, 8] = SPEED
+    return motion, angle / whirl
+
+
+@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)])
+def test_step_of_a_record_against_the_gap(cavitation):
+    made = bearing(cavitation=cavitation)
+    coarse, fine = (audit_record(made, record(made, *orbit(n))) for n in (8, 80))
+    assert coarse["time step"].matters and not fine["time step"].matters
+    # chord of the orbit over the gap, both in c
+    assert fine["time step"].value == pytest.approx(2 * 0.6 * math.sin(math.pi / 80) / 0.4, rel=1e-9)
+    assert fine["squeeze"].value == pytest.approx(0.5)
+    for found in (coarse, fine):
+        assert not found["ringing"].matters
+        check_readable(found)
+
+
+def test_worst_states_are_found():
+    made = bearing()
+    motion, time = orbit(20)
+    motion[7, :2] *= 1.5
+    motion[11, 2] = 5e-4
+    motion[15, 8] = 2000.0
+    assert {7, 11, 15} <= set(record(made, motion, time).worst(made))
+
+
+def test_tilt_and_squeeze_shares():
+    made = bearing()
+    motion = np.zeros(10)
+    assert tilt_loss(made, motion) == squeeze_share(made, motion) == 0.0
+    motion[:3] = 0.5 * C, 0.0, 0.1 * C / 0.01
+    assert tilt_loss(made, motion) == pytest.approx(0.2)
+    motion[4] = 1e-3
+    assert squeeze_share(made, motion) == 1.0  # nothing turns
+    motion[8] = 2e-3 / (0.6 * C)
+    assert squeeze_share(made, motion) == pytest.approx(0.5)
+
+
+def test_intervals_at_half_height():
+    x = np.linspace(-1.0, 1.0, 41)
+    # a triangle of half width 0.5: linear interpolation is exact
+    assert intervals_at_half(np.maximum(0.0, 1.0 - np.abs(x)), 20) == pytest.approx(20.0)
+    assert intervals_at_half(np.zeros(8), 3) == 8.0
+    assert intervals_at_half(np.ones(8), 3) == 7.0
+
+
+def load(made, eps):
+    return float(np.hypot(*ehd.steady(made, speed=SPEED, eccentricity_ratio=eps).force[:2]))
+
+
+@pytest.mark.parametrize(("n_theta", "eps"), [(48, 0.95), (64, 0.98), (48, 0.98), (192, 0.1), (256, 0.4)])
+def test_advised_grids_carry_the_load(n_theta, eps, measured):
+    """Both "too coarse" and "finer than needed" name a grid that is neither."""
+    made = bearing(film=ehd.FiniteLength(n_theta=n_theta, n_z=12))
+    advised = int(audit(made, eps=eps)["grid around"].advice.split("n_theta=")[1].split(" ")[0].rstrip("."))
+    followed = bearing(film=ehd.FiniteLength(n_theta=advised, n_z=12))
+    finding = audit(followed, eps=eps)["grid around"]
+    assert not finding.matters and not finding.in_vain
+    fine = load(bearing(film=ehd.FiniteLength(n_theta=512, n_z=12)), eps)
+    # the threshold stands for 1 % of the load
+    measured("load against 512 columns", abs(load(followed, eps) / fine - 1.0), 0.01)
+
+
+@pytest.mark.parametrize("eps", [0.6, 0.8])
+def test_thresholds_stand_for_a_few_per_cent(eps, measured):
+    plain = ehd.steady(bearing(), speed=SPEED, eccentricity_ratio=eps)
+    at_threshold = 0.1 / plain.peak_pressure
+    thick = bearing(pressure_law=ehd.BarusPressure(coefficient=at_threshold))
+    compliance = 0.1 * plain.minimum_gap / plain.peak_pressure
+    unit = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10).compliance
+    soft = bearing(bush=ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10 * unit / compliance))
+    rough = bearing(roughness=ehd.PatirCheng(composite_roughness=plain.minimum_gap / 3.0))
+    for made in (thick, soft, rough):
+        film = ehd.steady(made, speed=SPEED, eccentricity_ratio=eps)
+        change = abs(film.peak_pressure / plain.peak_pressure - 1.0)
+        # between "nobody would see it" and "a wrong film"
+        assert 0.02 < change < 0.12, (made, change)

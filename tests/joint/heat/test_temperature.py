@@ -1,0 +1,281 @@
+"""Film temperature against closed forms (Petroff heating, isothermal walls), its balance, its order, its steady state.
+
+One bearing throughout: R = 25 mm, L = 50 mm, c = 25 um. Couette heat per area of the concentric film: mu (R omega)^2 / c.
+"""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.static.steady_temperature import settle
+
+R, L, C = 0.025, 0.05, 25e-6
+SUPPLY, MU, BETA, OMEGA = 320.0, 0.02, 0.03, 300.0
+LAW = ehd.ReynoldsTemperature(point=(SUPPLY, MU), coefficient=BETA)
+OIL = ehd.Lubricant(temperature_law=LAW, temperature=SUPPLY, density=870.0, specific_heat=2000.0)
+CAPACITY = 870.0 * 2000.0
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+# Relative to the largest of the four terms; the equations close to rounding, the flows carry about 1e-11.
+BALANCE = 1e-8
+
+
+def bearing(thermal, **options):
+    return ehd.JournalBearing(
+        **({"journal_radius": R, "length": L, "radial_clearance": C, "lubricant": OIL, "thermal": thermal} | options)
+    )
+
+
+def motion(eccentricity=0.0, speed=OMEGA, axial=0.0, **rates):
+    out = np.zeros(10)
+    out[0], out[8], out[9] = eccentricity * C, speed, axial
+    out[4], out[5] = rates.get("vx", 0.0), rates.get("vy", 0.0)
+    return out
+
+
+def petroff(temperature=SUPPLY, speed=OMEGA):
+    """Loss of the concentric film, W."""
+    return float(LAW.viscosity(temperature, 870.0)) * (R * speed) ** 2 / C * 2.0 * math.pi * R * L
+
+
+def defect(balance):
+    return abs(balance["heat_in"] - balance["carried_out"] - balance["conducted"] - balance["stored"]) / max(
+        abs(v) for v in balance.values()
+    )
+
+
+def run(model, at, step, steps, history=None):
+    """Accept ``steps`` steps at a motion; returns the last history and the largest defect of the balance."""
+    history = model.initial_history(at) if history is None else history
+    worst = 0.0
+    for _ in range(steps):
+        assert model.evaluate(at, history, step).status is ehd.Status.CONVERGED
+        history = model.history()
+        worst = max(worst, defect(model.effects.thermal.balance(model, history.temperature)))
+    return history, worst
+
+
+@pytest.mark.parametrize(
+    "thermal", [ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)]
+)
+def test_adiabatic_petroff_heating_in_time(thermal):
+    """No through-flow, no conduction: exp(beta (T - T0)) = 1 + beta P0 t / (rho c_p V), approached with the first order."""
+    model, at, end, errors = build_model(bearing(thermal)), motion(), 0.02, []
+    volume = 2.0 * math.pi * R * L * C
+    exact = math.log(1.0 + BETA * petroff() * end / (CAPACITY * volume)) / BETA
+    assert exact > 15.0  # the viscosity falls to 60 %
+    for steps in (200, 400):
+        history, worst = run(model, at, end / steps, steps)
+        assert worst < BALANCE
+        errors.append(float(np.abs(np.asarray(history.temperature) - SUPPLY - exact).max()))
+    assert errors[1] < 2e-3 * exact  # first order, 400 steps
+    assert 1.8 < errors[0] / errors[1] < 2.2
+
+
+def test_adiabatic_petroff_heating_along_the_bearing():
+    """Concentric journal that pulls oil through at h w / 2: exp(beta (T - T_s)) = 1 + beta mu_s v^2 z / (rho c_p h q)."""
+    w, errors = 2.0, []
+    q = 0.5 * C * w
+    for n_z in (40, 80):
+        film = ehd.FiniteLength(n_theta=16, n_z=n_z, stretch=0.0)
+        model = build_model(bearing(ehd.FilmEnergy(supply_temperature=SUPPLY), film=film))
+        T = settle(model, motion(axial=w)).temperature
+        heat = MU * ((R * OMEGA) ** 2 + w**2) / C
+        z = model.grid.z * R + 0.5 * L
+        exact = SUPPLY + np.log(1.0 + BETA * heat * z / (CAPACITY * q)) / BETA
+        assert np.ptp(T, axis=0).max() < 1e-8  # the film is the same all around
+        errors.append(np.abs(T[0] - exact).max() / (exact[-1] - SUPPLY))
+    assert exact[-1] - SUPPLY > 15.0
+    assert errors[1] < 0.03  # first-order upwind with 80 cells
+    assert 1.7 < errors[0] / errors[1] < 2.3
+
+
+def test_lumped_steady_state_is_petroff_against_the_housing():
+    """Concentric: P(T) = G (T - T_h), the only way out; one equation, solved here by bisection."""
+    G, housing = 8.0, 310.0
+    thermal = ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=G, housing_temperature=housing)
+    uniform = ehd.FiniteLength(stretch=0.0)  # whose weights add up to the area exactly
+    result = ehd.steady(bearing(thermal, film=uniform), speed=OMEGA, eccentricity_ratio=0.0)
+    low, high = housing, 500.0
+    for _ in range(100):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if petroff(middle) > G * (middle - housing) else (low, middle)
+    assert result.temperature == pytest.approx(low, abs=1e-8)  # settled to 1e-11 of the rise
+    assert result.power_loss == pytest.approx(G * (low - housing), rel=1e-9)
+
+
+@pytest.mark.parametrize("sides", [(4e4, 0.0), (1e4, 3e4)])
+def test_film_between_walls_without_through_flow(sides):
+    """U_b (T - T_b) + U_j (T - T_j) = mu(T) v^2 / h at every point of a concentric film; tends to the walls as U grows."""
+    bush, journal = sides
+    thermal = ehd.FilmEnergy(
+        supply_temperature=SUPPLY, bush_coefficient=bush, bush_temperature=330.0, journal_coefficient=journal,
+        journal_temperature=310.0,
+    )  # fmt: skip
+    T = ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0).temperature
+    heat = LAW.viscosity(T, 870.0) * (R * OMEGA) ** 2 / C
+    np.testing.assert_allclose(
+        bush * (T - 330.0) + journal * (T - 310.0), heat, rtol=1e-8
+    )  # settled to 1e-11 of the rise
+    assert np.ptp(T) < 1e-8
+
+
+@pytest.mark.parametrize(("bush", "journal"), [(1e9, 1e9), (1e9, 0.0), (0.0, 2e3), (1e3, 3e3), (2e3, 1e9)])
+def test_conduction_across_a_film_without_through_flow(bush, journal):
+    """Uniform heat between two walls: the exact parabola, its mean, from k T'' = -heat / h with k T' = U_b (T - T_b) at y = 0 and
+    -k T' = U_j (T - T_j) at y = h, for walls of different temperatures."""
+    k, T_b, T_j = 0.13, 331.0, 315.0
+    thermal = ehd.FilmEnergy(
+        supply_temperature=SUPPLY, bush_coefficient=bush, bush_temperature=T_b, journal_coefficient=journal,
+        journal_temperature=T_j, conductivity=k,
+    )  # fmt: skip
+    T = ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0).temperature
+    heat = float(LAW.viscosity(T[0, 0], 870.0)) * (R * OMEGA) ** 2 / C
+    # T = a + b y - heat y^2 / (2 k h)
+    system = np.array([[bush, -k], [journal, k + journal * C]])
+    a, b = np.linalg.solve(system, [bush * T_b, heat + journal * (T_j + 0.5 * heat * C / k)])
+    np.testing.assert_allclose(T, a + 0.5 * b * C - heat * C / (6.0 * k), atol=1e-6)
+
+
+def test_conductivity_of_an_adiabatic_film_changes_nothing():
+    off, on = (ehd.FilmEnergy(supply_temperature=SUPPLY, conductivity=k) for k in (None, 0.13))
+    first, second = (
+        ehd.steady(bearing(t, end_pressures=(0.0, 4e5)), speed=OMEGA, eccentricity_ratio=0.5) for t in (off, on)
+    )
+    assert np.array_equal(first.temperature, second.temperature)
+
+
+def test_isothermal_walls_are_the_limit_of_strong_cooling():
+    """Excess over the wall falls like 1 / U, and the film becomes the isothermal one."""
+    plain = ehd.steady(bearing(None), speed=OMEGA, eccentricity_ratio=0.6)
+    rise, loss = [], []
+    for U in (1e7, 1e8):
+        r = ehd.steady(
+            bearing(ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=U)), speed=OMEGA, eccentricity_ratio=0.6
+        )
+        rise.append(r.temperature.max() - SUPPLY)
+        loss.append(abs(r.power_loss / plain.power_loss - 1.0))
+    assert 9.5 < rise[0] / rise[1] < 10.5
+    assert loss[1] < 1e-3
+    assert 9.0 < loss[0] / loss[1] < 11.0
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+@pytest.mark.parametrize(
+    "thermal",
+    [
+        ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01),
+        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0),
+        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e4, bush_temperature=310.0, conductivity=0.13),
+    ],
+    ids=["lumped", "field", "conducting"],
+)
+@pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 4e5)])
+def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
+    """Heat in = carried out + conducted + stored, at every accepted step with squeeze and through-flow, and in the steady state."""
+    model = build_model(bearing(thermal, cavitation=cavitation, end_pressures=ends))
+    history, worst = run(model, motion(0.6, vx=2e-3, vy=-3e-3), 1e-4, 20)
+    assert worst < BALANCE
+    assert np.all(np.isfinite(history.temperature))
+    if ends == (0.0, 0.0) and cavitation.conserves_mass:
+        return
+    at = motion(0.6)
+    settled = settle(model, at)
+    model.evaluate(at, settled)
+    balance = model.effects.thermal.balance(model, settled.temperature)
+    assert balance["stored"] == 0.0
+    assert defect(balance) < BALANCE
+
+
+@pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
+def test_steady_temperature_is_where_the_transient_ends(cavitation):
+    thermal = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=5e3)
+    b = bearing(thermal, cavitation=cavitation, end_pressures=(1e5, 4e5), film=ehd.FiniteLength(n_theta=32, n_z=6))
+    model = build_model(b)
+    at = motion(0.5)
+    settled = settle(model, at).temperature
+    history, _ = run(model, at, 2e-3, 600)
+    np.testing.assert_allclose(
+        history.temperature, settled, atol=1e-6
+    )  # steps of ten revolutions, long after the start
+
+
+def test_field_heat_is_the_mechanical_power():
+    """The field's own sum of shear and pressure-flow heat tends to the power that the motion puts in."""
+    errors = []
+    for n_theta, n_z in ((48, 8), (192, 32)):
+        model = build_model(
+            bearing(
+                ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=5e3), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+                cavitation=ehd.FullSommerfeld(), end_pressures=(0.0, 0.0),
+            )
+        )  # fmt: skip
+        at = motion(0.6, vx=2e-3, vy=-3e-3)
+        model.evaluate(at)
+        heat = model.effects.thermal.balance(model, model.effects.thermal.temperature)["heat_in"]
+        errors.append(abs(heat / model.quantities()["power_loss"] - 1.0))
+    assert errors[0] < 0.015  # second order on 48 x 8
+    assert errors[1] < 0.2 * errors[0]
+
+
+def test_force_of_a_step_sees_the_temperature_at_its_start():
+    """Lumped: the wrench is that of an isothermal bearing whose oil has the history's temperature."""
+    model = build_model(bearing(ehd.LumpedThermal(supply_temperature=SUPPLY)))
+    at = motion(0.6, vx=2e-3)
+    wrench = model.evaluate(at, History(temperature=340.0), 1e-4).wrench
+    cold = build_model(bearing(None, lubricant=OIL.at(340.0))).evaluate(at).wrench
+    np.testing.assert_allclose(wrench, cold, rtol=1e-12, atol=1e-12 * np.abs(cold).max())
+
+
+def test_uniform_field_equals_the_lumped_film():
+    at = motion(0.6, vx=2e-3)
+    lumped = build_model(bearing(ehd.LumpedThermal(supply_temperature=SUPPLY)))
+    field = build_model(bearing(ehd.FilmEnergy(supply_temperature=SUPPLY)))
+    one = lumped.evaluate(at, History(temperature=340.0)).wrench
+    many = field.evaluate(at, History(temperature=np.full(field.grid.shape, 340.0))).wrench
+    np.testing.assert_allclose(many, one, rtol=1e-11, atol=1e-11 * np.abs(one).max())
+
+
+def test_a_rejected_step_leaves_nothing_behind():
+    """Evaluating other states and steps in between does not change a step's result, bit for bit."""
+    for thermal in (ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)):
+        model = build_model(bearing(thermal))
+        history, _ = run(model, motion(0.5), 1e-4, 3)
+        model.evaluate(motion(0.6), history, 1e-4)
+        first = np.array(model.history().temperature)
+        model.evaluate(motion(0.8), model.history(), 3e-4)
+        model.history()
+        model.evaluate(motion(0.6), history, 1e-4)
+        np.testing.assert_array_equal(model.history().temperature, first)
+
+
+def test_equilibrium_is_settled():
+    b = bearing(ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3))
+    eq = ehd.equilibrium(b, speed=OMEGA, load=(0.0, -2000.0))
+    np.testing.assert_allclose(eq.film.force[:2], [0.0, 2000.0], atol=1e-6)  # 1e-10 of the load, settled to 1e-11
+    again = ehd.steady(
+        b, speed=OMEGA, eccentricity_ratio=eq.eccentricity_ratio, direction=math.atan2(*eq.position[::-1])
+    )
+    np.testing.assert_allclose(again.temperature, eq.film.temperature, rtol=1e-9)
+
+
+def test_no_way_out_for_the_heat_is_an_error():
+    for thermal in (ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)):
+        with pytest.raises(ehd.FilmError, match="no way out"):
+            ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0)
+
+
+def test_input_errors_name_what_is_missing():
+    plain = dataclasses.replace(OIL, temperature_law=None)
+    with pytest.raises(ehd.InputError, match=r"needs a lubricant whose viscosity depends on temperature"):
+        build_model(bearing(ehd.LumpedThermal(supply_temperature=SUPPLY), lubricant=plain))
+    with pytest.raises(ehd.InputError, match=r"JournalBearing\.thermal must be LumpedThermal"):
+        bearing("lumped")
+    with pytest.raises(ehd.InputError, match=r"LumpedThermal\.supply_temperature must be > 0 K"):
+        ehd.LumpedThermal(supply_temperature=-5.0)
+    with pytest.raises(ehd.InputError, match=r"FilmEnergy\.bush_coefficient"):
+        ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=-1.0)

@@ -1,0 +1,216 @@
+"""Liner with laws of the oil, rough surfaces and heat: closed forms of the axial flow, limits, balances, solid oil."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+import exudyn_ehd as ehd
+from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
+from exudyn_ehd.film.surfaces.flow_factors import pressure_flow_factor
+from exudyn_ehd.joint.model.build import build_model
+
+R, L, C, MU, SPEED = 0.02, 0.03, 20e-6, 0.02, 200.0
+SIGMA = 0.8e-6
+LINER = ehd.ElasticLiner(thickness=2e-3, youngs_modulus=5e9)
+BARUS = ehd.BarusPressure(coefficient=2e-8)
+ROELANDS = ehd.RoelandsPressure(coefficient=2e-8)
+CARREAU = ehd.CarreauShear(relaxation_time=2e-6, exponent=0.6, residual=0.1)
+HOT = {"temperature_law": ehd.ReynoldsTemperature(point=(320.0, MU), coefficient=0.03), "temperature": 320.0}
+EFFECTS = {
+    "barus": {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=BARUS)},
+    "roelands": {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ROELANDS)},
+    "carreau": {"lubricant": ehd.Lubricant(viscosity=MU, shear_law=CARREAU)},
+    "barus, carreau": {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=BARUS, shear_law=CARREAU)},
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=SIGMA)},
+    "energy": {
+        "lubricant": ehd.Lubricant(viscosity=MU, **HOT), "thermal": ehd.FilmEnergy(supply_temperature=320.0),
+    },
+    "barus, lumped": {
+        "lubricant": ehd.Lubricant(viscosity=MU, pressure_law=BARUS, **HOT),
+        "thermal": ehd.LumpedThermal(supply_temperature=320.0),
+    },
+}  # fmt: skip
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
+
+
+def bearing(**options):
+    plain = {
+        "journal_radius": R, "length": L, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=MU), "bush": LINER,
+        "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }  # fmt: skip
+    return ehd.JournalBearing(**(plain | options))
+
+
+def motion(eps, angle=0.7, speed=SPEED, rate=0.0):
+    out = np.zeros(10)
+    out[:2] = eps * C * np.array([np.cos(angle), np.sin(angle)])
+    out[4] = rate * C
+    out[8] = speed
+    return out
+
+
+def conductance(effect, h, p):
+    """h^3 over the viscosity's ratio across the sliding, times the flow factor, from the textbook formulas; h in m, p in Pa."""
+    ratio = 1.0
+    if "barus" in effect:
+        ratio *= np.exp(BARUS.coefficient * p)
+    if "roelands" in effect:
+        a = np.log(MU) + 9.67
+        Z = ROELANDS.coefficient * 1.96e8 / a
+        ratio *= np.exp(a * ((1.0 + p / 1.96e8) ** Z - 1.0))
+    if "carreau" in effect:
+        s = (CARREAU.relaxation_time * R * SPEED / h) ** 2
+        ratio *= CARREAU.residual + (1.0 - CARREAU.residual) * (1.0 + s) ** (0.5 * (CARREAU.exponent - 1.0))
+    if effect == "rough":
+        return h**3 * float(pressure_flow_factor(h / SIGMA, 1.0))
+    return h**3 / ratio
+
+
+@pytest.mark.parametrize("effect", ["barus", "roelands", "carreau", "barus, carreau", "rough"])
+def test_flow_through_a_soft_annulus(effect):
+    """Concentric, pressed through from end to end: ``q L = 2 pi R / (12 mu) int g(h(p), p) dp`` with ``h = c + K p``, whatever the course of p.
+
+    The gap opens by a fifth, the oil thickens by half. 5e-4 on 8 intervals, and second order.
+    """
+    ends = (0.0, 2e7)
+    K = LINER.compliance
+    flow = quad(lambda p: conductance(effect, C + K * p, p), *ends)[0] * 2.0 * np.pi * R / (12.0 * MU * L)
+    assert 0.1 * C < K * ends[1] < 0.3 * C
+    errors = []
+    for n_z in (4, 8, 16):
+        options = EFFECTS[effect] | {"end_pressures": ends, "film": ehd.FiniteLength(n_theta=16, n_z=n_z)}
+        found = build_model(bearing(cavitation=ehd.FullSommerfeld(), **options)).evaluate(motion(0.0)).quantities()
+        errors.append(abs(found["leakage_lower"] / flow - 1.0))
+        assert found["leakage_upper"] == pytest.approx(-found["leakage_lower"], rel=1e-9)
+    assert errors[1] < 5e-4
+    assert errors[2] < 0.3 * errors[1]
+
+
+@pytest.mark.parametrize("effect", EFFECTS)
+@every_closure
+def test_stiff_liner_approaches_the_rigid_bore_at_first_order(closure, effect):
+    at = motion(0.7)
+    rigid = build_model(bearing(bush=None, cavitation=closure, **EFFECTS[effect])).evaluate(at).wrench
+    errors = []
+    for modulus in (1e13, 2e13, 4e13):
+        bush = dataclasses.replace(LINER, youngs_modulus=modulus)
+        found = build_model(bearing(bush=bush, cavitation=closure, **EFFECTS[effect])).evaluate(at).wrench
+        errors.append(np.abs(found - rigid)[:2].max())
+    np.testing.assert_allclose(np.log2(np.array(errors[:-1]) / errors[1:]), 1.0, atol=0.03)
+    assert errors[0] < 0.01 * np.abs(rigid).max()
+
+
+WEAK = {
+    "barus": [{"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.BarusPressure(coefficient=a))} for a in (2e-12, 1e-12)],
+    "roelands": [
+        {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.RoelandsPressure(coefficient=a))} for a in (2e-12, 1e-12)
+    ],
+    "carreau": [
+        {"lubricant": ehd.Lubricant(viscosity=MU, shear_law=ehd.CarreauShear(relaxation_time=2e-6, exponent=1.0 - a))}
+        for a in (2e-5, 1e-5)
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("law", WEAK)
+@every_closure
+def test_weak_laws_recover_the_constant_oil(closure, law):
+    """First order in the coefficient, towards the plain liner's film (another program)."""
+    at = motion(0.7)
+    plain = build_model(bearing(cavitation=closure)).evaluate(at).wrench
+    errors = [
+        np.abs(build_model(bearing(cavitation=closure, **options)).evaluate(at).wrench - plain)[:2].max()
+        for options in WEAK[law]
+    ]
+    assert errors[0] < 1e-3 * np.abs(plain).max()
+    assert errors[1] == pytest.approx(0.5 * errors[0], rel=0.01)
+
+
+def test_thick_oil_opens_its_gap():
+    """The classical pair: piezoviscosity raises the pressure of a rigid bore until it has no film, on a liner it raises the film."""
+    found = {}
+    for bush in (None, LINER):
+        for law in (None, BARUS):
+            oil = ehd.Lubricant(viscosity=MU, pressure_law=law)
+            model = build_model(bearing(bush=bush, lubricant=oil))
+            peak = model.evaluate(motion(0.8)).quantities()["peak_pressure"]
+            # the gap at mid-length: at the ends a liner does not give way
+            found[bush is LINER, law is BARUS] = peak, model.solver.H[:, 4].min()
+            if bush is None and law is BARUS:
+                assert model.evaluate(motion(0.95)).status is ehd.Status.NO_PRESSURE
+    raised = {k: found[k, True][0] / found[k, False][0] for k in (False, True)}
+    assert raised[False] > 1.1 * raised[True] > 1.1
+    assert found[True, True][1] > 1.02 * found[True, False][1] > 1.2 * found[False, False][1]
+    model = build_model(bearing(lubricant=oil))
+    assert model.evaluate(motion(0.95)).status is ehd.Status.CONVERGED
+
+
+@every_closure
+def test_heat_of_a_film_on_a_liner_is_kept(closure):
+    """Energy balance of the temperature field over steps in which liner and journal move; 1e-8 of its largest term."""
+    model = build_model(bearing(cavitation=closure, **EFFECTS["energy"]))
+    history, at = model.initial_history(motion(0.6)), motion(0.6, rate=20.0)
+    for _ in range(20):
+        at = at.copy()
+        at[0] += at[4] * 2e-4
+        assert model.evaluate(at, history, 2e-4).status is ehd.Status.CONVERGED
+        history = model.history()
+        b = model.effects.thermal.balance(model, history.temperature)
+        left = b["heat_in"] - b["carried_out"] - b["conducted"] - b["stored"]
+        assert abs(left) < 1e-8 * max(abs(v) for v in b.values())
+    assert history.temperature.max() > 325.0
+
+
+def test_solid_oil_has_no_film():
+    """A stiff liner and a squeeze that would take gigapascals: said so, not a number."""
+    bush = dataclasses.replace(LINER, youngs_modulus=1e13)
+    for name in ("barus", "roelands"):
+        model = build_model(bearing(bush=bush, **EFFECTS[name]))
+        evaluation = model.evaluate(motion(0.95, rate=1e5))
+        assert evaluation.status is ehd.Status.NO_PRESSURE
+        assert np.all(np.isnan(evaluation.wrench))
+        # and the next film is found again
+        assert model.evaluate(motion(0.5)).status is ehd.Status.CONVERGED
+
+
+def test_rough_surfaces_that_overlap_have_no_film_without_a_contact():
+    """The average gap between rough surfaces stays open; without a contact nothing holds them apart."""
+    soft = dataclasses.replace(LINER, youngs_modulus=1e8)
+    model = build_model(bearing(bush=soft, **EFFECTS["rough"]))
+    assert model.evaluate(motion(1.02)).status is ehd.Status.NO_FILM
+
+
+def test_average_gap_is_the_nominal_one_here():
+    """`test_flow_through_a_soft_annulus` needs no average gap: 25 sigma and more."""
+    assert float(average_gap_ratio(np.array([C / SIGMA]), 0.0)[0]) == pytest.approx(C / SIGMA, rel=1e-12)
+
+
+@pytest.mark.parametrize("contact", [False, True])
+@every_closure
+def test_drag_of_unequally_rough_surfaces_on_a_liner(closure, contact):
+    """Tangent against central differences: the pressure drags the rougher surface more, by a gap that follows the pressure; 1e-6."""
+    options = {"roughness": ehd.PatirCheng(composite_roughness=SIGMA, journal_share=0.9)}
+    if contact:
+        options["asperity"] = ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=1e10)
+    model = build_model(bearing(cavitation=closure, **options))
+    at = motion(0.9)
+    at[2:4], at[4:8], at[9] = (1e-5, -2e-5), (4e-4, -3e-4, 2e-2, 1e-2), 0.3
+    history, step = model.initial_history(at - 0.01 * np.array([C, C, 0, 0, 0, 0, 0, 0, 0, 0])), 2e-4
+    evaluation = model.evaluate(at, history, step)
+    assert evaluation.status is ehd.Status.CONVERGED
+    assert (evaluation.quantities()["contact_load"] > 0.0) is contact
+    tangent = evaluation.tangent()
+    scale = np.array([C, C, C / L, C / L, C * SPEED, C * SPEED, C * SPEED / L, C * SPEED / L, SPEED, SPEED * R])
+    difference = np.empty((6, 10))
+    for k in range(10):
+        d = np.zeros(10)
+        d[k] = 1e-6 * scale[k]
+        difference[:, k] = (
+            model.evaluate(at + d, history, step).wrench - model.evaluate(at - d, history, step).wrench
+        ) / 2e-6
+    assert np.all(np.abs(tangent * scale - difference) < 1e-6 * np.abs(difference).max(axis=1, keepdims=True))

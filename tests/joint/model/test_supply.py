@@ -1,0 +1,183 @@
+"""A bearing with supply areas: flows, tangent, areas that turn with the journal, nothing where there are none."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
+GRID = ehd.FiniteLength(n_theta=48, n_z=8)
+SUPPLY = (
+    ehd.Pocket(angle=1.2, width_angle=0.5, length=0.02, pressure=2e5),
+    ehd.Hole(angle=4.0, z=0.005, diameter=0.012, pressure=5e4),
+)
+MOTION = np.array([8e-6, -12e-6, 1e-4, -2e-4, 2e-4, 1e-3, 5e-3, -8e-3, 150.0, 0.02])
+
+
+def _ids(closure):
+    return type(closure).__name__
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
+def test_prescribed_pressure(make_bearing, closure):
+    model = build_model(make_bearing(film=GRID, cavitation=closure, supply=SUPPLY))
+    history = model.initial_history(MOTION)
+    assert model.evaluate(MOTION, history, 1e-4).status is ehd.Status.CONVERGED
+    for mask, area in zip(model.supply.masks, SUPPLY, strict=True):
+        np.testing.assert_allclose(model.P[mask] * model.pressure_scale, area.pressure, rtol=1e-14)
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
+def test_tangent_against_differences(make_bearing, closure):
+    model = build_model(make_bearing(film=GRID, cavitation=closure, supply=SUPPLY))
+    history = model.initial_history(0.9 * MOTION)
+    evaluation = model.evaluate(MOTION, history, 1e-3)
+    tangent, active = evaluation.tangent(), model.solver.work.active.copy()
+    scale = np.array([1e-6, 1e-6, 1e-4, 1e-4, 1e-3, 1e-3, 1e-2, 1e-2, 10.0, 0.1])
+    for k in range(10):
+        step = np.zeros(10)
+        step[k] = 1e-4 * scale[k]
+        wrenches = []
+        for sign in (1.0, -1.0):
+            wrenches.append(model.evaluate(MOTION + sign * step, history, 1e-3).wrench)
+            np.testing.assert_array_equal(model.solver.work.active, active)
+        numeric = (wrenches[0] - wrenches[1]) / (2e-4 * scale[k])
+        size = np.array([1.0] * 3 + [0.025] * 3) * np.linalg.norm(evaluation.wrench[:3]) / scale[k]
+        # Differences of second order: 1e-8 of the curvature, rounding 1e-12 / 1e-4.
+        assert np.all(np.abs(numeric - tangent[:, k]) < 1e-6 * size), k
+
+
+def test_steady_oil_balance(make_bearing):
+    """What the areas feed in leaves through the ends."""
+    bearing = make_bearing(film=GRID, cavitation=ehd.ElrodAdams(), supply=SUPPLY)
+    for eps in (0.2, 0.7, 0.95):
+        film = ehd.steady(bearing, speed=150.0, eccentricity_ratio=eps, direction=0.5, tilt=(1e-5, -2e-5))
+        assert film.supply_flows.shape == (2,)
+        assert abs(film.supply_flows.sum() - film.leakage) < 1e-10 * abs(film.supply_flows).sum()
+
+
+def test_transient_oil_balance(make_bearing):
+    """Content at the end = content at the start + supply - leakage, over 60 steps of a moving journal."""
+    bearing = make_bearing(film=GRID, cavitation=ehd.ElrodAdams(), supply=SUPPLY)
+    model = build_model(bearing)
+    step, c = 2e-4, bearing.radial_clearance
+    volume = model.solver.area * c * bearing.journal_radius**2
+    motion = MOTION.copy()
+    history = model.initial_history(motion)
+    start, fed, moved = float(np.sum(volume * history.mass)), 0.0, 0.0
+    for k in range(60):
+        e, a = (0.3 + 0.6 * math.sin(0.05 * k)) * c, 0.2 * k
+        motion[:2] = e * math.cos(a), e * math.sin(a)
+        motion[2:8] = 0.0
+        evaluation = model.evaluate(motion, history, step)
+        assert evaluation.status is ehd.Status.CONVERGED
+        q = evaluation.quantities()
+        fed += (q["supply_flow"] - q["leakage"]) * step
+        moved += (abs(q["supply_flow"]) + abs(q["leakage"])) * step
+        history = evaluation.history()
+        fill = model.solver.fill
+        assert fill.min() >= 0.0 and fill.max() <= 1.0
+    change = float(np.sum(volume * history.mass)) - start
+    assert abs(change - fed) < 1e-10 * (start + moved)
+
+
+def test_areas_in_the_journal(make_bearing):
+    """At a spin of k grid steps an area in the journal is the one in the housing k steps on, bit for bit."""
+    step = 2.0 * math.pi / GRID.n_theta
+    turning = build_model(
+        make_bearing(
+            film=GRID, supply=(ehd.Pocket(angle=0.0, width_angle=0.5, length=0.02, pressure=2e5, rotating=True),)
+        )
+    )
+    assert turning.needs_spin
+    for k in (0, 7, 30, 48):
+        # Shifted by the rounding of the multiple, the area still covers the same vertices.
+        area = ehd.Pocket(angle=step * k, width_angle=0.5, length=0.02, pressure=2e5)
+        fixed = build_model(make_bearing(film=GRID, supply=(area,)))
+        assert not fixed.needs_spin
+        expected = fixed.evaluate(MOTION).wrench
+        np.testing.assert_array_equal(turning.evaluate(MOTION, spin=step * k).wrench, expected)
+        np.testing.assert_array_equal(fixed.evaluate(MOTION, spin=1.0).wrench, expected)
+
+
+def test_absent_supply_is_absent(make_bearing, monkeypatch):
+    """No supply: nothing of it is called, and there is no such quantity."""
+
+    def forbidden(*args, **kwargs):
+        raise AssertionError("called without supply")
+
+    monkeypatch.setattr("exudyn_ehd.joint.model.rigid.SupplyMap", forbidden)
+    monkeypatch.setattr("exudyn_ehd.bearing.check_supply", forbidden)
+    model = build_model(make_bearing(film=GRID))
+    evaluation = model.evaluate(MOTION, spin=3.0)
+    assert not model.needs_spin and "supply_flow" not in evaluation.quantities()
+    assert model.supply_flows().size == 0
+
+
+def test_area_at_the_end_pressure_in_a_film_at_rest_changes_nothing(make_bearing):
+    """A concentric journal at rest with one pressure everywhere has that pressure and no flow."""
+    area = ehd.AxialGroove(angle=0.4, width_angle=0.5, pressure=1e5)
+    model = build_model(make_bearing(film=GRID, supply=(area,), end_pressures=(1e5, 1e5)))
+    motion = np.zeros(10)
+    model.evaluate(motion)
+    np.testing.assert_allclose(model.P * model.pressure_scale, 1e5, rtol=1e-12)
+    assert abs(model.quantities()["supply_flow"]) < 1e-18
+
+
+def test_steady_film_without_oil_is_refused(make_bearing):
+    starved = make_bearing(film=GRID, cavitation=ehd.ElrodAdams())
+    with pytest.raises(ehd.InputError, match=r"AxialGroove.*end_pressures.*cavity_pressure=-1e5"):
+        ehd.steady(starved, speed=100.0, eccentricity_ratio=0.5)
+    with pytest.raises(ehd.InputError, match="needs oil from somewhere"):
+        ehd.equilibrium(starved, speed=100.0, load=(0.0, -100.0))
+    for fed in (
+        {"end_pressures": (0.0, 1e4)},
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+        {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.4),)},
+        {"inlet": ehd.MaximumGap()},
+    ):
+        bearing = make_bearing(**({"film": GRID, "cavitation": ehd.ElrodAdams()} | fed))
+        assert ehd.steady(bearing, speed=100.0, eccentricity_ratio=0.5).sommerfeld_number > 0.01
+
+
+def test_sudden_velocity_in_a_steady_mass_conserving_film(make_bearing):
+    """`steady` with a velocity and the damping of `equilibrium` are one definition."""
+    bearing = make_bearing(film=GRID, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    result = ehd.equilibrium(bearing, speed=150.0, load=(0.0, -3000.0))
+    angle = math.atan2(result.position[1], result.position[0])
+    v = 1e-6
+    for k, velocity in enumerate(((v, 0.0), (0.0, v))):
+        forces = [
+            ehd.steady(
+                bearing, speed=150.0, eccentricity_ratio=result.eccentricity_ratio, direction=angle,
+                velocity=(s * velocity[0], s * velocity[1]),
+            ).force[:2]
+            for s in (1.0, -1.0)
+        ]  # fmt: skip
+        numeric = -(forces[0] - forces[1]) / (2.0 * v)
+        # The instant is a step of 1e-9 s, whose mass balance leaves 1e-16 / 1e-9 = 1e-7 of rounding in rates.
+        np.testing.assert_allclose(numeric, result.damping[:, k], atol=1e-5 * np.abs(result.damping).max())
+
+
+def test_groove_up_to_the_ends_feeds_what_leaks_without_mass_conservation():
+    groove = ehd.AxialGroove(angle=0.3, width_angle=0.7, pressure=2e5)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.05, length=0.1, radial_clearance=5e-5, lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=4), cavitation=ehd.FullSommerfeld(), supply=(groove,),
+    )  # fmt: skip
+    film = ehd.steady(bearing, speed=100.0, eccentricity_ratio=0.5, direction=1.0)
+    # the end's half control volumes next to the groove are full, too
+    assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    "options", [{"end_pressures": (0.0, 1e300)}, {"supply": (ehd.Hole(angle=0.0, diameter=2e-3, pressure=1e300),)}]
+)
+def test_pressures_beyond_any_bearing_are_refused_by_name(options, make_bearing):
+    with pytest.raises(ehd.InputError, match=f"JournalBearing.{next(iter(options))}: pressures must be within"):
+        make_bearing(**options)

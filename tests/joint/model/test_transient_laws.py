@@ -1,0 +1,87 @@
+"""A free journal under a suddenly applied load, implicit in time: the exact tangent keeps Newton's iterations at the plain film's."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+
+MASS, LOAD, OMEGA, STEP, STEPS = 2.0, np.array([0.0, -12000.0]), 300.0, 1e-4, 120
+OIL = ehd.oil("ISO VG 46", temperature=330.0)
+EFFECTS = {
+    "plain": {},
+    "barus": {"pressure_law": ehd.BarusPressure(coefficient=2e-8)},
+    "roelands": {"pressure_law": ehd.RoelandsPressure(coefficient=2e-8)},
+    "carreau": {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)},
+    "density": {"density_law": ehd.DowsonHigginson(coefficient=3e-9)},
+    "density and roelands": {
+        "density_law": ehd.DowsonHigginson(),
+        "pressure_law": ehd.RoelandsPressure(coefficient=2e-8),
+    },
+    "lumped": {"thermal": ehd.LumpedThermal(supply_temperature=330.0)},
+    "field": {"thermal": ehd.FilmEnergy(supply_temperature=330.0, bush_coefficient=1e3)},
+    "all": {
+        "pressure_law": ehd.RoelandsPressure(coefficient=2e-8),
+        "shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2),
+        "thermal": ehd.FilmEnergy(supply_temperature=330.0, bush_coefficient=1e3),
+    },
+}
+
+
+def run(effects, cavitation):
+    """Backward Euler of the journal's two translations; returns iterations per step, orbit (STEPS, 2) and film temperature."""
+    effects = dict(effects)
+    thermal = effects.pop("thermal", None)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025, length=0.05, radial_clearance=25e-6, lubricant=dataclasses.replace(OIL, **effects),
+        cavitation=cavitation, thermal=thermal, end_pressures=(1e5, 1e5), film=ehd.FiniteLength(n_theta=64, n_z=8),
+    )  # fmt: skip
+    model = build_model(bearing)
+    position, velocity, orbit, total = np.array([1e-7, 0.0]), np.zeros(2), [], 0
+    motion = np.zeros(10)
+    motion[8] = OMEGA
+    motion[:2] = position
+    history = model.initial_history(motion)
+    for _ in range(STEPS):
+        v = velocity.copy()
+        for _ in range(12):
+            motion[:2], motion[4:6] = position + STEP * v, v
+            e = model.evaluate(motion, history, STEP)
+            assert e.status is ehd.Status.CONVERGED
+            residual = MASS * (v - velocity) / STEP - e.wrench[:2] - LOAD
+            if np.abs(residual).max() < 1e-7 * np.abs(LOAD).max():
+                break
+            total += 1
+            T = e.tangent()[:2]
+            v = v - np.linalg.solve(MASS / STEP * np.eye(2) - STEP * T[:, :2] - T[:, 4:6], residual)
+        else:
+            raise AssertionError("Newton's method did not converge")
+        position, velocity, history = motion[:2].copy(), v, e.history()
+        orbit.append(position)
+    temperature = None if thermal is None else np.asarray(history.temperature)
+    return total / STEPS, np.array(orbit), temperature
+
+
+@pytest.mark.parametrize(
+    "cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], ids=["swift", "elrod"]
+)
+def test_newton_iterations_stay_those_of_the_plain_film(cavitation):
+    results = {name: run(effects, cavitation) for name, effects in EFFECTS.items()}
+    plain = results["plain"]
+    for name, (iterations, orbit, temperature) in results.items():
+        print(f"{name}: {iterations:.2f} iterations per step, {np.hypot(*orbit[-1]) / 25e-6:.4f} eccentricity ratio")
+        assert iterations < plain[0] + 0.3, name
+        assert np.all(np.isfinite(orbit))
+        assert name == "plain" or np.abs(orbit - plain[1]).max() > 1e-9, name  # every effect shows
+        if temperature is not None:
+            assert 330.0 < temperature.max() < 400.0
+
+
+@pytest.mark.parametrize(
+    "thermal", [EFFECTS["lumped"]["thermal"], EFFECTS["field"]["thermal"]], ids=["lumped", "field"]
+)
+def test_hotter_film_lets_the_journal_sink(thermal):
+    eccentricity = [float(np.hypot(*run({"thermal": t}, ehd.SwiftStieber())[1][-1])) for t in (None, thermal)]
+    assert eccentricity[1] > 1.01 * eccentricity[0]

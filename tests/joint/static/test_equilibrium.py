@@ -1,0 +1,201 @@
+"""`equilibrium` and `whirl_threshold`."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.static.equilibrium import whirl_threshold
+from exudyn_ehd.reference import short_bearing
+
+SPEED = 100.0
+FILM = ehd.FiniteLength(n_theta=64, n_z=8)
+CLOSURES = (ehd.Gumbel(), ehd.SwiftStieber())
+
+
+def _rotation(angle):
+    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+
+
+class TestEquilibrium:
+    @pytest.mark.parametrize("closure", CLOSURES)
+    @pytest.mark.parametrize("So", (1e-6, 1e-3, 0.1, 1.0, 10.0, 90.0))
+    def test_residual_from_tiny_to_high_loads(self, make_bearing, closure, So):
+        # So = 90 means an eccentricity ratio of about 0.99 at L/D = 1.
+        bearing = make_bearing(1.0, film=FILM, cavitation=closure)
+        load = So * bearing.reference_force(SPEED) * np.array([math.cos(0.4), math.sin(0.4)])
+        result = ehd.equilibrium(bearing, speed=SPEED, load=tuple(load))
+        assert result.residual < 1e-10
+        assert result.iterations <= 30
+        np.testing.assert_allclose(result.film.force[:2], -load, rtol=1e-9, atol=1e-9 * abs(load).max())
+        assert result.film.sommerfeld_number == pytest.approx(So, rel=1e-9)
+        assert result.eccentricity_ratio == pytest.approx(float(np.hypot(*result.position)) / 25e-6, rel=1e-12)
+        if So == 90.0:
+            assert result.eccentricity_ratio > 0.985
+
+    @pytest.mark.parametrize("closure", CLOSURES)
+    def test_turns_with_the_load(self, make_bearing, closure):
+        # By whole columns the problem is the same up to rounding.
+        bearing = make_bearing(1.0, film=FILM, cavitation=closure)
+        load = np.array([0.0, -0.8 * bearing.reference_force(SPEED)])
+        a = ehd.equilibrium(bearing, speed=SPEED, load=tuple(load))
+        for cells in (5, 16, 41):
+            Q = _rotation(2 * math.pi * cells / 64)
+            b = ehd.equilibrium(bearing, speed=SPEED, load=tuple(Q @ load))
+            np.testing.assert_allclose(b.position, Q @ a.position, rtol=1e-7, atol=1e-8 * 25e-6)
+            np.testing.assert_allclose(b.stiffness, Q @ a.stiffness @ Q.T, atol=1e-6 * abs(a.stiffness).max())
+            np.testing.assert_allclose(b.damping, Q @ a.damping @ Q.T, atol=1e-6 * abs(a.damping).max())
+            assert b.critical_mass == pytest.approx(a.critical_mass, rel=1e-6)
+
+    def test_reversed_spin_is_the_mirror_image(self, make_bearing):
+        bearing = make_bearing(1.0, film=FILM)
+        W = 0.8 * bearing.reference_force(SPEED)
+        a = ehd.equilibrium(bearing, speed=SPEED, load=(W, 0.0))
+        b = ehd.equilibrium(bearing, speed=-SPEED, load=(W, 0.0))
+        M = np.diag([1.0, -1.0])
+        np.testing.assert_allclose(b.position, M @ a.position, rtol=1e-8)
+        np.testing.assert_allclose(b.stiffness, M @ a.stiffness @ M, rtol=1e-7)
+        assert b.attitude_angle == pytest.approx(a.attitude_angle, rel=1e-8)
+        assert b.whirl_ratio == pytest.approx(a.whirl_ratio, rel=1e-7)
+
+    @pytest.mark.parametrize("tilt", ((0.0, 0.0), (2e-4, -1e-4)))
+    def test_stiffness_and_damping_are_derivatives_of_the_force(self, make_bearing, tilt):
+        bearing = make_bearing(1.0, film=FILM)
+        W = 0.8 * bearing.reference_force(SPEED)
+        result = ehd.equilibrium(bearing, speed=SPEED, load=(W, 0.3 * W), tilt=tilt)
+        model = build_model(bearing)
+        base = np.array([*result.position, *tilt, 0, 0, 0, 0, SPEED, 0])
+        active = None
+        for matrix, first, step in ((result.stiffness, 0, 1e-6 * 25e-6), (result.damping, 4, 1e-6 * 25e-6 * SPEED)):
+            for k in range(2):
+                forces = []
+                for sign in (1.0, -1.0):
+                    moved = base.copy()
+                    moved[first + k] += sign * step
+                    forces.append(model.evaluate(moved).wrench[:2])
+                    active = model.solver.work.active.copy() if active is None else active
+                    assert np.array_equal(active, model.solver.work.active)  # a smooth state
+                numeric = -(forces[0] - forces[1]) / (2 * step)
+                np.testing.assert_allclose(matrix[:, k], numeric, atol=1e-6 * abs(matrix).max())
+
+    def test_finds_a_prescribed_position_again(self, make_bearing):
+        bearing = make_bearing(0.5, film=FILM)
+        for eps in (0.05, 0.5, 0.9, 0.98):
+            film = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=eps, direction=1.0)
+            result = ehd.equilibrium(bearing, speed=SPEED, load=tuple(-film.force[:2]))
+            assert result.eccentricity_ratio == pytest.approx(eps, rel=1e-8)
+            assert result.attitude_angle == pytest.approx(film.attitude_angle, rel=1e-7)
+
+    @pytest.mark.parametrize("closure", CLOSURES)
+    def test_finds_every_tilted_load_that_the_film_can_carry(self, make_bearing, closure):
+        """Loads of random tilted positions, up to 98 % of the gap at an end. (A prescribed tilt carries a bounded load only.)"""
+        rng = np.random.default_rng(1)
+        for _ in range(40):
+            bearing = make_bearing(rng.choice([0.25, 1.0, 2.0]), film=FILM, cavitation=closure)
+            share, reach = rng.uniform(0.0, 0.8), rng.uniform(0.1, 0.98)
+            direction, turn = rng.uniform(0.0, 2 * math.pi, 2)
+            slope = reach * share * 2.0 * bearing.radial_clearance / bearing.length
+            tilt = (slope * math.cos(turn), slope * math.sin(turn))
+            spin = float(rng.choice([-1.0, 1.0])) * SPEED
+            film = ehd.steady(
+                bearing, speed=spin, eccentricity_ratio=reach * (1.0 - share), direction=direction, tilt=tilt
+            )
+            result = ehd.equilibrium(bearing, speed=spin, load=tuple(-film.force[:2]), tilt=tilt)
+            assert result.residual < 1e-10
+            assert result.iterations <= 30
+
+    @pytest.mark.parametrize("So", (1e-9, 1e-12, 1e-15))
+    def test_loads_near_rounding(self, make_bearing, So):
+        # The force's rounding is 1e-16 of the reference force or less; what is left of the load's digits counts.
+        bearing = make_bearing(1.0, film=FILM)
+        result = ehd.equilibrium(bearing, speed=SPEED, load=(So * bearing.reference_force(SPEED), 0.0))
+        assert result.residual <= max(1e-10, 1e-16 / So)
+        assert result.iterations <= 5
+        assert result.eccentricity_ratio < So
+        # Half speed whirl; the central difference of the wedge on 64 columns is (2 pi / 64)^2 / 24 = 4e-4 too small.
+        assert result.whirl_ratio == pytest.approx(0.5, rel=5e-4)
+
+    def test_tilt_and_wall(self, make_bearing):
+        W = 3.0 * make_bearing(1.0).reference_force(SPEED)
+        tilted = ehd.equilibrium(make_bearing(1.0, film=FILM), speed=SPEED, load=(W, 0.0), tilt=(3e-4, 0.0))
+        plain = ehd.equilibrium(make_bearing(1.0, film=FILM), speed=SPEED, load=(W, 0.0))
+        assert tilted.residual < 1e-10
+        assert tilted.film.minimum_gap < plain.film.minimum_gap
+        wall = make_bearing(1.0, film=FILM, contact=ehd.RegularisedWall(onset=2e-6, pressure=1e9))
+        pressed = ehd.equilibrium(wall, speed=SPEED, load=(200.0 * W, 0.0))
+        assert pressed.residual < 1e-10
+        assert pressed.film.contact_load > 0.0
+
+    def test_whirl_of_the_short_bearing(self, make_bearing):
+        # 1024 columns: the rupture line snaps to columns, which leaves 0.3 % in K and C.
+        bearing = make_bearing(0.25, film=ehd.ShortBearing(n_theta=1024, n_z=4), cavitation=ehd.Gumbel())
+        for eps in (0.2, 0.5):
+            W = short_bearing.load(eps, 0.25) * bearing.reference_force(SPEED)
+            result = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -W))
+            ratio, mass = short_bearing.whirl_threshold(eps)
+            assert result.whirl_ratio == pytest.approx(ratio, rel=3e-3)
+            assert result.critical_mass * 25e-6 * SPEED**2 / W == pytest.approx(mass, rel=3e-3)
+
+    @pytest.mark.parametrize(
+        "wrong",
+        [
+            {"load": (0.0, 0.0)},
+            {"speed": 0.0},
+            {"load": (1.0,)},
+            {"load": (math.nan, 1.0)},
+            {"speed": math.nan},
+            {"tilt": 1.0},
+        ],
+    )
+    def test_input(self, make_bearing, wrong):
+        with pytest.raises(ehd.InputError, match="equilibrium"):
+            ehd.equilibrium(make_bearing(1.0), **{"speed": SPEED, "load": (10.0, 0.0), **wrong})
+
+    def test_refuses_the_maximum_gap_inlet(self, make_bearing):
+        with pytest.raises(ehd.InputError, match="Periodic"):
+            ehd.equilibrium(make_bearing(1.0, inlet=ehd.MaximumGap()), speed=SPEED, load=(1.0, 0.0))
+
+    def test_a_hopeless_tilt_is_an_error(self, make_bearing):
+        with pytest.raises(ehd.FilmError, match="equilibrium"):
+            ehd.equilibrium(make_bearing(1.0), speed=SPEED, load=(1e3, 0.0), tilt=(2e-3, 0.0))
+
+
+class TestWhirlThreshold:
+    def test_eigenvalues_cross_there(self):
+        rng = np.random.default_rng(0)
+        seen = 0
+        for _ in range(200):
+            K = rng.normal(size=(2, 2)) + np.array([[2.0, 3.0], [-3.0, 2.0]])
+            C = np.diag(rng.uniform(3, 8, 2)) + rng.uniform(-1, 1)
+            ratio, mass = whirl_threshold(K, C, 2.0)
+            if not (math.isfinite(mass) and mass > 0.0):
+                continue
+            seen += 1
+            real = []
+            for m in (0.999 * mass, mass, 1.001 * mass):
+                s = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [-K / m, -C / m]]))
+                near = s[np.argmin(abs(s - 1j * ratio * 2.0))]
+                real.append(near.real)
+            assert abs(real[1]) < 1e-8
+            assert real[0] < 0.0 < real[2]
+        assert seen > 50
+
+    def test_limits(self):
+        one = np.eye(2)
+        assert whirl_threshold(one, one, 1.0)[1] == math.inf
+        assert whirl_threshold(-one, one, 1.0)[1] == 0.0
+        assert whirl_threshold(one, -one, 1.0)[1] == 0.0
+
+
+def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so():
+    groove = ehd.AxialGroove(angle=np.radians(270.0), width_angle=np.radians(15.0), length=0.06, pressure=7e4)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.05, length=0.08, radial_clearance=150e-6, lubricant=ehd.Lubricant(viscosity=0.01),
+        cavitation=ehd.ElrodAdams(), supply=(groove,), film=ehd.FiniteLength(n_theta=96, n_z=8),
+    )  # fmt: skip
+    with pytest.raises(ehd.FilmError, match=r"no position found that carries 3000 N.*supply area"):
+        ehd.equilibrium(bearing, speed=100.0 * np.pi, load=(0.0, -3000.0))

@@ -1,0 +1,80 @@
+"""The exact tangent of a film on a flexible bore against central differences in smooth states."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from bore_states import BUSHES, OPTIONS, C, make_bearing, random_motion
+
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.status import Status
+
+
+@pytest.mark.parametrize("bush", BUSHES)
+def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
+    model = build_model(make_bearing(BUSHES[bush]))
+    k = model.bore.size
+    motion = np.zeros(10 + 2 * k)
+    motion[8] = 1e-3
+    # the whole bore recedes
+    whole = np.ones(model.grid.shape)
+    motion[10 + k :] = 1e-2 * np.linalg.lstsq(model.bore.product(whole), model.bore.load(whole), rcond=1e-9)[0]
+    assert model.bore.displacement(motion[10 + k :]).min() > 0.0
+    evaluation = model.evaluate(motion)
+    assert evaluation.status is Status.CONVERGED
+    assert model.solver.work.count == 0
+    tangent = evaluation.tangent()
+    assert not tangent[6:].any() and not tangent[:2].any() and not tangent[:, 10 + k :].any()
+    assert tangent[5, 8] < 0.0
+    product = model.tangent_product()
+    assert not product.bore_load(np.ones(10), np.ones(k), np.ones(k)).any()
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+@pytest.mark.parametrize("bush", BUSHES)
+def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
+    model, probe = (build_model(make_bearing(BUSHES[bush], **OPTIONS[option])) for _ in range(2))
+    k = model.bore.size
+    motion = random_motion(k, 1)
+    history = model.initial_history(0.9 * motion)
+    step = 0.0 if history is None else 1e-4
+    evaluation = model.evaluate(motion, history, step)
+    assert evaluation.status is Status.CONVERGED
+    tangent, active = evaluation.tangent(), model.solver.work.active
+    assert tangent.shape == (6 + k, 10 + 2 * k)
+    combined = evaluation.combined_tangent(2.0, -0.03)
+    assert np.array_equal(combined[:, :10], tangent[:, :10])
+    both = 2.0 * tangent[:, 10 : 10 + k] - 0.03 * tangent[:, 10 + k :]
+    assert abs(combined[:, 10:] - both).max() < 1e-12 * abs(both).max()
+    product = model.tangent_product()
+    change = np.random.default_rng(4).normal(size=tangent.shape[1])
+    change[:10] *= [C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0]
+    change[10 : 10 + k] *= C
+    expected = tangent @ change
+    place, rate = change[10 : 10 + k], change[10 + k :]
+    rows = product.wrench @ change[:10] + product.wrench_place @ place + product.wrench_rate @ rate
+    # rounding of one film solve against another, in the largest force and the largest moment
+    assert abs(rows[:3] - expected[:3]).max() < 1e-10 * abs(expected[:3]).max()
+    assert abs(rows[3:] - expected[3:6]).max() < 1e-10 * abs(expected[3:6]).max()
+    loads = product.bore_load(change[:10], place, rate)
+    assert abs(loads - expected[6:]).max() < 1e-10 * abs(expected[6:]).max()
+    unit = np.concatenate(([C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0], np.full(k, C), np.full(k, 0.01)))
+    rows = abs(tangent * unit).max(axis=1)
+    rows[rows < 1e-12 * rows.max()] = np.inf
+    for j in range(0, motion.size, 1 if bush == "modal" else 7):
+        # central differences: the step leaves the active set alone
+        for size in (1e-5, 1e-6, 1e-7):
+            loads, same = [], True
+            for sign in (1.0, -1.0):
+                moved = motion.copy()
+                moved[j] += sign * size * unit[j]
+                e = probe.evaluate(moved, history, step)
+                loads.append(np.concatenate((e.wrench, e.bore_load)))
+                same &= np.array_equal(probe.solver.work.active, active)
+            if same:
+                break
+        else:
+            raise AssertionError("not a smooth state: choose another one")
+        numeric = (loads[0] - loads[1]) / (2.0 * size)
+        # 1e-6: truncation 1e-10 and rounding 1e-16 / 1e-7 with a decade to spare, per largest entry of the row
+        assert abs((tangent[:, j] * unit[j] - numeric) / rows).max() < 1e-6, (j, size)
