@@ -202,7 +202,10 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
         for name in [n for n in vars(module) if callable(getattr(module, n)) and not n[0].isupper() and n[0] != "_"]:
             if getattr(module, name).__module__.startswith("exudyn_ehd.film.lubricant.density"):
                 monkeypatch.setattr(module, name, forbidden)
-    for target in ("compressible.CompressibleFilmSolver.__init__", "density.CompressibleLaw.__init__"):
+    for target in (
+        "solvers.compressible.CompressibleFilmSolver.__init__",
+        "lubricant.density.CompressibleLaw.__init__",
+    ):
         monkeypatch.setattr(f"exudyn_ehd.film.{target}", forbidden)
     model = make(None, cavitation=cavitation)
     history = start(model)

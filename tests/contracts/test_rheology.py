@@ -152,11 +152,11 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for target in ("ShearThinning.apply", "ShearThinning.factor"):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
     for target in (
-        "thermal.viscosity_ratio",
-        "oil_flows.film_flows",
-        "model.couette_integral_ratio",
-        "model.apply_laws",
-        "settle._target",
+        "heat.temperature.viscosity_ratio",
+        "heat.oil_flows.film_flows",
+        "model.rigid.couette_integral_ratio",
+        "model.rigid.apply_laws",
+        "static.steady_temperature._target",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

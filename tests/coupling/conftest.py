@@ -1,7 +1,8 @@
-"""Film models and bodies for the tests of the coupling."""
+"""Film models, bodies and scenes for the tests of the coupling."""
 
 import sys
 from pathlib import Path
 
-# the toy film is a plain module beside the tests; importlib mode puts no test folder on the path
-sys.path.insert(0, str(Path(__file__).parent))
+HERE = Path(__file__).parent
+# scenes that tests share are plain modules beside them; importlib mode puts no test folder on the path
+sys.path[:0] = [str(HERE), str(HERE / "items"), str(HERE / "record")]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import scenes
 from test_bodies import AGAINST_CONNECTOR, joined
-from test_film_record import CLEARANCE, RADIUS, rotor, run, steel_bush
+from test_films import CLEARANCE, RADIUS, rotor, run, steel_bush
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record.display import ring_triangles
