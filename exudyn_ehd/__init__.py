@@ -2,22 +2,23 @@
 
 Module map
 ----------
-bearing   what a scene writes: `JournalBearing` and its options
-film      the oil film: grid, gap, Reynolds equation, cavitation closures, direct solver, loads
-joint     one bearing as a pure function of its motion; `steady`, `equilibrium`, `solve_film`, `Audit`
-pictures  maps, orbits, traces, the bearing in space: matplotlib, in one style
-solid     the flexible bush: 20-node hexahedra in absolute nodal coordinates
-coupling  Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, film element, kinematics, histories, sensors
-studies   many runs: `parameter_study`
-studies   what accuracy costs in time: ladders, work-precision tables, `recommend`
-reference closed forms to compare with
-status    outcomes and errors
+bearing    what a scene writes: `JournalBearing` and its options
+film       the oil film: grid, gap, Reynolds equation, cavitation closures, solvers, loads, heat
+solid      the flexible bush: 20-node hexahedra in absolute nodal coordinates, and its reduction to modes
+joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`
+pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
+coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinematics, histories, sensors
+studies    many runs: `parameter_study`; what accuracy costs in time: `recommend`
+reference  closed forms to compare with
+tables     columns of numbers as text and as CSV; units by name
+storage    files on disk: whole or absent, and arrays kept between runs
+status     outcomes, errors and checks of input
 
 Conventions
 -----------
-SI units, radians, gauge pressures. Joint frame: origin on the bearing's mid-plane, z = bearing axis, x and y fixed in the
-housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to L/2. Forces act on the journal, moments are
-taken about the joint's origin.
+SI units, radians, gauge pressures. Joint frame: origin on the bearing's mid-plane, z = bearing axis, x and y fixed in
+the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to L/2. Forces act on the journal,
+moments are taken about the joint's origin.
 """
 
 import importlib

@@ -1,8 +1,9 @@
-"""What takes seconds to compute and depends on few inputs is kept on disk: arrays under a digest of all that determines them.
+"""What lies on disk: files that are either whole or absent, and arrays kept between runs.
 
-A file carries a digest of its key and its content, and must hold the arrays asked for: a damaged or foreign one warns and is replaced. Files appear under their name only
-when complete, so that runs side by side don't disturb each other. A folder that can't be written costs the computing time of every run
-and nothing else.
+Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
+file carries a digest of key and content, and must hold the arrays asked for: a damaged or foreign one warns and is
+replaced. Runs side by side don't disturb each other, since a file appears under its name only when complete. A folder
+that can't be written costs the computing time of every run and nothing else.
 """
 
 from __future__ import annotations
@@ -11,18 +12,47 @@ import hashlib
 import io
 import os
 import pathlib
+import tempfile
 import warnings
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
 
 import numpy as np
-
-from exudyn_ehd.files import replacing
 
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
 
 Arrays = dict[str, np.ndarray]
 Shapes = Mapping[str, tuple[int | str, ...]]
+
+
+@contextmanager
+def replacing(path: str | pathlib.Path, *, binary: bool = False) -> Iterator[Any]:
+    """Open a temporary file beside ``path`` that takes its place when the block ends, and vanishes if the block fails.
+
+    Parameters
+    ----------
+    path : path
+        Its folder is made if needed.
+    binary : bool
+        Otherwise UTF-8 text without translation of line ends.
+    """
+    target = pathlib.Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    number, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
+    try:
+        options: dict[str, Any] = {"mode": "wb"} if binary else {"mode": "w", "encoding": "utf-8", "newline": ""}
+        with os.fdopen(number, **options) as file:
+            yield file
+        # mkstemp makes a file for its owner's eyes alone
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, target)
+    except BaseException:
+        pathlib.Path(name).unlink(missing_ok=True)
+        raise
 
 
 def cache_folder() -> pathlib.Path:

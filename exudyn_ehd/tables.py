@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from exudyn_ehd.files import replacing
+from exudyn_ehd.storage import replacing
 
 # SI units by name; a name of several words may end in one of these.
 UNITS = {

@@ -4,10 +4,12 @@ import ast
 import dataclasses
 import importlib
 import inspect
+import io
 import pathlib
 import pkgutil
 import subprocess
 import sys
+import tokenize
 
 import pytest
 
@@ -84,3 +86,96 @@ def test_options_are_frozen_and_keyword_only():
         if dataclasses.is_dataclass(item) and not name.endswith("Result"):
             assert item.__dataclass_params__.frozen, name
             assert all(f.kw_only for f in dataclasses.fields(item)), name
+
+
+# How large things may be; docstrings don't count. A reader holds no more than this at once.
+LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 411, 96, 28, 24
+# Of the whole package: marks that keep the formatter off aligned tables, annotations that say nothing, logical lines of code.
+MOST_SKIPS, MOST_ANY, MOST_CODE = 196, 560, 19563
+# Files that import each other in a circle, imports for types alone included.
+IN_CIRCLES = 21
+
+
+def _docstring_lines(tree):
+    lines = set()
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node) is not None:
+            lines.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
+    return lines
+
+
+def _parsed():
+    for path in _sources():
+        text = path.read_text()
+        tree = ast.parse(text)
+        yield path, text, tree, _docstring_lines(tree)
+
+
+def _module(path):
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def _imports(tree, modules):
+    """Modules of the package that a file names in any import, those inside functions and for types included."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (a.name for a in node.names if a.name in modules)
+        elif isinstance(node, ast.ImportFrom) and node.module in modules:
+            whole = [f"{node.module}.{a.name}" for a in node.names]
+            yield from (name if name in modules else node.module for name in whole)
+
+
+def _circles(graph):
+    """Sets of modules that reach each other."""
+    reach = {}
+    for start in graph:
+        seen, todo = set(), [start]
+        while todo:
+            for name in graph[todo.pop()] - seen:
+                seen.add(name)
+                todo.append(name)
+        reach[start] = seen
+    return {frozenset(m for m in reach[name] if name in reach[m]) for name in graph if name in reach[name]}
+
+
+def test_no_circle_of_files():
+    trees = {_module(path): tree for path, _, tree, _ in _parsed()}
+    circles = _circles({name: set(_imports(tree, trees)) for name, tree in trees.items()})
+    assert sum(map(len, circles)) <= IN_CIRCLES, [sorted(c) for c in circles]
+
+
+def test_folders_are_small():
+    for folder in {path.parent for path in _sources()}:
+        assert len(list(folder.glob("*.py"))) <= MOST_FILES, folder
+
+
+def test_files_functions_and_signatures_are_short():
+    found = []
+    for path, text, tree, docs in _parsed():
+        if (lines := len(text.splitlines()) - len(docs)) > LONGEST_FILE:
+            found.append(f"{path}: {lines} lines")
+        for node in ast.walk(tree):
+            if not isinstance(node, ast.FunctionDef):
+                continue
+            kernel = any("njit" in ast.unparse(mark) for mark in node.decorator_list)
+            lines = node.end_lineno - node.lineno + 1 - len(docs & set(range(node.lineno, node.end_lineno + 1)))
+            if not kernel and lines > LONGEST_FUNCTION:
+                found.append(f"{path}: {node.name} has {lines} lines")
+            parameters = len(node.args.args) + len(node.args.kwonlyargs)
+            if kernel and parameters > MOST_PARAMETERS and path.parent != PACKAGE / "film" / "banded":
+                found.append(f"{path}: {node.name} takes {parameters} parameters")
+    assert not found, "\n".join(found)
+
+
+def test_the_package_stays_small():
+    """Logical lines: the tokenizer's NEWLINE tokens outside docstrings."""
+    skips = unknown = code = 0
+    for _, text, tree, docs in _parsed():
+        skips += text.count("# fmt: skip")
+        unknown += sum(isinstance(node, ast.Name) and node.id == "Any" for node in ast.walk(tree))
+        tokens = tokenize.generate_tokens(io.StringIO(text).readline)
+        code += sum(t.type == tokenize.NEWLINE and t.start[0] not in docs for t in tokens)
+    assert skips <= MOST_SKIPS
+    assert unknown <= MOST_ANY
+    assert code <= MOST_CODE

@@ -14,8 +14,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from exudyn_ehd.files import replacing
 from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.storage import replacing
 
 
 def export_films(films: Sequence[Any], path: str | pathlib.Path, *, magnification: float = 1.0) -> list[pathlib.Path]:

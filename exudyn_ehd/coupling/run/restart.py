@@ -15,9 +15,9 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.watch import solver_state as solvers
-from exudyn_ehd.files import replacing
 from exudyn_ehd.joint.seams import History
 from exudyn_ehd.status import InputError
+from exudyn_ehd.storage import replacing
 
 _FORMAT = "exudyn_ehd SystemState 1"
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
