@@ -46,7 +46,8 @@ def very_stiff():
     return run
 
 
-@hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.0)
+# 4.9 iterations in 244 steps or 5.01 in 234: rounding, which differs between processors, decides which steps are refused
+@hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.2)
 def very_soft():
     """Softer than rubber: the bore gives way by more than the clearance, and no mass is stable on it at this speed."""
     load = 20.0
