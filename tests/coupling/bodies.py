@@ -228,3 +228,34 @@ def nodal_ring(mbs):
     _load(mbs, nodes[int(mesh.outer.nodes[5])], 0.02)
     marker = _averaged(mbs, body, mesh.bore.nodes.tolist())
     return Body(marker, None, lambda: marker, False, tuple(nodes))
+
+
+AGAINST_CONNECTOR = {
+    "rigid EP": rigid("EP"),
+    "rigid Rxyz": rigid("Rxyz"),
+    "rigid RotVec": rigid("RotVec"),
+    "rigid 2D": rigid("2D"),
+    "cable 2D element": cable(2),
+    "cable 2D node": cable(2, "node"),
+    "cable 2D marker": cable(2, "marker"),
+    "ANCF beam element": ancf_beam(),
+    "ANCF beam node": ancf_beam("node"),
+    "exact beam node EP": exact_beam("EP", "node"),
+    "exact beam node Rxyz": exact_beam("Rxyz", "node"),
+    "wheel": wheel,
+    "tree": tree,
+    "reduced FE body EP": reduced_ring(),
+    "reduced FE body Rxyz": reduced_ring("Rxyz"),
+    "nodal FE body": nodal_ring,
+}
+
+
+# Geometrically exact beams on RotVec nodes are left out: Exudyn's own model of them needs a hundred Newton steps per time step here.
+JACOBIANS = AGAINST_CONNECTOR | {
+    "exact beam node RotVec": exact_beam("RotVec", "node"),
+    "cable 3D element": cable(3),
+    "cable 3D node": cable(3, "node"),
+    "cable 3D marker": cable(3, "marker"),
+    "exact beam element": exact_beam("Rxyz"),
+    "exact beam 2D element": exact_beam_2d,
+}

@@ -3,6 +3,5 @@
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).parent
-# scenes that tests share are plain modules beside them; importlib mode puts no test folder on the path
-sys.path[:0] = [str(HERE), str(HERE / "items"), str(HERE / "record")]
+# scenes that tests share are plain modules beside their rooms; importlib mode puts no test folder on the path
+sys.path.insert(0, str(Path(__file__).parent))

@@ -14,7 +14,7 @@ from bodies import ancf_beam
 from elastic_scene import CLEARANCE, CYLINDER, HOUSING, SPEED, STEEL, Nodes, bearing
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 from exudyn.utilities import InertiaCylinder
-from test_carried_bodies import PUSH, rod, total
+from rods import PUSH, rod, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia

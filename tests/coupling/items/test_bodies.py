@@ -5,8 +5,6 @@ The joint carries a linear law here, so that Exudyn's RigidBodySpringDamper is t
 
 from __future__ import annotations
 
-from types import SimpleNamespace
-
 import bodies
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -14,53 +12,12 @@ import numpy as np
 import pytest
 import scenes
 import toy
+from bodies import AGAINST_CONNECTOR, JACOBIANS
 from exudyn.advancedUtilities import NumericalJacobian
+from springs import DAMPING, STIFFNESS, TILTING, Spring, joined
 
 from exudyn_ehd.coupling.items.resolve import resolve
-from exudyn_ehd.status import InputError, Status
-
-STIFFNESS, DAMPING, TILTING = 1e5, 40.0, 50.0
-
-
-class Spring:
-    """F = -k e - d e_t at the journal's or at the housing's point, M = -k_t tilt; with the interface of a film."""
-
-    remembers = needs_spin = False
-    bearing = SimpleNamespace(radial_clearance=5e-3, journal_radius=0.02, length=0.03)
-
-    def __init__(self, at_journal, tilting=TILTING):
-        self.at_journal, self.tilting = at_journal, tilting
-
-    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
-        e, b, e_t, b_t = (motion[i : i + 2] for i in (0, 2, 4, 6))
-        wrench, tangent = np.zeros(6), np.zeros((6, 10))
-        wrench[:2] = -STIFFNESS * e - DAMPING * e_t
-        tangent[[0, 1], [0, 1]], tangent[[0, 1], [4, 5]] = -STIFFNESS, -DAMPING
-        kt, dt = self.tilting, 1e-3 * self.tilting
-        wrench[3:5] = [kt * b[1] + dt * b_t[1], -kt * b[0] - dt * b_t[0]]
-        tangent[[3, 4], [3, 2]], tangent[[3, 4], [7, 6]] = [kt, -kt], [dt, -dt]
-        if self.at_journal:
-            wrench[5] = e[0] * wrench[1] - e[1] * wrench[0]
-            tangent[5] = e[0] * tangent[1] - e[1] * tangent[0]
-            tangent[5, :2] += [wrench[1], -wrench[0]]
-        return SimpleNamespace(
-            wrench=wrench, status=Status.CONVERGED, tangent=lambda: tangent, quantities=lambda: {"minimum_gap": 1.0}
-        )
-
-
-def joined(make, role="journal", axis=(0, 0, 1), tilting=TILTING):
-    """System with the body in a joint to ground."""
-    mbs = scenes.new_system()
-    body = make(mbs)
-    ground = mbs.CreateGround()
-    item = resolve(mbs, "item", body.item)
-    point = item.position if body.point is None else body.point
-    if item.is_marker:
-        ground = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=ground, localPosition=list(point)))
-    items = [ground, body.item] if role == "journal" else [body.item, ground]
-    film = Spring(role == "journal", tilting)
-    joint = toy.attach(mbs, items, film, position=[] if item.is_marker else point, axis=axis)
-    return mbs, body, joint
+from exudyn_ehd.status import InputError
 
 
 def connected(make):
@@ -97,37 +54,6 @@ def travel(mbs, steps=40, step=5e-4, tolerance=1e-9):
     return np.array(path)
 
 
-AGAINST_CONNECTOR = {
-    "rigid EP": bodies.rigid("EP"),
-    "rigid Rxyz": bodies.rigid("Rxyz"),
-    "rigid RotVec": bodies.rigid("RotVec"),
-    "rigid 2D": bodies.rigid("2D"),
-    "cable 2D element": bodies.cable(2),
-    "cable 2D node": bodies.cable(2, "node"),
-    "cable 2D marker": bodies.cable(2, "marker"),
-    "ANCF beam element": bodies.ancf_beam(),
-    "ANCF beam node": bodies.ancf_beam("node"),
-    "exact beam node EP": bodies.exact_beam("EP", "node"),
-    "exact beam node Rxyz": bodies.exact_beam("Rxyz", "node"),
-    "wheel": bodies.wheel,
-    "tree": bodies.tree,
-    "reduced FE body EP": bodies.reduced_ring(),
-    "reduced FE body Rxyz": bodies.reduced_ring("Rxyz"),
-    "nodal FE body": bodies.nodal_ring,
-}
-
-
-# Geometrically exact beams on RotVec nodes are left out: Exudyn's own model of them needs a hundred Newton steps per time step here.
-JACOBIANS = AGAINST_CONNECTOR | {
-    "exact beam node RotVec": bodies.exact_beam("RotVec", "node"),
-    "cable 3D element": bodies.cable(3),
-    "cable 3D node": bodies.cable(3, "node"),
-    "cable 3D marker": bodies.cable(3, "marker"),
-    "exact beam element": bodies.exact_beam("Rxyz"),
-    "exact beam 2D element": bodies.exact_beam_2d,
-}
-
-
 def difference(got, expected):
     """Largest difference over the run, over the largest travel."""
     return np.abs(got - expected).max() / np.abs(expected - expected[0]).max()
@@ -146,15 +72,6 @@ def test_motion_is_that_of_exudyns_own_connector(kind, role, measured):
     print(mbs.sys["dynamicSolver"].it.newtonStepsCount)
 
 
-# Exudyn's geometrically exact beams on RotVec nodes need a hundred Newton steps per time step with its own connector already.
-JACOBIANS = AGAINST_CONNECTOR | {
-    "exact beam node RotVec": bodies.exact_beam("RotVec", "node"),
-    "cable 3D element": bodies.cable(3),
-    "cable 3D node": bodies.cable(3, "node"),
-    "cable 3D marker": bodies.cable(3, "marker"),
-    "exact beam element": bodies.exact_beam("Rxyz"),
-    "exact beam 2D element": bodies.exact_beam_2d,
-}
 # planar bodies turn about z only
 AXES = [(kind, axis) for kind in JACOBIANS for axis in ((0, 0, 1), (1, 0, 0)) if axis[2] or "2D" not in kind]
 

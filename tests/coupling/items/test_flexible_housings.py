@@ -15,7 +15,7 @@ import pytest
 import scenes
 from elastic_scene import CLEARANCE, STEEL, bearing
 from exudyn.utilities import InertiaCylinder
-from test_carried_bodies import RING, total
+from rods import RING, total
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.items.object_mass import as_sparse

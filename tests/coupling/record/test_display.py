@@ -6,8 +6,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 import scenes
-from test_bodies import AGAINST_CONNECTOR, joined
-from test_films import CLEARANCE, RADIUS, rotor, run, steel_bush
+from bodies import AGAINST_CONNECTOR
+from rotor import CLEARANCE, RADIUS, rotor, run, steel_bush
+from springs import joined
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record.display import ring_triangles

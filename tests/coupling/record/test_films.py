@@ -6,34 +6,14 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 import pytest
-import scenes
 from PIL import Image
+from rotor import CLEARANCE, LENGTH, RADIUS, rotor, run, steel_bush
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.pictures import animation
-from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.status import InputError
-
-RADIUS, LENGTH, CLEARANCE = 0.025, 0.05, 25e-6
-
-
-def rotor(bush=None, **options):
-    bearing = ehd.JournalBearing(
-        journal_radius=RADIUS,
-        length=LENGTH,
-        radial_clearance=CLEARANCE,
-        lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=48, n_z=6),
-        bush=bush,
-        **options,
-    )
-    return scenes.loaded_journal(bearing, (600.0, -1800.0, 0.0))
-
-
-def run(mbs, end_time=2e-3, steps=20):
-    mbs.SolveDynamic(scenes.settings(end_time, steps, tolerance=1e-8))
 
 
 @pytest.fixture(scope="module")
@@ -123,14 +103,6 @@ def test_mp4_needs_ffmpeg(recorded, tmp_path, monkeypatch):
     monkeypatch.setattr(animation.animation.FFMpegWriter, "isAvailable", classmethod(lambda cls: False))
     with pytest.raises(InputError, match=r"needs the program ffmpeg.*write a \.gif"):
         recorded.animate(tmp_path / "bearing.mp4")
-
-
-def steel_bush(kind):
-    cylinder = HollowCylinder(
-        inner_radius=RADIUS + CLEARANCE, thickness=0.015, length=LENGTH, axial=1, radial=1, circumferential=16
-    )
-    material = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
-    return kind(mesh=cylinder, material=material, **({"tolerance": 0.2} if kind is ehd.ModalBush else {}))
 
 
 @pytest.mark.parametrize("kind", [ehd.ModalBush, ehd.ANCFBush], ids=lambda kind: kind.__name__)
