@@ -89,7 +89,7 @@ _LAZY = {
     "FollowerPressure": "solid.loads",
     "HollowCylinder": "solid.mesh",
     "LineLoad": "solid.loads",
-    "ModalBush": "solid.static_modes",
+    "ModalBush": "solid.bush",
     "Rayleigh": "solid.bush",
     "SaintVenantKirchhoff": "solid.total_lagrange",
     "SurfaceLoad": "solid.loads",

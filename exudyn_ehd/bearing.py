@@ -28,9 +28,8 @@ from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 if TYPE_CHECKING:
-    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
-    from exudyn_ehd.solid.static_modes import ModalBush
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -306,10 +305,9 @@ def _check_temperatures(bearing: JournalBearing) -> None:
 def _check_bush(bearing: JournalBearing) -> None:
     """Refuse a bush that is none, or whose bore is another than the film's."""
     # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.bush import ANCFBush
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.mesh import HollowCylinder
-    from exudyn_ehd.solid.static_modes import ModalBush
 
     _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None)))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):

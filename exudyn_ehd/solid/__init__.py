@@ -1,1 +1,17 @@
-"""The flexible bearing: 20-node hexahedra in absolute nodal coordinates. Knows numpy, scipy and numba; no film."""
+"""The flexible bearing: 20-node hexahedra in absolute nodal coordinates. Knows numpy, scipy and numba; no film.
+
+Module map
+----------
+bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
+mesh                hollow cylinders and users' meshes; their surfaces and lines
+hex20               the element: nodes, shape functions, faces, quadratures
+hex20_kernels       compiled loops over elements: force and tangent
+total_lagrange      a mesh with a material: force, tangent, mass, energy
+loads               loads on lines and surfaces, pressures
+static_equilibrium  equilibrium and eigenfrequencies of a solid on its own; its stiffness with the outer surface held
+stress              Cauchy and von Mises stress at nodes and at any point
+static_modes        a bush reduced to static modes of its bore
+dynamic_modes       what these lack in motion: vibrations, responses to body forces
+fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`
+fe_faces            its nodes and faces, and their shape functions
+"""

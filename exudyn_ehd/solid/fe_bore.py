@@ -1,32 +1,32 @@
 """The bore of a finite-element body that a user has reduced to modes: which faces carry the film, and how they move.
 
-The nodes on the bore are found by their place; the shape functions of their faces carry displacements to the film and pressures back. With Psi the
-bore nodes' displacements in the modes q,
+The nodes on the bore are found by their place; the shape functions of their faces carry displacements to the film and
+pressures back. With Psi the bore nodes' displacements in the modes q,
 
     u(theta, z) = S Psi q = P q + Theta q x r + residual,
 
-the first two terms being the rigid motion that fits u best on the film's area. The joint's frame takes part in it, so that the gap of
-the film sees the residual only, ``delta = e_r (S Psi - P - Theta x r) q``: a rod may bend by many clearances without error. Loads are
-carried back by the transposes.
+the first two terms being the rigid motion that fits u best on the film's area. The joint's frame takes part in it, so
+that the gap of the film sees the residual only, ``delta = e_r (S Psi - P - Theta x r) q``: a rod may bend by many
+clearances without error. Loads are carried back by the transposes.
 
-Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore as in `reduce`.
+Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore
+as in `exudyn_ehd.solid.static_modes`.
 """
 
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags
-from scipy.sparse.linalg import splu
 
-from exudyn_ehd.solid.fe_faces import BoreFaces, surface_faces
+from exudyn_ehd.solid.bush import LARGEST_TOLERANCE, SMALLEST_TOLERANCE
+from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
+from exudyn_ehd.solid.static_equilibrium import symmetric_factor
 from exudyn_ehd.solid.static_modes import (
-    LARGEST_TOLERANCE,
-    SMALLEST_TOLERANCE,
     candidate_pressures,
     enough_modes,
     orthogonal_modes,
@@ -34,15 +34,10 @@ from exudyn_ehd.solid.static_modes import (
 )
 from exudyn_ehd.status import InputError, require_number, require_vector
 
-# Largest angle between neighbouring nodes of a bore, rad.
-LARGEST_SPACING = 0.6
-# Spread of the radii of nodes on one surface, over the radius: facets.
-SURFACE = 5e-3
-# How far a film may reach beyond the outermost nodes, in lengths: rounding.
-BEYOND_END = 1e-6
 # Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.
 AROUND, ALONG = 144, 16
-# Largest scale of a bore's error, in local parts of its shape: what the whole shape is in a bush whose outer surface is held.
+# Largest scale of a bore's error, in local parts of its shape: what the whole shape is in a bush whose outer surface is
+# held.
 HELD_SHAPE = 2.2
 # Share of its energy that a new mode must have beyond the modes before it.
 NEW_ENERGY = 1e-6
@@ -52,7 +47,8 @@ NEW_ENERGY = 1e-6
 class FEBore:
     """The film acts on the bore of the housing, an ObjectFFRFreducedOrder; its modes deform under the oil pressure.
 
-    Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes let it.
+    Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
+    let it.
 
     Parameters
     ----------
@@ -63,11 +59,11 @@ class FEBore:
     radius_tolerance : float
         How far a node's radius may be from the bearing's bore radius, over that radius.
     settled : bool
-        Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only where the body's modes
-        start at zero. False starts undeformed, with the oscillation that this brings.
+        Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
+        where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
     """
 
-    fem: Any
+    fem: BodyMesh
     nodes: tuple[int, ...] | None = None
     radius_tolerance: float = 0.02
     settled: bool = True
@@ -86,7 +82,8 @@ class FEBore:
                 good = False
             if not good:
                 raise InputError(
-                    f"FEBore.nodes must be mesh node numbers (integers from 0), got {self.nodes!r}; None finds the bore's nodes."
+                    f"FEBore.nodes must be mesh node numbers (integers from 0), got {self.nodes!r}; None finds the "
+                    "bore's nodes."
                 )
 
 
@@ -142,7 +139,7 @@ class ReducedBore:
         return out
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Radial displacement against the averaged rigid motion at the grid theta x z, shape (len(theta), len(z), k)."""
+        """Radial displacement against the averaged rigid motion on the grid theta x z, (len(theta), len(z), k)."""
         T, Z = np.meshgrid(theta, z, indexing="ij")
         t, x = T.ravel(), Z.ravel()
         normal = np.stack([np.cos(t), np.sin(t)], axis=1)
@@ -158,95 +155,6 @@ def quadrature(length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     node, weight = np.polynomial.legendre.leggauss(ALONG)
     T, Z = np.meshgrid(theta, 0.5 * length * node, indexing="ij")
     return T.ravel(), Z.ravel(), np.tile(weight, AROUND) / (2.0 * AROUND)
-
-
-def bore_faces(where: str, fem: Any, positions: np.ndarray, chosen: np.ndarray) -> tuple[BoreFaces, np.ndarray]:
-    """Faces of a mesh all of whose nodes are among ``chosen``, and the mesh nodes that they use.
-
-    Parameters
-    ----------
-    where : str
-        For messages.
-    fem : FEMinterface
-    positions : ndarray, shape (n, 3)
-        All nodes, bore frame [m].
-    chosen : ndarray of int
-        Mesh nodes on the bore.
-    """
-    faces = surface_faces(fem)
-    faces = faces[np.isin(faces, chosen).all(axis=1)]
-    if len(faces) == 0:
-        raise InputError(
-            f"{where}: none of the mesh's surface faces has all of its nodes among the {len(chosen)} on the bore; check "
-            "radius_tolerance, and that the FEMinterface is the body's own."
-        )
-    used, local = np.unique(faces, return_inverse=True)
-    return BoreFaces(positions=positions[used], faces=local.reshape(faces.shape)), used
-
-
-def find_bore(
-    where: str,
-    positions: np.ndarray,
-    radius: float,
-    length: float,
-    tolerance: float,
-    nodes: tuple[int, ...] | None = None,
-) -> np.ndarray:
-    """Numbers of the nodes on a bore.
-
-    Parameters
-    ----------
-    where : str
-        For messages.
-    positions : ndarray, shape (n, 3)
-        All nodes in the joint's frame [m].
-    radius, length : float
-        Of the film's area [m].
-    tolerance : float
-        On a node's radius, over the radius.
-    nodes : sequence of int, optional
-        Where to look; by default all.
-
-    Raises
-    ------
-    InputError
-        Too few nodes, or nodes that leave part of the film without support.
-    """
-    r = np.hypot(positions[:, 0], positions[:, 1])
-    if nodes is None:
-        # a little beyond the film: other bores on the same axis don't count
-        member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
-        if member.any():
-            # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
-            member &= r <= r[member].min() + SURFACE * radius
-        chosen = np.flatnonzero(member)
-    else:
-        chosen = np.array(nodes, dtype=int)
-        if chosen.size and (chosen.min() < 0 or chosen.max() >= len(r)):
-            raise InputError(
-                f"{where}: nodes must be mesh nodes 0 to {len(r) - 1}, got {chosen.min()} to {chosen.max()}."
-            )
-    if chosen.size < 12:
-        nearest = np.sort(np.abs(r - radius))[:12].max() / radius if len(r) >= 12 else np.inf
-        raise InputError(
-            f"{where}: {chosen.size} nodes lie on the bore of radius {radius:g} m within {tolerance:g} of it and {0.75 * length:g} m of "
-            f"the mid-plane, at least 12 are needed; the twelve nearest are within {nearest:.2g}. Check position, axis, journal radius and "
-            "units, or raise radius_tolerance."
-        )
-    angle = np.sort(np.arctan2(positions[chosen, 1], positions[chosen, 0]))
-    gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi)).max()
-    if gap > LARGEST_SPACING:
-        raise InputError(
-            f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most {LARGEST_SPACING:g} rad are allowed; give a "
-            "closed bore, or a finer mesh."
-        )
-    z = positions[chosen, 2]
-    if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > BEYOND_END * length:
-        raise InputError(
-            f"{where}: the bore's nodes must span the film, z = -{0.5 * length:g} to {0.5 * length:g} m about the mid-plane, got "
-            f"{z.min():.6g} to {z.max():.6g} m; check position and bearing length."
-        )
-    return chosen
 
 
 def _rigid_fit(place: np.ndarray, weight: np.ndarray, field_: np.ndarray) -> np.ndarray:
@@ -275,10 +183,10 @@ class BoreModesReport:
     added, total : int
         Modes added, and modes now in the basis.
     error_before, error : float
-        Error of the bore's shape under sampled films, of the basis before and now. The shape is the radial displacement without its
-        rigid motion. The error counts over the shape, but over no more than 2.2 times the part of it beyond two waves around, as in a
-        bush whose outer surface is held: a slender eye gets oval by far more than the film is thick, and over that every error would
-        look small, while the film sees what the local deformation lacks.
+        Error of the bore's shape under sampled films, of the basis before and now. The shape is the radial displacement
+        without its rigid motion. The error counts over the shape, but over no more than 2.2 times the part of it beyond
+        two waves around, as in a bush whose outer surface is held: a slender eye gets oval by far more than the film is
+        thick, and over that every error would look small, while the film sees what the local deformation lacks.
     """
 
     added: int
@@ -288,13 +196,13 @@ class BoreModesReport:
 
 
 def add_bore_modes(
-    fem: Any,
+    fem: BodyMesh,
     *,
-    position: Any,
-    axis: Any,
+    position: Sequence[float],
+    axis: Sequence[float],
     radius: float,
     length: float,
-    fixed_nodes: Any,
+    fixed_nodes: Sequence[int],
     tolerance: float = 0.02,
     tilted: bool = True,
     radius_tolerance: float = 0.02,
@@ -302,9 +210,9 @@ def add_bore_modes(
 ) -> BoreModesReport:
     """Add to the mode basis of a ``FEMinterface`` what its bore does under an oil film.
 
-    The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with ``fixed_nodes``
-    held; they are orthogonal in energy to the modes that are there. Call it after the modes of the interfaces
-    (``ComputeHurtyCraigBamptonModes``) and before the ObjectFFRFreducedOrder is made.
+    The modes are the static displacements under smooth pressures on the bore, as many as `ModalBush` would take, with
+    ``fixed_nodes`` held; they are orthogonal in energy to the modes that are there. Call it after the modes of the
+    interfaces (``ComputeHurtyCraigBamptonModes``) and before the ObjectFFRFreducedOrder is made.
 
     Parameters
     ----------
@@ -340,7 +248,8 @@ def add_bore_modes(
     if fixed.size < 3 or np.isin(fixed, bore).any():
         raise InputError(
             f"{where} fixed_nodes must be three nodes or more off the bore that hold the body, got {fixed.size}, "
-            f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your mode basis."
+            f"{int(np.isin(fixed, bore).sum())} of them on the bore; give the nodes of the first interface of your "
+            "mode basis."
         )
     faces, bore = bore_faces(where, fem, place, bore)
     H, weight, theta, zeta = _radial_map(faces, length, rotation)
@@ -384,7 +293,7 @@ def _any_frame(axis: np.ndarray) -> np.ndarray:
 def _radial_map(
     faces: BoreFaces, length: float, rotation: np.ndarray
 ) -> tuple[csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
-    """Map H (p, 3 n) from bore nodes' displacements in the body's frame to radial ones at quadrature points; weights, theta, zeta."""
+    """Map H (p, 3 n) from the bore nodes' displacements, body's frame, to radial ones; weights, theta, zeta."""
     theta, z, weight = quadrature(length)
     S = faces.interpolation(theta, z).tocoo()
     normal = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1) @ rotation.T
@@ -399,10 +308,7 @@ def _solve_held(K: csr_matrix, fixed: np.ndarray, loads: np.ndarray) -> np.ndarr
     free[(3 * fixed[:, None] + np.arange(3)).ravel()] = False
     solutions = np.zeros_like(loads)
     try:
-        factor = splu(
-            K[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
-        solutions[free] = factor.solve(np.ascontiguousarray(loads[free]))
+        solutions[free] = symmetric_factor(K[free][:, free]).solve(np.ascontiguousarray(loads[free]))
     except RuntimeError as error:
         raise InputError(
             f"add_bore_modes fixed_nodes don't hold the body: its stiffness is singular ({error})."
@@ -420,10 +326,10 @@ def _beyond(K: csr_matrix, old: np.ndarray, new: np.ndarray) -> np.ndarray:
 
 
 class _Shape:
-    """Map from displacements (3 n, k) of the mesh to the shape (p, k) of its bore, whose norm is the mean square over the film's area.
+    """Map from displacements (3 n, k) of the mesh to the shape (p, k) of its bore, in the mean square over the film.
 
-    The shape is the radial displacement less the rigid motions that fit it best, cos, sin, zeta cos and zeta sin; its local part is what
-    goes beyond two waves around, which every choice of modes has.
+    The shape is the radial displacement less the rigid motions that fit it best, cos, sin, zeta cos and zeta sin; its
+    local part is what goes beyond two waves around, which every choice of modes has.
     """
 
     def __init__(

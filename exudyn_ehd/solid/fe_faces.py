@@ -1,19 +1,47 @@
-"""Shape functions of a finite-element body's surface on its unrolled bore: faces of hexahedra, and triangles of three or six nodes."""
+"""Where a finite-element body carries the film: the nodes and faces of its bore, and their shape functions, unrolled.
+
+Faces are those of hexahedra, or triangles of three or six nodes.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, spmatrix
 
-from exudyn_ehd.solid.hex20 import face_shapes
-from exudyn_ehd.solid.mesh import boundary_faces
+from exudyn_ehd.solid.hex20 import boundary_faces, face_shapes
+from exudyn_ehd.solid.mesh import invert_faces, near_faces
 from exudyn_ehd.status import InputError
 
+# Largest angle between neighbouring nodes of a bore, rad.
+LARGEST_SPACING = 0.6
+# Spread of the radii of nodes on one surface, over the radius: facets.
+SURFACE = 5e-3
+# How far a film may reach beyond the outermost nodes, in lengths: rounding.
+BEYOND_END = 1e-6
 # How far a point may lie beyond a face, in natural coordinates: facets, and films as long as the bore.
 OUTSIDE = 0.02
+
+
+class BodyMesh(Protocol):
+    """What is read of the ``FEMinterface`` that a body was made of, and filled into it."""
+
+    nodes: dict[str, np.ndarray]
+    elements: list[dict[str, np.ndarray]]
+    surface: list
+    modeBasis: dict[str, Any]
+    stiffnessMatrix: spmatrix
+
+    def VolumeToSurfaceElements(self) -> None:
+        """Find the triangles of the surface."""
+
+    def GetSurfaceTriangles(self) -> list:
+        """Triangles of three nodes."""
+
+    def GetSurfaceTriangles6(self) -> list:
+        """Triangles of six nodes."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -25,8 +53,8 @@ class BoreFaces:
     positions : ndarray, shape (n, 3)
         Nodes of the bore, bore frame (z = axis) [m].
     faces : ndarray of int, shape (f, a)
-        Their numbers face by face; a = 8 (serendipity quadrilateral, corners first), 6 (triangle: corners, then the nodes on the edges
-        0-1, 1-2, 2-0) or 3.
+        Their numbers face by face; a = 8 (serendipity quadrilateral, corners first), 6 (triangle: corners, then the
+        nodes on the edges 0-1, 1-2, 2-0) or 3.
     """
 
     positions: np.ndarray
@@ -42,8 +70,9 @@ class BoreFaces:
         """
         theta, z = np.asarray(theta, dtype=float).ravel(), np.asarray(z, dtype=float).ravel()
         corner = self.positions[self.faces]
-        point, face = self._candidates(theta, z, corner)
-        natural = self._invert(corner[face], theta[point], z[point])
+        point, face = np.nonzero(near_faces(corner, theta, z))
+        middle = 0.0 if self.faces.shape[1] == 8 else 1.0 / 3.0
+        natural = invert_faces(self._shapes, corner[face], theta[point], z[point], middle)
         outside = self._outside(natural)
         order = np.lexsort((outside, point))
         first = order[np.unique(point[order], return_index=True)[1]]
@@ -51,8 +80,10 @@ class BoreFaces:
         if lost.size or outside[first].max() > OUTSIDE:
             bad = lost[0] if lost.size else point[first[np.argmax(outside[first])]]
             raise InputError(
-                f"FEBore: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m of the film lies on no face of the bore, whose nodes span z = "
-                f"{self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes in the bore are not supported: check position, "
+                f"FEBore: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m of the film lies on no face of the "
+                "bore, whose nodes span z = "
+                f"{self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes in the bore are not "
+                "supported: check position, "
                 "axis, length and radius_tolerance."
             )
         values, _ = self._shapes(natural[first])
@@ -81,40 +112,12 @@ class BoreFaces:
             return np.abs(natural).max(axis=1) - 1.0
         return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
 
-    def _candidates(self, theta: np.ndarray, z: np.ndarray, corner: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        centre = np.arctan2(corner[..., 1].mean(axis=1), corner[..., 0].mean(axis=1))
-        spread = np.abs(_wrap(np.arctan2(corner[..., 1], corner[..., 0]) - centre[:, None])).max(axis=1)
-        low, high = corner[..., 2].min(axis=1), corner[..., 2].max(axis=1)
-        margin = 0.05 * (high - low)
-        close = np.abs(_wrap(theta[:, None] - centre)) <= 1.05 * spread + 1e-9
-        close &= (z[:, None] >= low - margin) & (z[:, None] <= high + margin)
-        point, face = np.nonzero(close)
-        return point, face
 
-    def _invert(self, corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        natural = np.full((len(corner), 2), 0.0 if self.faces.shape[1] == 8 else 1.0 / 3.0)
-        for _ in range(20):
-            value, gradient = self._shapes(natural)
-            x = np.einsum("na,nai->ni", value, corner)
-            slope = np.einsum("nar,nai->nir", gradient, corner)
-            error = np.stack([_wrap(np.arctan2(x[:, 1], x[:, 0]) - theta), x[:, 2] - z], axis=1)
-            turn = (x[:, 0, None] * slope[:, 1] - x[:, 1, None] * slope[:, 0]) / (x[:, :2] ** 2).sum(axis=1)[:, None]
-            step = np.linalg.solve(np.stack([turn, slope[:, 2]], axis=1), error[..., None])[..., 0]
-            natural = np.clip(natural - step, -1.5, 1.5)
-            if step.size == 0 or np.abs(step).max() < 1e-13:
-                break
-        return natural
-
-
-def _wrap(angle: np.ndarray) -> np.ndarray:
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
-
-
-def surface_faces(fem: Any) -> np.ndarray:
+def surface_faces(fem: BodyMesh) -> np.ndarray:
     """Boundary faces (f, a) of a ``FEMinterface``, mesh node numbers, as `BoreFaces` takes them.
 
-    20-node hexahedra give their 8-node faces; any other mesh the triangles of ``VolumeToSurfaceElements``, which is called if there are none:
-    six-node ones for 10-node tetrahedra.
+    20-node hexahedra give their 8-node faces; any other mesh the triangles of ``VolumeToSurfaceElements``, which is
+    called if there are none: six-node ones for 10-node tetrahedra.
 
     Raises
     ------
@@ -129,7 +132,102 @@ def surface_faces(fem: Any) -> np.ndarray:
     triangles = fem.GetSurfaceTriangles6() or fem.GetSurfaceTriangles()
     if len(triangles) == 0:
         raise InputError(
-            "FEBore.fem has neither elements nor surface triangles: import the mesh with its elements (fem.elements), which tell how the "
+            "FEBore.fem has neither elements nor surface triangles: import the mesh with its elements (fem.elements), "
+            "which tell how the "
             "nodes share the pressure."
         )
     return np.asarray(triangles, dtype=int)
+
+
+def bore_faces(where: str, fem: BodyMesh, positions: np.ndarray, chosen: np.ndarray) -> tuple[BoreFaces, np.ndarray]:
+    """Faces of a mesh all of whose nodes are among ``chosen``, and the mesh nodes that they use.
+
+    Parameters
+    ----------
+    where : str
+        For messages.
+    fem : FEMinterface
+    positions : ndarray, shape (n, 3)
+        All nodes, bore frame [m].
+    chosen : ndarray of int
+        Mesh nodes on the bore.
+    """
+    faces = surface_faces(fem)
+    faces = faces[np.isin(faces, chosen).all(axis=1)]
+    if len(faces) == 0:
+        raise InputError(
+            f"{where}: none of the mesh's surface faces has all of its nodes among the {len(chosen)} on the bore; "
+            "check "
+            "radius_tolerance, and that the FEMinterface is the body's own."
+        )
+    used, local = np.unique(faces, return_inverse=True)
+    return BoreFaces(positions=positions[used], faces=local.reshape(faces.shape)), used
+
+
+def find_bore(
+    where: str,
+    positions: np.ndarray,
+    radius: float,
+    length: float,
+    tolerance: float,
+    nodes: tuple[int, ...] | None = None,
+) -> np.ndarray:
+    """Numbers of the nodes on a bore.
+
+    Parameters
+    ----------
+    where : str
+        For messages.
+    positions : ndarray, shape (n, 3)
+        All nodes in the joint's frame [m].
+    radius, length : float
+        Of the film's area [m].
+    tolerance : float
+        On a node's radius, over the radius.
+    nodes : sequence of int, optional
+        Where to look; by default all.
+
+    Raises
+    ------
+    InputError
+        Too few nodes, or nodes that leave part of the film without support.
+    """
+    r = np.hypot(positions[:, 0], positions[:, 1])
+    if nodes is None:
+        # a little beyond the film: other bores on the same axis don't count
+        member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
+        if member.any():
+            # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
+            member &= r <= r[member].min() + SURFACE * radius
+        chosen = np.flatnonzero(member)
+    else:
+        chosen = np.array(nodes, dtype=int)
+        if chosen.size and (chosen.min() < 0 or chosen.max() >= len(r)):
+            raise InputError(
+                f"{where}: nodes must be mesh nodes 0 to {len(r) - 1}, got {chosen.min()} to {chosen.max()}."
+            )
+    if chosen.size < 12:
+        nearest = np.sort(np.abs(r - radius))[:12].max() / radius if len(r) >= 12 else np.inf
+        raise InputError(
+            f"{where}: {chosen.size} nodes lie on the bore of radius {radius:g} m within {tolerance:g} of it and "
+            f"{0.75 * length:g} m of "
+            f"the mid-plane, at least 12 are needed; the twelve nearest are within {nearest:.2g}. Check position, "
+            "axis, journal radius and "
+            "units, or raise radius_tolerance."
+        )
+    angle = np.sort(np.arctan2(positions[chosen, 1], positions[chosen, 0]))
+    gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi)).max()
+    if gap > LARGEST_SPACING:
+        raise InputError(
+            f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most {LARGEST_SPACING:g} rad "
+            "are allowed; give a "
+            "closed bore, or a finer mesh."
+        )
+    z = positions[chosen, 2]
+    if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > BEYOND_END * length:
+        raise InputError(
+            f"{where}: the bore's nodes must span the film, z = -{0.5 * length:g} to {0.5 * length:g} m about the "
+            "mid-plane, got "
+            f"{z.min():.6g} to {z.max():.6g} m; check position and bearing length."
+        )
+    return chosen

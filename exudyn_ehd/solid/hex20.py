@@ -195,3 +195,10 @@ def face_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
     x, w = np.polynomial.legendre.leggauss(n)
     points = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
     return points, np.einsum("i,j->ij", w, w).ravel()
+
+
+def boundary_faces(elements: np.ndarray) -> np.ndarray:
+    """Faces (f, 8) of 20-node hexahedra that belong to one element only."""
+    faces = elements[:, FACES].reshape(-1, 8)
+    _, index, count = np.unique(np.sort(faces[:, :4], axis=1), axis=0, return_index=True, return_counts=True)
+    return faces[np.sort(index[count == 1])]

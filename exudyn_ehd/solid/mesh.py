@@ -6,6 +6,7 @@ z = -length/2 to length/2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Protocol
@@ -13,7 +14,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.hex20 import EDGES, FACES, GAUSS27, NODES, face_shapes, shape_gradients
+from exudyn_ehd.solid.hex20 import EDGES, GAUSS27, NODES, boundary_faces, face_shapes, shape_gradients
 from exudyn_ehd.status import InputError, require_integer, require_number, require_vector
 
 
@@ -85,8 +86,13 @@ class Surface:
         """
         theta = np.asarray(theta, dtype=float).ravel()
         z = np.asarray(z, dtype=float).ravel()
-        point, face = self._candidates(theta, z)
-        natural, inside = self._invert(theta[point], z[point], face)
+        corner = self.positions[self.local_faces]
+        close = near_faces(corner, theta, z)
+        # a point off the surface is tried on any face, and refused there
+        close[~close.any(axis=1), 0] = True
+        point, face = np.nonzero(close)
+        natural = invert_faces(face_shapes, corner[face], theta[point], z[point])
+        inside = np.abs(natural).max(axis=1)
         best = np.full(len(theta), np.inf)
         np.minimum.at(best, point, inside)
         if np.any(best > 1 + 1e-6):
@@ -122,39 +128,60 @@ class Surface:
         rows, columns = np.repeat(S.row, 2), (3 * S.col[:, None] + np.arange(2)).ravel()
         return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
 
-    def _candidates(self, theta: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        corner = self.positions[self.local_faces]
-        middle = corner[:, :4].mean(axis=1)
-        centre = np.arctan2(middle[:, 1], middle[:, 0])
-        spread = np.abs(_wrap(np.arctan2(corner[..., 1], corner[..., 0]) - centre[:, None])).max(axis=1)
-        low, high = corner[..., 2].min(axis=1), corner[..., 2].max(axis=1)
-        margin = 1e-6 * np.ptp(self.z) + 0.01 * (high - low)
-        close = np.abs(_wrap(theta[:, None] - centre)) <= 1.01 * spread + 1e-9
-        close &= (z[:, None] >= low - margin) & (z[:, None] <= high + margin)
-        lost = np.flatnonzero(~close.any(axis=1))
-        close[lost, 0] = True
-        point, face = np.nonzero(close)
-        return point, face
-
-    def _invert(self, theta: np.ndarray, z: np.ndarray, face: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        corner = self.positions[self.local_faces[face]]
-        natural = np.zeros((len(face), 2))
-        for _ in range(20):
-            value, gradient = face_shapes(natural)
-            x = np.einsum("na,nai->ni", value, corner)
-            slope = np.einsum("nar,nai->nir", gradient, corner)
-            radius2 = x[:, 0] ** 2 + x[:, 1] ** 2
-            error = np.stack([_wrap(np.arctan2(x[:, 1], x[:, 0]) - theta), x[:, 2] - z], axis=1)
-            turn = (x[:, 0, None] * slope[:, 1] - x[:, 1, None] * slope[:, 0]) / radius2[:, None]
-            jacobian = np.stack([turn, slope[:, 2]], axis=1)
-            step = np.linalg.solve(jacobian, error[..., None])[..., 0]
-            natural = np.clip(natural - step, -1.5, 1.5)
-            if np.abs(step).max() < 1e-13:
-                break
-        return natural, np.abs(natural).max(axis=1)
+    def radial(self, displacements: np.ndarray) -> np.ndarray:
+        """Radial part (m, k) on the surface's nodes of displacements (m, 3 n) of all nodes of the mesh."""
+        direction = self.positions[:, :2] / np.linalg.norm(self.positions[:, :2], axis=1)[:, None]
+        moved = displacements.reshape(len(displacements), -1, 3)[:, self.nodes, :2]
+        return np.asarray(np.einsum("kai,ai->ka", moved, direction))
 
 
-def _wrap(angle: np.ndarray) -> np.ndarray:
+def near_faces(corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """Flags (p, f): which points (p,) of an unrolled surface may lie on which faces with nodes ``corner`` (f, a, 3)."""
+    middle = corner.mean(axis=1)
+    centre = np.arctan2(middle[:, 1], middle[:, 0])
+    spread = np.abs(wrapped(np.arctan2(corner[..., 1], corner[..., 0]) - centre[:, None])).max(axis=1)
+    low, high = corner[..., 2].min(axis=1), corner[..., 2].max(axis=1)
+    margin = 0.05 * (high - low)
+    close = np.abs(wrapped(theta[:, None] - centre)) <= 1.05 * spread + 1e-9
+    return np.asarray(close & (z[:, None] >= low - margin) & (z[:, None] <= high + margin))
+
+
+def invert_faces(
+    shapes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
+    corner: np.ndarray,
+    theta: np.ndarray,
+    z: np.ndarray,
+    start: float = 0.0,
+) -> np.ndarray:
+    """Natural coordinates (n, 2) of points (n,) on a face each, by Newton's method on theta(r, s) and z(r, s).
+
+    Parameters
+    ----------
+    shapes : function
+        Shape functions (n, a) and gradients (n, a, 2) at natural coordinates (n, 2).
+    corner : ndarray, shape (n, a, 3)
+        Nodes of every point's face [m].
+    theta, z : ndarray, shape (n,)
+        [rad], [m]
+    start : float
+        Both natural coordinates of a face's middle.
+    """
+    natural = np.full((len(corner), 2), start)
+    for _ in range(20):
+        value, gradient = shapes(natural)
+        x = np.einsum("na,nai->ni", value, corner)
+        slope = np.einsum("nar,nai->nir", gradient, corner)
+        error = np.stack([wrapped(np.arctan2(x[:, 1], x[:, 0]) - theta), x[:, 2] - z], axis=1)
+        turn = (x[:, 0, None] * slope[:, 1] - x[:, 1, None] * slope[:, 0]) / (x[:, :2] ** 2).sum(axis=1)[:, None]
+        step = np.linalg.solve(np.stack([turn, slope[:, 2]], axis=1), error[..., None])[..., 0]
+        natural = np.clip(natural - step, -1.5, 1.5)
+        if step.size == 0 or np.abs(step).max() < 1e-13:
+            break
+    return natural
+
+
+def wrapped(angle: np.ndarray) -> np.ndarray:
+    """The same angle within -pi and pi."""
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
@@ -212,9 +239,9 @@ class BushMesh:
             No grid line runs at this angle.
         """
         theta = require_number("BushMesh.generatrix theta", theta, "rad")
-        near = surface.nodes[np.abs(_wrap(surface.theta - theta)) < 1e-6]
+        near = surface.nodes[np.abs(wrapped(surface.theta - theta)) < 1e-6]
         if len(near) == 0:
-            gap = np.abs(_wrap(surface.theta - theta))
+            gap = np.abs(wrapped(surface.theta - theta))
             raise InputError(
                 f"BushMesh.generatrix theta must be the angle of a grid line, got {theta:g} rad; the nearest one is "
                 f"{surface.theta[int(np.argmin(gap))]:g} rad: take that one or change the circumferential count."
@@ -222,18 +249,13 @@ class BushMesh:
         return self.line(near)
 
 
-def boundary_faces(elements: np.ndarray) -> np.ndarray:
-    """Faces (f, 8) of 20-node hexahedra that belong to one element only."""
-    faces = elements[:, FACES].reshape(-1, 8)
-    _, index, count = np.unique(np.sort(faces[:, :4], axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[np.sort(index[count == 1])]
-
-
 def _surface(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> Surface:
-    faces = boundary[member[boundary].all(axis=1)]
+    return _patch(nodes, boundary[member[boundary].all(axis=1)])
+
+
+def _patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
     used = np.unique(faces)
-    local = np.searchsorted(used, faces)
-    return Surface(positions=nodes[used], nodes=used, faces=faces, local_faces=local)
+    return Surface(positions=nodes[used], nodes=used, faces=faces, local_faces=np.searchsorted(used, faces))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -374,26 +396,16 @@ def mesh_from_arrays(
             f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
             f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
         )
-    taken = (
-        _face_in(boundary, low) | _face_in(boundary, high) | _face_in(boundary, np.isin(np.arange(len(r)), bore.nodes))
-    )
-    faces = boundary[~taken]
-    outer_nodes = np.unique(faces)
-    outer = Surface(
-        positions=nodes[outer_nodes], nodes=outer_nodes, faces=faces, local_faces=np.searchsorted(outer_nodes, faces)
-    )
+    elsewhere = [low, high, np.isin(np.arange(len(r)), bore.nodes)]
+    taken = np.any([member[boundary].all(axis=1) for member in elsewhere], axis=0)
     return BushMesh(
         nodes=nodes,
         elements=elements,
         bore=bore,
-        outer=outer,
+        outer=_patch(nodes, boundary[~taken]),
         end_low=_surface(nodes, boundary, low),
         end_high=_surface(nodes, boundary, high),
     )
-
-
-def _face_in(faces: np.ndarray, member: np.ndarray) -> np.ndarray:
-    return member[faces].all(axis=1)
 
 
 def _frame(axis: np.ndarray) -> np.ndarray:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.linalg import eigsh, splu
+from scipy.sparse import csc_matrix, csr_matrix, spmatrix
+from scipy.sparse.linalg import SuperLU, eigsh, splu
 
 from exudyn_ehd.solid.loads import FollowerPressure, Load
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
@@ -90,9 +90,9 @@ def equilibrium(
             K = solid.tangent(u)
             for load in followers:
                 K = K + part * _follower_matrix(load, positions)
-            K = K[free][:, free].tocsc()
+            K = K[free][:, free]
             try:
-                factor = splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+                factor = symmetric_factor(K)
             except RuntimeError:
                 raise _failure(step, steps, float("inf")) from None
             correction = factor.solve(residual.ravel()[free])
@@ -147,6 +147,26 @@ def eigenfrequencies(
     modes = np.zeros((count, held.size))
     modes[:, free] = vectors[:, order].T
     return np.sqrt(np.maximum(square[order], 0.0)), modes.reshape(count, *shape)
+
+
+def symmetric_factor(K: spmatrix) -> SuperLU:
+    """Factor of a symmetric stiffness, without pivoting.
+
+    Raises
+    ------
+    RuntimeError
+        If the stiffness is singular.
+    """
+    return splu(K.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def held_stiffness(solid: TotalLagrange) -> tuple[np.ndarray, csc_matrix, SuperLU]:
+    """Free coordinates (3 n,) with the outer surface held, their stiffness at rest, and its factor."""
+    mesh = solid.mesh
+    free = np.ones(3 * len(mesh.nodes), dtype=bool)
+    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
+    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
+    return free, K, symmetric_factor(K)
 
 
 def _follower_matrix(load: FollowerPressure, positions: np.ndarray) -> csr_matrix:

@@ -1,42 +1,43 @@
 """A bush reduced to what its bore does under an oil film: static modes of smooth pressures.
 
-With the outer surface fixed and small strain, a pressure p on the bore displaces it by ``H K^-1 H^T A p`` (H: radial bore
-displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The modes are the displacements
-under the pressures
+With the outer surface fixed and small strain, a pressure p on the bore displaces it by ``H K^-1 H^T A p`` (H: radial
+bore displacement of the nodal displacements, A: areas, K: stiffness in the reference configuration). The modes are the
+displacements under the pressures
 
     p = {1, cos(n theta), sin(n theta)} P_l(zeta) (1 - zeta^2),   n <= N, l <= L,   zeta = 2 z / length,
 
-with Legendre's polynomials P_l, and under uniform and axially linear pressure, which pressurised ends need. N and L are the smallest
-ones for which films of a bearing of finite length,
+with Legendre's polynomials P_l, and under uniform and axially linear pressure, which pressurised ends need. N and L are
+the smallest ones for which films of a bearing of finite length,
 
     p ~ -(dh/dtheta) / h^3 (1 - cosh(a zeta) / cosh(a)),   h = 1 + (eps + tau zeta) cos(theta - phi),
 
-displace the reduced bore as they displace the mesh, within the tolerance in the root mean square. The sampled eccentricity ratios
-are moderate: where a rigid bearing's pressure is sharper, an elastic bore flattens it.
+displace the reduced bore as they displace the mesh, within the tolerance in the root mean square. The sampled
+eccentricity ratios are moderate: where a rigid bearing's pressure is sharper, an elastic bore flattens it.
 
-Only pressure works on the modes. The film's shear, clearance over radius of it, and the pressure on the bore's own slope displace the bore
-radially by 3e-4 of what pressure does in steel, 1e-3 at E = 1e9 Pa (5 mm on c / R = 1e-3), 8e-3 at 1e7 Pa and c / R = 3e-3, measured on
-meshes: less than the modes' tolerance. `ANCFBush` has them.
+Only pressure works on the modes. The film's shear, clearance over radius of it, and the pressure on the bore's own
+slope displace the bore radially by 3e-4 of what pressure does in steel, 1e-3 at E = 1e9 Pa (5 mm on c / R = 1e-3), 8e-3
+at 1e7 Pa and c / R = 3e-3, measured on meshes: less than the modes' tolerance. `ANCFBush` has them.
 
-A quasi-static bush (the default) has modes without mass: it follows the film, and its mass belongs to the body that carries it. With
-``dynamics`` the modes Phi get the mesh's consistent mass M,
+A quasi-static bush (the default) has modes without mass: it follows the film, and its mass belongs to the body that
+carries it. With ``dynamics`` the modes Phi get the mesh's consistent mass M,
 
     Phi^T M Phi q_tt + Phi^T K Phi q = Q,
 
-and on a housing that moves what its acceleration and rotation do to them; modes for that come from `exudyn_ehd.solid.body_forces`.
+and on a housing that moves what its acceleration and rotation do to them; modes for that come from
+`exudyn_ehd.solid.dynamic_modes`.
 
-Static modes give the first inertial correction of the bore's compliance exactly, that of the square of the frequency, but not the
-vibrations: in a thick bush the lowest ones shear the wall, which no static mode does (frequencies up to 1.9 times too high). Those of
-the mesh's lowest vibrations that pressure excites are therefore added, less their part in the span of the static modes: the
-reduced bush then vibrates in them at the mesh's frequencies, and its static modes stay as they are.
+Static modes give the first inertial correction of the bore's compliance exactly, that of the square of the frequency,
+but not the vibrations: in a thick bush the lowest ones shear the wall, which no static mode does (frequencies up to 1.9
+times too high). Those of the mesh's lowest vibrations that pressure excites are therefore added, less their part in the
+span of the static modes: the reduced bush then vibrates in them at the mesh's frequencies, and its static modes stay as
+they are.
 
-Source of the idea: static (attachment) modes and vibrations, R. R. Craig, J. Modal Analysis 2 (1987) 59; derived here for
-pressures on a bore.
+Source of the idea: static (attachment) modes and vibrations, R. R. Craig, J. Modal Analysis 2 (1987) 59; derived here
+for pressures on a bore.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from math import ceil, log2
 
@@ -44,18 +45,17 @@ import numpy as np
 from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 
-from exudyn_ehd.solid import body_forces, vibrations
-from exudyn_ehd.solid.body_forces import body_force_modes
-from exudyn_ehd.solid.hex20 import IRONS14, Quadrature, face_gauss, face_shapes
-from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder, Surface
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
-from exudyn_ehd.solid.vibrations import held_stiffness, vibration_modes
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.solid import dynamic_modes
+from exudyn_ehd.solid.bush import ModalBush
+from exudyn_ehd.solid.dynamic_modes import body_force_modes, vibration_modes
+from exudyn_ehd.solid.loads import Pressure, pressure_loads
+from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.static_equilibrium import held_stiffness
+from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 # Of the algorithm: raise it with every change of the modes, so that files of older ones are not taken.
 FORMAT = 2
-SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
 LARGEST_WAVE, LARGEST_AXIAL = 24, 10
 # Share of the energy below which a combination of pressures adds nothing but rounding.
 DEPENDENT = 1e-9
@@ -65,80 +65,10 @@ SAMPLE_DIRECTIONS = (0.3, 1.1)
 SAMPLE_TILTS = (0.3, -0.3)
 # Decay of the sampled films towards the ends; 0 would be the short bearing's parabola, a long one's film is fuller.
 SAMPLE_DECAY = 6.0
-# Two axial orders for every halving of the tolerance from here: next to the ends, where a bush gives way most, an elastic film's
-# pressure is fuller than the sampled ones and converges slowly with L (measured against nodal solutions).
+# Two axial orders for every halving of the tolerance from here: next to the ends, where a bush deflects most, an
+# elastic film's pressure is fuller than the sampled ones and converges slowly with L (measured against nodal
+# solutions).
 AXIAL_FROM = 0.08
-
-Pressure = Callable[[np.ndarray, np.ndarray], np.ndarray]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class ModalBush:
-    """A linear elastic bush, reduced to modes of its bore; outer surface fixed to the housing.
-
-    Parameters
-    ----------
-    mesh : HollowCylinder or BushMesh
-        Bush frame = joint frame. Build it fine: two or more radial layers; the modes cost the same in a run.
-    material : SaintVenantKirchhoff
-        Its density is used with ``dynamics`` only.
-    tolerance : float
-        Error of the bore's displacement under sampled films in the root mean square over the bore, over that displacement;
-        2e-3 to 0.2. For a bush as long as its diameter, peak pressure and smallest gap then differ from the nodal bush's by less
-        than 1 % at 0.02 (107 modes, 52 without tilt; steel to polymer on a film of 144 x 16), in steel by 2.5 % at 0.04 (77, 31) and
-        0.1 % at 5e-3 (261, 135). Finer modes want a finer film: on 96 x 10 those of 0.02 are within 0.4 % of the converged film, finer
-        ones (and the nodes) miss its peak and gap by 0.5 to 1.6 %, since the bore gives way next to its ends within an interval.
-    tilted : bool
-        False leaves out the modes that are odd in z: for journals that stay parallel.
-    quadrature : Quadrature
-        Of the stiffness.
-    dynamics : bool
-        Give the modes their mass in a run and add modes of the lowest vibrations (up to 40, half of them without tilt); `steady` and
-        `equilibrium` don't know the mass. It matters when the load changes nearly as fast as the bore vibrates
-        (`BoreModes.vibrations`; 43 kHz for 20 mm of steel): in all else the difference is about the square of the ratio of the
-        frequencies, and a step that does not resolve the vibrations needs an integrator that damps them. What the mass changes in
-        the bore's response to a smooth pressure is then the mesh's within 1.5 % at half the lowest frequency, 9 % above it.
-        The bush's mass still belongs to the housing's body, which must not be lighter than the bush: a joint refuses it. On a housing that moves, its
-        acceleration and rotation act on the modes and the modes on it (`exudyn_ehd.coupling.element.modal_inertia`). At 2e4 m/s^2, the big end of
-        a crank of 50 mm at 6000 rpm, the body force displaces the bore of a steel bush 20 mm thick by 0.13 um (3 mm thick: 3 nm), a
-        rotation at that speed by 0.08 um. Gravity on the modes (0.1 nm) is left out.
-    body_forces : bool
-        With ``dynamics``, also modes of the mesh's static responses to accelerations and rotations of the housing, as far as the others lack
-        them: 4 or 5, with tilt up to 10. The bore's answer to them at rest is then the mesh's within 0.5 %; without them it is within 5 to 20 %,
-        30 % for thin walls. A joint on ground leaves them out.
-    """
-
-    mesh: HollowCylinder | BushMesh
-    material: SaintVenantKirchhoff
-    tolerance: float = 0.02
-    tilted: bool = True
-    quadrature: Quadrature = IRONS14
-    dynamics: bool = False
-    body_forces: bool = True
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.mesh, HollowCylinder | BushMesh):
-            raise InputError(
-                f"ModalBush.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
-                "own mesh with mesh_from_fem or mesh_from_arrays."
-            )
-        if not isinstance(self.material, SaintVenantKirchhoff):
-            raise InputError(f"ModalBush.material must be a SaintVenantKirchhoff(...), got {self.material!r}.")
-        tolerance = require_number("ModalBush.tolerance", self.tolerance, at_least=SMALLEST_TOLERANCE)
-        if tolerance > LARGEST_TOLERANCE:
-            raise InputError(
-                f"ModalBush.tolerance must be within {SMALLEST_TOLERANCE:g} and {LARGEST_TOLERANCE:g}, got "
-                f"{tolerance:g}; 0.02 is a good start."
-            )
-        if not isinstance(self.quadrature, Quadrature):
-            raise InputError(f"ModalBush.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
-        for name in ("tilted", "dynamics", "body_forces"):
-            if not isinstance(getattr(self, name), bool):
-                raise InputError(f"ModalBush.{name} must be True or False, got {getattr(self, name)!r}.")
-
-    def build_mesh(self) -> BushMesh:
-        """Return the mesh, bush frame."""
-        return self.mesh.mesh() if isinstance(self.mesh, HollowCylinder) else self.mesh
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -149,11 +79,12 @@ class BoreModes:
     ----------
     mesh : BushMesh
     displacements : ndarray, shape (k, n, 3)
-        Nodal displacements of every mode on the whole mesh, bush frame; the largest radial bore displacement of a static mode is 1, so
-        that its coordinate is in m. Modes of vibrations and of body forces follow the static ones; their largest displacement of all nodes
-        is 1.
+        Nodal displacements of every mode on the whole mesh, bush frame; the largest radial bore displacement of a
+        static mode is 1, so that its coordinate is in m. Modes of vibrations and of body forces follow the static ones;
+        their largest displacement of all nodes is 1.
     stiffness : ndarray, shape (k,)
-        Modal stiffness [N/m]; the modes are orthogonal in energy, the static ones also on the bore, of which the softest come first.
+        Modal stiffness [N/m]; the modes are orthogonal in energy, the static ones also on the bore, of which the
+        softest come first.
     error : float
         Error under the sampled films, as in `ModalBush`.
     mass : ndarray, shape (k, k), or None
@@ -197,7 +128,17 @@ class BoreModes:
         return np.sqrt(square), shapes
 
     def participation(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """P = int rho Phi (3, k) [kg], Theta = int rho X x Phi (3, k) and K = int rho (X . Phi 1 - Phi X^T) (k, 3, 3) [kg m], bush frame."""
+        """Inertia of a moving frame on the modes, bush frame.
+
+        Returns
+        -------
+        P : ndarray, shape (3, k)
+            int rho Phi [kg].
+        Theta : ndarray, shape (3, k)
+            int rho X x Phi [kg m].
+        K : ndarray, shape (k, 3, 3)
+            int rho (X . Phi 1 - Phi X^T) [kg m].
+        """
         assert self.moments is not None
         mass, first = self.moments[:, 0], self.moments[:, 1:]
         # by node: int rho Phi X^T
@@ -235,12 +176,12 @@ def bore_modes(bush: ModalBush) -> BoreModes:
     )
     if not bush.dynamics:
         return static
-    content = _content(bush, mesh) + repr((bush.material.density, *vibrations.SETTINGS)).encode()
+    content = _content(bush, mesh) + repr((bush.material.density, *dynamic_modes.VIBRATION_SETTINGS)).encode()
     data = cached_arrays(
         "bush_vibrations",
         content,
         {**shapes, "mass": ("m", "m"), "moments": (len(mesh.nodes), 4)},
-        lambda: vibration_modes(_solid(bush, mesh), static.displacements, static.stiffness),
+        lambda: vibration_modes(bush.solid(mesh), static.displacements, static.stiffness),
     )
     modes = BoreModes(
         mesh=mesh,
@@ -259,9 +200,9 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
     assert mass is not None
     data = cached_arrays(
         "bush_body_forces",
-        content + repr(body_forces.SETTINGS).encode(),
+        content + repr(dynamic_modes.BODY_FORCE_SETTINGS).encode(),
         {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",), "mass": ("k", "m")},
-        lambda: body_force_modes(_solid(bush, mesh), modes.displacements, modes.stiffness, bush.tilted),
+        lambda: body_force_modes(bush.solid(mesh), modes.displacements, modes.stiffness, bush.tilted),
     )
     rows = data["mass"]
     return replace(
@@ -275,28 +216,25 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
 def _content(bush: ModalBush, mesh: BushMesh) -> bytes:
     """Everything that determines the modes."""
     material, quadrature = bush.material, bush.quadrature
-    numbers = (
-        FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted, LARGEST_WAVE, LARGEST_AXIAL,
-        DEPENDENT, SAMPLE_ECCENTRICITIES, SAMPLE_DIRECTIONS, SAMPLE_TILTS, SAMPLE_DECAY, AXIAL_FROM,
-    )  # fmt: skip
-    arrays = (
-        mesh.nodes, mesh.elements, mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes, quadrature.points, quadrature.weights,
-    )  # fmt: skip
-    return b"".join(
-        [repr(numbers).encode(), *(repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)]
-    )
+    described = (FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted)
+    search = (LARGEST_WAVE, LARGEST_AXIAL, DEPENDENT)
+    samples = (SAMPLE_ECCENTRICITIES, SAMPLE_DIRECTIONS, SAMPLE_TILTS, SAMPLE_DECAY, AXIAL_FROM)
+    surfaces = (mesh.bore.nodes, mesh.bore.faces, mesh.outer.nodes)
+    arrays = (mesh.nodes, mesh.elements, *surfaces, quadrature.points, quadrature.weights)
+    stored = (repr(a.shape).encode() + np.ascontiguousarray(a).tobytes() for a in arrays)
+    return b"".join([repr((*described, *search, *samples)).encode(), *stored])
 
 
 def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
     """Compute the modes of a bush on its mesh: one factorisation of its stiffness, one solve per pressure."""
     bore, size = mesh.bore, len(mesh.nodes)
-    free, _, factor = held_stiffness(_solid(bush, mesh))
+    free, _, factor = held_stiffness(bush.solid(mesh))
     pressures, orders = candidate_pressures(bush.tilted)
     samples = sample_pressures(bush.tilted)
     loads = pressure_loads(bore, size, [*pressures, *samples])
     solutions = np.zeros((loads.shape[1], free.size))
     solutions[:, free] = factor.solve(np.ascontiguousarray(loads[free])).T
-    radial = _radial(bore, solutions.reshape(len(solutions), -1, 3)[:, bore.nodes])
+    radial = bore.radial(solutions)
     compliance = solutions @ loads
     chosen, error = enough_modes(compliance, radial, orders, bush.tolerance, bush.tilted)
     coefficients = orthogonal_modes(compliance[np.ix_(chosen, chosen)], radial[chosen])
@@ -311,12 +249,8 @@ def compute_modes(bush: ModalBush, mesh: BushMesh) -> BoreModes:
     )
 
 
-def _solid(bush: ModalBush, mesh: BushMesh) -> TotalLagrange:
-    return TotalLagrange(mesh=mesh, material=bush.material, quadrature=bush.quadrature)
-
-
 def orthogonal_modes(compliance: np.ndarray, radial: np.ndarray) -> np.ndarray:
-    """Combinations (k, candidates) of unit strain energy, orthogonal in energy and on the bore; dependent candidates are dropped."""
+    """Combinations (k, candidates) of unit strain energy, orthogonal also on the bore; dependent ones are dropped."""
     size = np.sqrt(np.diag(compliance))
     values, vectors = eigh(compliance / np.outer(size, size))
     keep = values > DEPENDENT * values[-1]
@@ -327,12 +261,6 @@ def orthogonal_modes(compliance: np.ndarray, radial: np.ndarray) -> np.ndarray:
     return turn[:, compliant > DEPENDENT * compliant[-1]][:, ::-1].T @ basis
 
 
-def _radial(bore: Surface, displacements: np.ndarray) -> np.ndarray:
-    """Radial part (k, n) of bore displacements (k, n, 3)."""
-    direction = bore.positions[:, :2] / np.linalg.norm(bore.positions[:, :2], axis=1)[:, None]
-    return np.einsum("kai,ai->ka", displacements[..., :2], direction)
-
-
 def enough_modes(
     compliance: np.ndarray,
     radial: np.ndarray,
@@ -341,7 +269,7 @@ def enough_modes(
     tilted: bool,
     scale: np.ndarray | None = None,
 ) -> tuple[np.ndarray, float]:
-    """Indices of the candidates up to the smallest orders (N, L) that meet the tolerance, and the error over each sample's scale."""
+    """Indices of the candidates of the smallest orders (N, L) that meet the tolerance, and their error."""
     count = len(orders)
     exact = radial[count:]
     scale = np.linalg.norm(exact, axis=1) if scale is None else scale
@@ -363,7 +291,8 @@ def enough_modes(
                 break
     if best is None:
         raise InputError(
-            f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial order "
+            f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial "
+            "order "
             f"{LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
         )
     return best
@@ -406,37 +335,3 @@ def sample_pressures(tilted: bool) -> list[Pressure]:
 
     tilts = (0.0, *SAMPLE_TILTS) if tilted else (0.0,)
     return [film(e, t, d) for e in SAMPLE_ECCENTRICITIES for t in tilts for d in SAMPLE_DIRECTIONS]
-
-
-def pressure_loads(bore: Surface, nodes: int, pressures: list[Pressure], points: int = 5) -> np.ndarray:
-    """Consistent nodal forces, radially outward, of pressures on a bore.
-
-    Parameters
-    ----------
-    bore : Surface
-    nodes : int
-        Number of nodes of the mesh.
-    pressures : list of functions (theta [rad], zeta) -> p [Pa]
-        zeta runs from -1 to 1 over the bore's length.
-    points : int
-        Gauss points per face and direction.
-
-    Returns
-    -------
-    ndarray, shape (3 nodes, k)
-        [N]
-    """
-    natural, weight = face_gauss(points)
-    value, slope = face_shapes(natural)
-    corner = bore.positions[bore.local_faces]
-    x = np.einsum("qa,fai->fqi", value, corner)
-    tangent = np.einsum("qar,fai->fqri", slope, corner)
-    area = np.linalg.norm(np.cross(tangent[:, :, 0], tangent[:, :, 1]), axis=2) * weight
-    theta = np.arctan2(x[..., 1], x[..., 0])
-    zeta = (2.0 * x[..., 2] - bore.z.min() - bore.z.max()) / np.ptp(bore.z)
-    direction = x[..., :2] / np.linalg.norm(x[..., :2], axis=2)[..., None]
-    loads = np.zeros((nodes, 3, len(pressures)))
-    for k, pressure in enumerate(pressures):
-        share = np.einsum("fq,fqi,qa->fai", area * pressure(theta, zeta), direction, value)
-        np.add.at(loads[:, :2, k], bore.faces, share)
-    return loads.reshape(3 * nodes, -1)

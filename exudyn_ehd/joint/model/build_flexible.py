@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse.linalg import SuperLU, splu
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.bore.equilibrium import DenseElasticity, ModalElasticity
 from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.seams import Effects
-from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.solid.static_modes import ModalBush, bore_modes
+from exudyn_ehd.solid.static_equilibrium import held_stiffness
+from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.status import InputError
 
 
@@ -57,7 +57,7 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
 def bore_stiffness(bush: ANCFBush) -> np.ndarray:
     """Stiffness (k, k) of a mesh at rest condensed on the x and y displacements of its bore nodes, N/m; outer surface fixed."""
     mesh = bush.build_mesh()
-    free, factor = _at_rest(bush, mesh)
+    free, _, factor = held_stiffness(bush.solid(mesh))
     places = (np.cumsum(free) - 1)[_bore_places(mesh)]
     unit = np.zeros((int(free.sum()), len(places)))
     unit[places, np.arange(len(places))] = 1.0
@@ -68,7 +68,7 @@ def bore_stiffness(bush: ANCFBush) -> np.ndarray:
 def displacements_at_rest(bush: ANCFBush, bore_load: np.ndarray) -> np.ndarray:
     """Small displacements (n, 3) of all nodes, m, under loads (k,) on the bore nodes' x and y, N; outer surface fixed."""
     mesh = bush.build_mesh()
-    free, factor = _at_rest(bush, mesh)
+    free, _, factor = held_stiffness(bush.solid(mesh))
     load, u = np.zeros(free.size), np.zeros(free.size)
     load[_bore_places(mesh)] = bore_load
     u[free] = factor.solve(load[free])
@@ -77,12 +77,3 @@ def displacements_at_rest(bush: ANCFBush, bore_load: np.ndarray) -> np.ndarray:
 
 def _bore_places(mesh: BushMesh) -> np.ndarray:
     return (3 * mesh.bore.nodes[:, None] + np.arange(2)).ravel()
-
-
-def _at_rest(bush: ANCFBush, mesh: BushMesh) -> tuple[np.ndarray, SuperLU]:
-    """Free coordinates of a mesh with fixed outer surface and the factor of its stiffness at rest."""
-    solid = bush.solid(mesh)
-    free = np.ones(3 * len(mesh.nodes), dtype=bool)
-    free[(3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()] = False
-    K = solid.tangent(np.zeros_like(mesh.nodes))[free][:, free].tocsc()
-    return free, splu(K, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})

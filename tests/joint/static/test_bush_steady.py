@@ -10,7 +10,8 @@ from scipy.optimize import root
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.static_modes import bore_modes, pressure_loads
+from exudyn_ehd.solid.loads import pressure_loads
+from exudyn_ehd.solid.static_modes import bore_modes
 
 SPEED = 3000 * 2 * np.pi / 60
 C = 30e-6
