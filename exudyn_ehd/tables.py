@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import itertools
 import pathlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
+from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 
 # SI units by name; a name of several words may end in one of these.
@@ -67,6 +69,14 @@ def heads(names: Sequence[str], more: Mapping[str, str] | None = None) -> list[s
     return [name if unit is None else f"{name} [{unit}]" for name, unit in zip(names, units, strict=True)]
 
 
+def format_seconds(value: float) -> str:
+    """Time with a unit, three digits."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if value >= size:
+            return f"{value / size:.3g} {unit}"
+    return f"{value * 1e9:.3g} ns"
+
+
 def text_table(
     columns: Mapping[str, np.ndarray], *, more: Mapping[str, str] | None = None, remarks: Sequence[str] = ()
 ) -> str:
@@ -87,10 +97,38 @@ def write_csv(
     more: Mapping[str, str] | None = None,
     remarks: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Write columns (n,) as CSV under heads with units; numbers read back bit for bit; ``remarks`` are columns of text at the end."""
+    """Write columns (n,) as CSV under heads with units.
+
+    Numbers read back bit for bit; ``remarks`` are columns of text at the end.
+    """
     remarks = remarks or {}
+    head = [*heads(list(columns), more), *remarks]
+    values = (
+        [*(repr(float(value)) for value in row), *(texts[k] for texts in remarks.values())]
+        for k, row in enumerate(zip(*columns.values(), strict=True))
+    )
+    write_rows(path, itertools.chain([head], values))
+
+
+def write_rows(
+    path: str | pathlib.Path, rows: Iterable[Sequence[object]], *, notes: Iterable[str] = (), line_end: str = "\r\n"
+) -> None:
+    """Write rows, the first of them heads, as CSV; ``notes`` stand above them as lines ``# ...``."""
     with replacing(path) as file:
-        writer = csv.writer(file)
-        writer.writerow([*heads(list(columns), more), *remarks])
-        for k, row in enumerate(zip(*columns.values(), strict=True)):
-            writer.writerow([*(repr(float(value)) for value in row), *(texts[k] for texts in remarks.values())])
+        file.writelines(f"# {note}\n" for note in notes)
+        csv.writer(file, lineterminator=line_end).writerows(rows)
+
+
+def read_rows(path: str | pathlib.Path, head: Sequence[str]) -> tuple[list[dict[str, str]], list[str]]:
+    """Rows by head, and the notes, of a file of `write_rows`.
+
+    Raises
+    ------
+    InputError
+        If the file has other columns than ``head``.
+    """
+    lines = pathlib.Path(path).read_text(encoding="utf-8").splitlines()
+    reader = csv.DictReader(line for line in lines if not line.startswith("# "))
+    if list(reader.fieldnames or ()) != list(head):
+        raise InputError(f"{path} must have the columns {list(head)}, got {reader.fieldnames}.")
+    return list(reader), [line.removeprefix("# ") for line in lines if line.startswith("# ")]

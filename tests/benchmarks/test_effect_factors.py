@@ -13,9 +13,9 @@ import pytest
 
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.seams import Effects
-from exudyn_ehd.studies import effect_costs
-from exudyn_ehd.studies.costs import format_costs
-from exudyn_ehd.studies.growth import plain_bearing
+from tests.benchmarks.accuracy.costs import effects
+from tests.benchmarks.accuracy.costs.growth import plain_bearing
+from tests.benchmarks.accuracy.table import format_costs
 
 pytestmark = pytest.mark.benchmark
 
@@ -37,32 +37,32 @@ AT_REST = np.tile([13e-6, 5e-6, 1e-4, -1.5e-4, 1e-3, -1e-3, 0.05, 0.02, 250.0, 0
 
 
 def test_effects_on_the_orbit():
-    found = effect_costs.measure_effects(EVALUATION_LIMITS, blocks=3, rounds=12, progress=lambda text: None)
+    found = effects.measure_effects(EVALUATION_LIMITS, blocks=3, rounds=12, progress=lambda text: None)
     print("\n" + format_costs(found))
-    factors = {cost.what: cost.factor for cost in found if cost.per == effect_costs.EVALUATION}
+    factors = {cost.what: cost.factor for cost in found if cost.per == effects.EVALUATION}
     assert not [cost for cost in found if cost.failure]
     for name, limit in EVALUATION_LIMITS.items():
         assert factors[name] < MARGIN * limit, name
 
 
 @pytest.mark.parametrize("name", STEP_LIMITS)
-@pytest.mark.parametrize("base", [effect_costs.PLAIN, effect_costs.CONSERVING], ids=["swift", "elrod"])
+@pytest.mark.parametrize("base", [effects.PLAIN, effects.CONSERVING], ids=["swift", "elrod"])
 def test_law_at_rest(name, base):
     """Only two models in turns: the short history of a lumped temperature is sensitive to what else the processor's cache holds."""
-    law = name if base == effect_costs.PLAIN else f"{base}, {name}"
-    models = {n: build_model(plain_bearing(**SMALLER, **effect_costs.CASES[n].options)) for n in (base, law)}
-    times = effect_costs.block(models, AT_REST, 80)
+    law = name if base == effects.PLAIN else f"{base}, {name}"
+    models = {n: build_model(plain_bearing(**SMALLER, **effects.CASES[n].options)) for n in (base, law)}
+    times = effects.block(models, AT_REST, 80)
     factor = times[law][1] / times[base][1]
     print(f"{law}: {factor:.2f}")
     assert factor < MARGIN * STEP_LIMITS[name]
 
 
 @pytest.mark.parametrize("tangent", [False, True], ids=["force", "force and tangent"])
-@pytest.mark.parametrize("name", [effect_costs.PLAIN, "`Gumbel`", *effect_costs.FILMS])
+@pytest.mark.parametrize("name", [effects.PLAIN, "`Gumbel`", *effects.FILMS])
 def test_reduced_films(benchmark, name, tangent):
     """The orbit with and without tangents."""
-    model = build_model(plain_bearing(**effect_costs.CASES[name].options))
-    states = effect_costs.orbit()
+    model = build_model(plain_bearing(**effects.CASES[name].options))
+    states = effects.orbit()
 
     def run():
         for state in states:
@@ -75,8 +75,8 @@ def test_reduced_films(benchmark, name, tangent):
 
 def test_impedance_map_in_microseconds():
     """Target 5 us per evaluation, with its tangent."""
-    model = build_model(plain_bearing(**effect_costs.CASES["`ImpedanceMap`"].options))
-    states = effect_costs.orbit()
+    model = build_model(plain_bearing(**effects.CASES["`ImpedanceMap`"].options))
+    states = effects.orbit()
     best = math.inf
     for _ in range(8):
         start = time.process_time()
@@ -92,7 +92,7 @@ def test_off_costs_nothing():
     off = dict.fromkeys(("contact", "asperity", "roughness", "wear", "profile", "thermal", "bush"))
     described = build_model(plain_bearing(**off, supply=()))
     models = {"described": described, "bare": type(described)(described.bearing, effects=Effects())}
-    times = effect_costs.block(models, effect_costs.orbit(), 40)
+    times = effects.block(models, effects.orbit(), 40)
     ratio = times["described"][0] / times["bare"][0]
     print(f"{ratio:.3f}")
     assert abs(ratio - 1.0) < 0.03

@@ -12,7 +12,7 @@ import math
 import numpy as np
 import pytest
 
-from exudyn_ehd.studies import bush_costs
+from tests.benchmarks.accuracy.costs import bushes
 
 pytestmark = pytest.mark.benchmark
 
@@ -23,11 +23,11 @@ NODAL = {"`ANCFBush`, 4 x 1 x 24 elements": 0.06, "`ANCFBush`, 4 x 2 x 40 elemen
 
 @pytest.mark.parametrize("name", MODAL)
 def test_modal_step_over_the_rigid_one(name):
-    names = bush_costs.CASES[name].base, name
+    names = bushes.CASES[name].base, name
     best, counts = dict.fromkeys(names, math.inf), {}
     for _ in range(8):
         for case in names:
-            spent, counts[case] = bush_costs.run(bush_costs.CASES[case], bush_costs.CASES[case].steps)
+            spent, counts[case] = bushes.run(bushes.CASES[case], bushes.CASES[case].steps)
             best[case] = min(best[case], spent)
     for case in names:
         print(f"{case}: {1e3 * best[case]:.2f} ms per step, {counts[case]:.2f} iterations")
@@ -39,8 +39,8 @@ def test_modal_step_over_the_rigid_one(name):
 def test_film_jacobian_grows_with_the_modes():
     """From k to k^2 between 31 and 107 modes; with 31 at most 1.2 ms."""
     pairs = ((0.04, False), (0.02, False), (0.04, True), (0.02, True))
-    runs = dict(bush_costs.jacobian_run(bush_costs.modal(tolerance, tilted)) for tolerance, tilted in pairs)
-    times = {k: min(bush_costs.seconds(call) for _ in range(300)) for k, call in runs.items()}
+    runs = dict(bushes.jacobian_run(bushes.modal(tolerance, tilted)) for tolerance, tilted in pairs)
+    times = {k: min(bushes.seconds(call) for _ in range(300)) for k, call in runs.items()}
     k, t = np.array(list(times)), np.array(list(times.values()))
     power = np.polyfit(np.log(k), np.log(t), 1)[0]
     print({modes: f"{1e3 * best:.2f} ms" for modes, best in times.items()}, f"power {power:.2f}")
@@ -49,7 +49,7 @@ def test_film_jacobian_grows_with_the_modes():
 
 @pytest.mark.parametrize("name", NODAL)
 def test_nodal_step(name):
-    case = bush_costs.CASES[name]
-    best = min(bush_costs.run(case, 2 * case.steps)[0] for _ in range(3))
+    case = bushes.CASES[name]
+    best = min(bushes.run(case, 2 * case.steps)[0] for _ in range(3))
     print(f"{1e3 * best:.1f} ms per step (limit {1e3 * NODAL[name]:.0f})")
     assert best < NODAL[name]

@@ -18,7 +18,7 @@ from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.studies import effect_costs
+from tests.benchmarks.accuracy.costs import effects
 
 pytestmark = pytest.mark.benchmark
 
@@ -30,7 +30,7 @@ GRIDS = [(64, 16), (128, 12), (96, 24)]
 
 
 def _orbit(bearing):
-    return effect_costs.orbit(bearing.radial_clearance, SPEED, 720)
+    return effects.orbit(bearing.radial_clearance, SPEED, 720)
 
 
 class _Follower:

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14
-from exudyn_ehd.studies.bush_costs import assembly_run as assembly
-from exudyn_ehd.studies.bush_costs import deformed_solid
+from tests.benchmarks.accuracy.costs.bushes import assembly_run as assembly
+from tests.benchmarks.accuracy.costs.bushes import deformed_solid
 
 pytestmark = pytest.mark.benchmark
 

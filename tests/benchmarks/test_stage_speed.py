@@ -10,13 +10,15 @@ from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.studies import effect_costs, growth, moving_catalogue, order
-from exudyn_ehd.studies.setting import Integration, Setting
+from tests.benchmarks.accuracy import order
+from tests.benchmarks.accuracy.costs import effects, growth
+from tests.benchmarks.accuracy.scenes import measured
+from tests.benchmarks.accuracy.scenes.setting import Integration, Setting
 
 # processor time: what other processes of the machine do is no cost of the film
 pytestmark = pytest.mark.benchmark(timer=time.process_time)
 GRIDS = [(48, 6), (96, 10), (192, 16)]
-CLOSURES = (effect_costs.PLAIN, *effect_costs.CLOSURES)
+CLOSURES = (effects.PLAIN, *effects.CLOSURES)
 
 
 def _stage_runs(grid):
@@ -60,23 +62,21 @@ def test_stage(benchmark, stage, grid):
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_closure(benchmark, closure, grid):
     """The orbit with tangents and accepted steps."""
-    benchmark.pedantic(effect_costs.benchmark_run(closure, grid), rounds=8, warmup_rounds=1)
+    benchmark.pedantic(effects.benchmark_run(closure, grid), rounds=8, warmup_rounds=1)
 
 
-@pytest.mark.parametrize("effect", [effect_costs.PLAIN, *effect_costs.EFFECTS, *effect_costs.WITH_CONSERVING])
+@pytest.mark.parametrize("effect", [effects.PLAIN, *effects.EFFECTS, *effects.WITH_CONSERVING])
 def test_effect(benchmark, effect):
     """The same on 96 x 10."""
-    benchmark.pedantic(effect_costs.benchmark_run(effect), rounds=8, warmup_rounds=1)
+    benchmark.pedantic(effects.benchmark_run(effect), rounds=8, warmup_rounds=1)
 
 
 @pytest.mark.parametrize("scene", ["orbit", "slider_pin", "big_end", "whirl", "start_stop"])
 def test_steps_of_a_scene(benchmark, scene):
     """A whole run of every moving scene of the studies on 64 x 8."""
-    place = moving_catalogue.SCENES[scene]()
+    place = measured.SCENES[scene]()
     run = place.prepare(
-        Setting(
-            label="64 x 8", family="", model="", options={"film": moving_catalogue.CHEAP}, integration=Integration()
-        )
+        Setting(label="64 x 8", family="", model="", options={"film": measured.CHEAP}, integration=Integration())
     )
     outcome = run()
     benchmark.pedantic(run, rounds=3)

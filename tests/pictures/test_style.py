@@ -2,7 +2,6 @@
 
 import inspect
 import io
-import pathlib
 
 import exudyn.plot
 import matplotlib
@@ -10,7 +9,6 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-import exudyn_ehd
 from exudyn_ehd.pictures.animation import Frames
 from exudyn_ehd.pictures.bearing3d import plot_bearing
 from exudyn_ehd.pictures.bush import Frame, contour_figure
@@ -20,10 +18,10 @@ from exudyn_ehd.pictures.orbit import plot_orbit
 from exudyn_ehd.pictures.style import TYPE_SIZE, styled
 from exudyn_ehd.pictures.traces import plot_traces
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.studies.pictures import summary_figure, work_precision
-from exudyn_ehd.studies.table import read_rows
+from tests.benchmarks.accuracy.report.pictures import summary_figure, work_precision
+from tests.benchmarks.accuracy.table import DATA, Row, read_table
 
-ROWS, _ = read_rows(pathlib.Path(exudyn_ehd.__file__).parent / "studies" / "data" / "steady_800_film.csv")
+ROWS, _ = read_table(DATA / "steady_800_film.csv", Row)
 
 # what other programs leave: mbs.PlotSensor of Exudyn the first
 LEFT_BEHIND = {

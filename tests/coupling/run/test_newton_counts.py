@@ -6,7 +6,7 @@ import exudyn as exu
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.studies import bush_costs
+from tests.benchmarks.accuracy.costs import bushes
 
 # iterations and Jacobians per step, as the guide gives them
 FULL = {
@@ -26,9 +26,9 @@ MODIFIED = {
 
 
 def counts(name, modified, steps=60):
-    case = bush_costs.CASES[name]
-    mbs = bush_costs.scene(case.bush, bush_costs.OFFSET if case.tilted else 0.0)
-    settings = bush_costs.settings(steps, case.solver)
+    case = bushes.CASES[name]
+    mbs = bushes.scene(case.bush, bushes.OFFSET if case.tilted else 0.0)
+    settings = bushes.settings(steps, case.solver)
     settings.timeIntegration.newton.useModifiedNewton = modified
     if case.sparse:
         settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
@@ -44,7 +44,7 @@ def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, state
     found = {name: counts(name, modified) for name in stated}
     for name, (iterations, jacobians) in found.items():
         print(f"{name}: {iterations:.2f} iterations, {jacobians:.2f} Jacobians per step")
-        base = bush_costs.CASES[name].base
+        base = bushes.CASES[name].base
         if base:
             assert iterations < found[base][0] + 2.0 and jacobians < found[base][1] + 2.0
         # half an iteration for other processors' rounding
