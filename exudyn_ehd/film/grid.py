@@ -15,10 +15,23 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from exudyn_ehd.status import InputError, require_integer, require_number
+
+
+class Mesh(NamedTuple):
+    """Metric of a `FilmGrid` as kernels take it: its arrays of the same names, and ``area`` (n, m) of the control volumes."""
+
+    width_x: np.ndarray
+    width_z: np.ndarray
+    link_x: np.ndarray
+    link_z: np.ndarray
+    fixed: np.ndarray
+    area: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +73,12 @@ class FilmGrid:
     def shape(self) -> tuple[int, int]:
         """(n, m): vertices in theta and z, the ends included."""
         return self.x.size, self.z.size
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The metric for kernels; ``fixed`` is this grid's own array."""
+        area = np.outer(self.width_x, self.width_z)
+        return Mesh(self.width_x, self.width_z, self.link_x, self.link_z, self.fixed, area)
 
     def coarser(self) -> FilmGrid | None:
         """Grid with every second vertex, or None if it can't be halved; only used to guess active sets."""

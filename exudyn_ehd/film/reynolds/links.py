@@ -13,9 +13,20 @@ Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pre
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+class FilmState(NamedTuple):
+    """A film as unknowns, (n, m) each: scaled pressure, film fraction, and whether the pressure is a vertex's unknown, else its fill."""
+
+    P: np.ndarray
+    fill: np.ndarray
+    full: np.ndarray
 
 
 @njit(cache=True, fastmath=_FAST)
