@@ -8,7 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.banded.ldl import factor_band
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.reynolds import links as reynolds
 
 
@@ -78,27 +80,37 @@ def dense_matrix() -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
     return build
 
 
+class Factors(NamedTuple):
+    """A column diagonally dominant matrix A with a full band and its L and U; A + A^T and its symmetric factor."""
+
+    A: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    inverse: np.ndarray
+    symmetric: np.ndarray
+    band: np.ndarray
+    band_inverse: np.ndarray
+
+
 @pytest.fixture(scope="session")
-def banded() -> Callable[[int, int, int], np.ndarray]:
-    """A column diagonally dominant matrix with a full band, by size, width and seed."""
+def factors() -> Callable[[int, int], Factors]:
+    """`Factors` of a random matrix by size and half-bandwidth."""
 
-    def make(count, width, seed):
-        A = -np.random.default_rng(seed).uniform(size=(count, count))
-        A[np.abs(np.subtract.outer(np.arange(count), np.arange(count))) > width] = 0.0
-        A[np.diag_indices(count)] = 1.1 + np.maximum(np.abs(A).sum(axis=0), np.abs(A).sum(axis=1))
-        return A
-
-    return make
-
-
-@pytest.fixture(scope="session")
-def bands() -> Callable[[np.ndarray, int], tuple[np.ndarray, np.ndarray]]:
-    """Lower and upper band of a matrix in the solvers' storage."""
-
-    def make(A, width):
+    def bands(A, width):
         lower, upper = (np.zeros((len(A) + PAD, width + 1 + PAD)) for _ in range(2))
         for d in range(min(width, len(A) - 1) + 1):
             upper[: len(A) - d, d], lower[: len(A) - d, d] = np.diagonal(A, d), np.diagonal(A, -d)
         return lower, upper
+
+    def make(count, width):
+        A = -np.random.default_rng(count).uniform(size=(count, count))
+        A[np.abs(np.subtract.outer(np.arange(count), np.arange(count))) > width] = 0.0
+        A[np.diag_indices(count)] = 1.1 + np.maximum(np.abs(A).sum(axis=0), np.abs(A).sum(axis=1))
+        symmetric = A + A.T
+        band, (lower, upper) = bands(symmetric, width)[1], bands(A, width)
+        inverse, band_inverse = np.zeros(count), np.zeros(count)
+        assert factor_lu(lower, upper, count, width, inverse)
+        assert factor_band(band, count, width, 0, band_inverse)
+        return Factors(A, lower, upper, inverse, symmetric, band, band_inverse)
 
     return make

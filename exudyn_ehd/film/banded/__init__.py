@@ -2,8 +2,10 @@
 
 Module map
 ----------
-ldl        symmetric matrices: blocked L D L^T, folded ring
-lu         non-symmetric matrices, without pivoting
-columns    many right-hand sides side by side
-tiles      the same in tiles
+numbering     unknowns on a ring of columns: cut or folded
+workspace     every buffer of a film
+ldl           symmetric matrices: blocked L D L^T
+lu            non-symmetric matrices, without pivoting
+substitution  a handful of right-hand sides, for both factors
+many_sides    dozens of them, as columns and tiles
 """

@@ -1,8 +1,6 @@
 """Banded L U without pivoting for the film's non-symmetric systems (mass-conserving cavitation, elastic liner).
 
 The matrices are column diagonally dominant with non-positive off-diagonals, or close to it, so that no pivoting is needed.
-Numbering as in `exudyn_ehd.film.banded.ldl`: the ring is cut where two neighbouring columns do not couple, else folded.
-
 Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``, d = 0 .. w, zeros behind; ``lower[:, 0]`` is not used.
 After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``upper`` U's rows, ``inv_diag = 1 / diag(U)``.
 """
@@ -14,7 +12,6 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-PAD = 4
 # Rows longer than this are worth vector instructions.
 WIDEST_BY_PANELS = 64
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -22,8 +19,6 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _KEEP_ORDER = {"contract", "nsz", "arcp"}
 _unsigned: Any = np.uint64
 _0, _1, _2, _3 = (_unsigned(k) for k in range(4))
-# A step back, as unsigned indices wrap.
-_back = _unsigned(2**64 - 1)
 
 
 @njit(cache=True)
@@ -232,184 +227,3 @@ def _factor_blocked(lower, upper, count, width, inv_diag_out):
                             tl[t] -= fu * low[d + t]
         k += block
     return True
-
-
-@njit(cache=True, fastmath=_KEEP_ORDER)
-def _forward_backward(column_form, row_form, unit_forward, inv_diag, count, width, x):
-    """Forward with columns ``column_form`` (unit if unit_forward), backward with rows ``row_form``, in place, by threes."""
-    col = column_form.reshape(-1)
-    row = row_form.reshape(-1)
-    stride = _unsigned(column_form.shape[1])
-    along = stride - _1
-    w = _unsigned(width)
-    size = _unsigned(count)
-    whole = size - size % _3
-    for panel in range(whole // _3):
-        r = _3 * panel
-        reach = min(w, r)
-        k = r - reach
-        own = r * stride
-        at = own - reach * along
-        s0, s1, s2 = x[r], x[r + _1], x[r + _2]
-        for _ in range(reach):
-            f = x[k]
-            s0 -= col[at] * f
-            s1 -= col[at + _1] * f
-            s2 -= col[at + _2] * f
-            at += along
-            k += _1
-        if not unit_forward:
-            s0 *= inv_diag[r]
-        s1 -= col[own + _1] * s0
-        if not unit_forward:
-            s1 *= inv_diag[r + _1]
-        s2 = s2 - col[own + _2] * s0 - col[own + stride + _1] * s1
-        if not unit_forward:
-            s2 *= inv_diag[r + _2]
-        x[r], x[r + _1], x[r + _2] = s0, s1, s2
-    for r in range(whole, size):
-        s0 = x[r]
-        for k in range(r - min(w, r), r):
-            s0 -= col[k * stride + r - k] * x[k]
-        x[r] = s0 if unit_forward else s0 * inv_diag[r]
-    for q in range(size - whole):
-        r = size - _1 - q
-        s0 = x[r]
-        for d in range(_1, min(w, q) + _1):
-            s0 -= row[r * stride + d] * x[r + d]
-        x[r] = s0 * inv_diag[r] if unit_forward else s0
-    for panel in range(whole // _3):
-        r = whole - _3 * panel - _3
-        row0 = r * stride
-        row1 = row0 + along
-        row2 = row1 + along
-        s0, s1, s2 = x[r], x[r + _1], x[r + _2]
-        reach = min(w, size - r - _3)
-        d = _2 + reach
-        for _ in range(reach):
-            f = x[r + d]
-            s0 -= row[row0 + d] * f
-            s1 -= row[row1 + d] * f
-            s2 -= row[row2 + d] * f
-            d -= _1
-        if unit_forward:
-            s2 *= inv_diag[r + _2]
-        s1 -= row[row1 + _2] * s2
-        if unit_forward:
-            s1 *= inv_diag[r + _1]
-        s0 = s0 - row[row0 + _2] * s2 - row[row0 + _1] * s1
-        if unit_forward:
-            s0 *= inv_diag[r]
-        x[r], x[r + _1], x[r + _2] = s0, s1, s2
-
-
-@njit(cache=True, inline="always")
-def _subtract_fours(a, at, between, step, x0, x1, x2, x3, k, forth, reach, s00, s01, s02, s03, s10, s11, s12, s13, s20, s21, s22, s23):  # fmt: skip
-    """A tile s of 3 x 4 less ``reach`` threes of ``a``, ``between`` apart and ``step`` further, times the places k, k + forth, ... of x."""
-    for _ in range(reach):
-        f0, f1, f2 = a[at], a[at + between], a[at + between + between]
-        g = x0[k]
-        s00 -= f0 * g
-        s10 -= f1 * g
-        s20 -= f2 * g
-        g = x1[k]
-        s01 -= f0 * g
-        s11 -= f1 * g
-        s21 -= f2 * g
-        g = x2[k]
-        s02 -= f0 * g
-        s12 -= f1 * g
-        s22 -= f2 * g
-        g = x3[k]
-        s03 -= f0 * g
-        s13 -= f1 * g
-        s23 -= f2 * g
-        at += step
-        k += forth
-    return s00, s01, s02, s03, s10, s11, s12, s13, s20, s21, s22, s23
-
-
-@njit(cache=True, fastmath=_KEEP_ORDER)
-def _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count, width, x):
-    """As `_forward_backward` for four right-hand sides x (4, count) at once."""
-    col = column_form.reshape(-1)
-    row = row_form.reshape(-1)
-    stride = _unsigned(column_form.shape[1])
-    along = stride - _1
-    w = _unsigned(width)
-    size = _unsigned(count)
-    whole = size - size % _3
-    x0, x1, x2, x3 = x[0], x[1], x[2], x[3]
-    i0 = i1 = i2 = 1.0
-    for panel in range(whole // _3):
-        r = _3 * panel
-        n1, n2 = r + _1, r + _2
-        reach = min(w, r)
-        own = r * stride
-        s00, s01, s02, s03, s10, s11, s12, s13, s20, s21, s22, s23 = _subtract_fours(
-            col, own - reach * along, _1, along, x0, x1, x2, x3, r - reach, _1, reach, x0[r], x1[r], x2[r], x3[r],
-            x0[n1], x1[n1], x2[n1], x3[n1], x0[n2], x1[n2], x2[n2], x3[n2],
-        )  # fmt: skip
-        if not unit_forward:
-            i0, i1, i2 = inv_diag[r], inv_diag[n1], inv_diag[n2]
-        f10, f20, f21 = col[own + _1], col[own + _2], col[own + stride + _1]
-        s00, s01, s02, s03 = s00 * i0, s01 * i0, s02 * i0, s03 * i0
-        x0[r], x1[r], x2[r], x3[r] = s00, s01, s02, s03
-        s10, s11 = (s10 - f10 * s00) * i1, (s11 - f10 * s01) * i1
-        s12, s13 = (s12 - f10 * s02) * i1, (s13 - f10 * s03) * i1
-        x0[n1], x1[n1], x2[n1], x3[n1] = s10, s11, s12, s13
-        x0[n2], x1[n2] = (s20 - f20 * s00 - f21 * s10) * i2, (s21 - f20 * s01 - f21 * s11) * i2
-        x2[n2], x3[n2] = (s22 - f20 * s02 - f21 * s12) * i2, (s23 - f20 * s03 - f21 * s13) * i2
-    for y in x:
-        for r in range(whole, size):
-            s = y[r]
-            for k in range(r - min(w, r), r):
-                s -= col[k * stride + r - k] * y[k]
-            y[r] = s if unit_forward else s * inv_diag[r]
-        for q in range(size - whole):
-            r = size - _1 - q
-            s = y[r]
-            for d in range(_1, min(w, q) + _1):
-                s -= row[r * stride + d] * y[r + d]
-            y[r] = s * inv_diag[r] if unit_forward else s
-    i0 = i1 = i2 = 1.0
-    for panel in range(whole // _3):
-        r = whole - _3 * panel - _3
-        n1, n2 = r + _1, r + _2
-        own = r * stride
-        d = _2 + min(w, size - r - _3)
-        s00, s01, s02, s03, s10, s11, s12, s13, s20, s21, s22, s23 = _subtract_fours(
-            row, own + d, along, _back, x0, x1, x2, x3, r + d, _back, d - _2, x0[r], x1[r], x2[r], x3[r],
-            x0[n1], x1[n1], x2[n1], x3[n1], x0[n2], x1[n2], x2[n2], x3[n2],
-        )  # fmt: skip
-        if unit_forward:
-            i0, i1, i2 = inv_diag[r], inv_diag[n1], inv_diag[n2]
-        f01, f02, f12 = row[own + _1], row[own + _2], row[own + stride + _1]
-        s20, s21, s22, s23 = s20 * i2, s21 * i2, s22 * i2, s23 * i2
-        x0[n2], x1[n2], x2[n2], x3[n2] = s20, s21, s22, s23
-        s10, s11 = (s10 - f12 * s20) * i1, (s11 - f12 * s21) * i1
-        s12, s13 = (s12 - f12 * s22) * i1, (s13 - f12 * s23) * i1
-        x0[n1], x1[n1], x2[n1], x3[n1] = s10, s11, s12, s13
-        x0[r], x1[r] = (s00 - f02 * s20 - f01 * s10) * i0, (s01 - f02 * s21 - f01 * s11) * i0
-        x2[r], x3[r] = (s02 - f02 * s22 - f01 * s12) * i0, (s03 - f02 * s23 - f01 * s13) * i0
-
-
-@njit(cache=True)
-def _solve_all(column_form, row_form, unit_forward, inv_diag, count, width, x):
-    full = x.shape[0] - x.shape[0] % 4
-    for k in range(0, full, 4):
-        _forward_backward_four(column_form, row_form, unit_forward, inv_diag, count, width, x[k : k + 4])
-    for k in range(full, x.shape[0]):
-        _forward_backward(column_form, row_form, unit_forward, inv_diag, count, width, x[k])
-
-
-@njit(cache=True)
-def solve_lu(lower, upper, inv_diag, count, width, x):
-    """Solve ``A x = b`` for every row of x (k, count), in place, four at a time."""
-    _solve_all(lower, upper, True, inv_diag, count, width, x)
-
-
-@njit(cache=True)
-def solve_lu_transposed(lower, upper, inv_diag, count, width, x):
-    """Solve ``A^T x = b`` for every row of x (k, count), in place, four at a time."""
-    _solve_all(upper, lower, False, inv_diag, count, width, x)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.columns import solve_columns
+from exudyn_ehd.film.banded.many_sides import solve_columns
 from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, STRIDE, TAKEN, WIDTH
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}

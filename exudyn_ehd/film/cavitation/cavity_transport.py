@@ -22,83 +22,16 @@ Not every film is of that kind: where a row is cavitated all around, or the fron
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.columns import solve_columns_from
-from exudyn_ehd.film.banded.ldl import assemble_band, factor_band, number_along, solve_one
+from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.banded.many_sides import solve_columns_from
+from exudyn_ehd.film.banded.numbering import number_along
+from exudyn_ehd.film.banded.substitution import solve_ldl
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-# Longest front in rows of the grid: beyond, V costs more than it spares.
-FRONT_ROWS = 2
 FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, TAKEN = range(6)
-
-
-class Transport(NamedTuple):
-    """Arrays of one factor, for a grid of ``size = n m`` vertices.
-
-    Attributes
-    ----------
-    shape : (6,) int array
-        Number of full vertices, of front vertices, columns of V, half-bandwidth of A, length of the lists K and R.
-    number : (n, m) int array
-        Unknown of a full vertex, else -1.
-    place : (n, m) int array
-        Place of a cavitated vertex along the flow, else -1.
-    along, across : (size,) int arrays
-        Place of the cavitated neighbour upstream in theta and in z, or -1.
-    by_along, by_across, inverse : (size,) arrays
-        U and 1 / D.
-    driven_from, driven_to, driven_by : (4 size,) arrays
-        K as a list: full unknown, place, conductance.
-    taken_from, taken_to, taken_by : (2 size,) arrays
-        R as a list: place, front vertex, flux of a full film.
-    front : (size,) int array
-        Full unknown of every front vertex, ascending.
-    band, diagonal : (size, >= 2 m + 6), (size,) arrays
-        Factor of A.
-    spread : (size * 2 (m + 2),) array
-        V, as (full vertices, columns).
-    loop : (2 (m + 2), 2 (m + 2)) array
-        Factor L U of I - G, unit L.
-    """
-
-    shape: np.ndarray
-    number: np.ndarray
-    place: np.ndarray
-    along: np.ndarray
-    across: np.ndarray
-    by_along: np.ndarray
-    by_across: np.ndarray
-    inverse: np.ndarray
-    driven_from: np.ndarray
-    driven_to: np.ndarray
-    driven_by: np.ndarray
-    taken_from: np.ndarray
-    taken_to: np.ndarray
-    taken_by: np.ndarray
-    front: np.ndarray
-    band: np.ndarray
-    diagonal: np.ndarray
-    spread: np.ndarray
-    loop: np.ndarray
-
-
-def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
-    """Buffers for a grid of n columns and m rows; ``band`` (n m, >= 2 m + 6) is taken over."""
-    size, longest = n * m, FRONT_ROWS * (m + 2)
-
-    def places(count: int) -> np.ndarray:
-        return np.zeros(count, dtype=np.int64)
-
-    return Transport(
-        places(6), np.zeros((n, m), dtype=np.int64), np.zeros((n, m), dtype=np.int64), places(size), places(size),
-        np.zeros(size), np.zeros(size), np.zeros(size), places(4 * size), places(4 * size), np.zeros(4 * size),
-        places(2 * size), places(2 * size), np.zeros(2 * size), places(size), band, np.zeros(size),
-        np.zeros(size * longest), np.zeros((longest, longest)),
-    )  # fmt: skip
 
 
 @njit(cache=True)
@@ -359,7 +292,7 @@ def solve_transport(t, unknowns, x):
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
     placed = unknowns - count
     P, fill = x[:count], x[count:unknowns]
-    solve_one(t.band, t.diagonal, count, t.shape[WIDTH], P)
+    solve_ldl(t.band, t.diagonal, count, t.shape[WIDTH], P.reshape(1, count))
     if fronts > 0:
         trial = fill.copy()
         _carry(t, placed, P, trial)

@@ -27,20 +27,21 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import PAD, Workspace, number_cells, solve_four_by_dots, solve_one
-from exudyn_ehd.film.banded.lu import factor_lu, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.banded.tiles import solve_in_tiles
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.many_sides import solve_in_tiles
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.banded.workspace import PAD, Workspace
+from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.film.cavitation.cavity_transport import (
     FULL_COUNT,
     WIDTH,
-    Transport,
     factor_transport,
     flow_direction,
     solve_transport,
-    transport_buffers,
 )
-from exudyn_ehd.film.cavitation.closures import FilmSystem, SwiftStieber
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.status import Status, require_number
 
 MAX_NEWTON_STEPS = 60
@@ -100,10 +101,9 @@ class ElrodAdams:
         inverse_step: float,
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
-        lower, upper = _lu_buffers(work)
         ok, steps, work.count, work.width, work.carried = solve_elrod(
             s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, inverse_step, mass_old, s.fixed, s.cavity_pressure,
-            work.active, work.order, work.number, lower, upper, work.inv_diag, _transport(work), work.unknowns, s.pressure,
+            work.active, work.order, work.number, work.lower, work.upper, work.inv_diag, work.transport, work.unknowns, s.pressure,
             s.fill,
         )  # fmt: skip
         return ok, steps
@@ -137,50 +137,27 @@ class ElrodAdams:
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         if work.carried:
-            t = _transport(work)
+            t = work.transport
             if t.shape[FULL_COUNT] < work.count:
                 reduce_transposed(t, work.count, rhs)
-            fours = rhs.shape[0] - rhs.shape[0] % 4
-            for k in range(0, fours, 4):
-                solve_four_by_dots(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k : k + 4])
-            for k in range(fours, rhs.shape[0]):
-                solve_one(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs[k])
+            solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs)
             return
-        lower, upper = _lu_buffers(work)
-        solve_lu_transposed(lower, upper, work.inv_diag, work.count, work.width, rhs)
+        solve_lu_transposed(work.lower, work.upper, work.inv_diag, work.count, work.width, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every column of tiles rhs, in place."""
         if work.carried:
             for tile in rhs:
-                solve_transport_transposed(_transport(work), work.count, tile[: work.count])
+                solve_transport_transposed(work.transport, work.count, tile[: work.count])
             return
-        lower, upper = _lu_buffers(work)
-        solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
+        solve_in_tiles(work.upper, work.lower, work.inv_diag, False, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
         if work.carried:
-            solve_transport(_transport(work), work.count, rhs)
+            solve_transport(work.transport, work.count, rhs)
             return
-        lower, upper = _lu_buffers(work)
-        solve_lu(lower, upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
-
-
-def _lu_buffers(work: Workspace) -> tuple[np.ndarray, np.ndarray]:
-    """The workspace's L and U, allocated when first needed."""
-    if work.lower is None or work.upper is None:
-        n, m = work.shape
-        work.lower = np.zeros((n * m, 2 * m + 2 + PAD))
-        work.upper = np.zeros((n * m, 2 * m + 2 + PAD))
-    return work.lower, work.upper
-
-
-def _transport(work: Workspace) -> Transport:
-    """The workspace's factor along the flow, allocated when first needed; it shares the symmetric band."""
-    if work.transport is None:
-        work.transport = transport_buffers(*work.shape, work.band)
-    return work.transport
+        solve_lu(work.lower, work.upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
 
 
 @njit(cache=True)

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from numba import njit
 
-from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.banded.workspace import PAD
 
 
 @njit(cache=True)

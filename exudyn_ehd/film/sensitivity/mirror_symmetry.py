@@ -16,7 +16,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.tiles import TILE
+from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}

@@ -33,8 +33,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.lu import solve_lu_transposed
-from exudyn_ehd.film.cavitation.elrod_adams import _lu_buffers
+from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.flux import FluxEffect, link_flux
@@ -414,7 +413,7 @@ class CompliantFilmSolver(FilmSolver):
             active = ~g.fixed if conserves or self.kind == CLIPPED else w.active
             factor(self, self.system.linear_pressure, self.film_fill, active, conserves, 0.0)
             self.exact = True
-        lower, upper = _lu_buffers(w)
+        lower, upper = w.lower, w.upper
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
         fields = np.empty((rhs.shape[0], *g.shape))
         scatter(rhs, w.order, w.count, fields)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT, _lu_buffers
+from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
 from exudyn_ehd.film.solvers.compliant_newton import factor_compliant, newton_step, take_step
 from exudyn_ehd.film.solvers.liner_newton import (
     BALANCED,
@@ -66,7 +66,7 @@ def newton(
     # what a journal centred but for rounding makes of the speed
     slight = LEAST_PRESSURE * (abs(s.vx) + abs(s.vz))
     noise = flow_rounding(s.columns.H, s.columns.HF, s.rigid[2], s.vx, s.vz, g.width_x, g.width_z, g.link_x)
-    lower, upper = _lu_buffers(w)
+    lower, upper = w.lower, w.upper
     factored, last, last_size, moved = held, 0.0, 0.0, 0.0
     for step in range(1, MAX_NEWTON_STEPS + 1):
         fresh = not factored
@@ -150,7 +150,7 @@ def _polish(
 ) -> None:
     """Add one more step to P and fill alone, for the balances where the gap is wide: what is left changes the gaps by next to nothing."""
     s, w, pc = solver, solver.work, solver.system.cavity_pressure
-    lower, upper = _lu_buffers(w)
+    lower, upper = w.lower, w.upper
     error, _, peak, _ = newton_step(
         s.residual, P, s.load, s.fields, s.contact_G, s.beta, s.full, w.order, w.count, w.width, lower, upper, w.inv_diag,
         s.cavity_load, False, least, opening, w.unknowns,
@@ -178,7 +178,7 @@ def factor(
     g, w = solver.grid, solver.work
     if not solver.answered:
         solver.answer(P, fill, conserves, extra)
-    lower, upper = _lu_buffers(w)
+    lower, upper = w.lower, w.upper
     ok, w.count, w.width = factor_compliant(
         solver.fields, solver.link_flux, P, fill, solver.full, solver.gain_P, solver.gain_fill, solver.vx, solver.vz,
         g.width_x, g.width_z, g.link_x, g.link_z, solver.links, active, w.order, w.number, lower, upper, w.inv_diag,

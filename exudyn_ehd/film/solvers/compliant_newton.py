@@ -8,8 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import number_cells
-from exudyn_ehd.film.banded.lu import PAD, add_flux, factor_lu, solve_lu
+from exudyn_ehd.film.banded.lu import add_flux, factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.solvers.compliant_columns import BEND, DRIVE, LOAD_P, SLOPE, columns_of
 from exudyn_ehd.film.solvers.compliant_links import across, across_slopes, along, along_slopes
 

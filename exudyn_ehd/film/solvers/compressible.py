@@ -24,9 +24,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.lu import solve_lu
-from exudyn_ehd.film.banded.tiles import solve_in_tiles
-from exudyn_ehd.film.cavitation.elrod_adams import _lu_buffers
+from exudyn_ehd.film.banded.many_sides import solve_in_tiles
+from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -92,7 +91,7 @@ class CompressibleFilmSolver(FilmSolver):
         # without a history, what full films store grows with the gap
         grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
         self.film = Balance(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
-        lower, upper = _lu_buffers(w)
+        lower, upper = w.lower, w.upper
         self.buffers = Buffers(
             w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
             np.zeros(shape), np.zeros(shape),

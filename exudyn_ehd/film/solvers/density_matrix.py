@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import PAD
+from exudyn_ehd.film.banded.workspace import PAD
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 _unsigned: Any = np.uint64

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import number_cells
-from exudyn_ehd.film.banded.lu import factor_lu, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
 from exudyn_ehd.film.solvers.density_matrix import (
     assemble_compressible,

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import Workspace
-from exudyn_ehd.film.cavitation.closures import FilmSystem
+from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.flux import (

@@ -35,8 +35,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.banded.lu import solve_lu_transposed
-from exudyn_ehd.film.cavitation.elrod_adams import _lu_buffers
+from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.flux import LinkFlux, plain_flux
@@ -255,7 +254,7 @@ class LinerFilmSolver(FilmSolver):
 
     def _newton(self, P: np.ndarray, inverse: float, delta_old: np.ndarray) -> tuple[bool, int]:
         g, w, s = self.grid, self.work, self.system
-        lower, upper = _lu_buffers(w)
+        lower, upper = w.lower, w.upper
         ok, steps, self.exact, w.count, w.width = solve_liner(
             self.rigid, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
             self.kind, self.beta, inverse, delta_old, not w.warm, self.held and w.warm, w.count, w.width, w.active, w.order,
@@ -280,7 +279,7 @@ class LinerFilmSolver(FilmSolver):
             P[:] = found
             return False
         select(P, self.residual, g.fixed, s.cavity_pressure, self.kind, w.active)
-        lower, upper = _lu_buffers(w)
+        lower, upper = w.lower, w.upper
         self.exact, w.count, w.width = factor_liner(
             self.rigid, P, self.vx, self.vz, g.width_x, g.width_z, g.link_x, g.link_z, self.links, g.fixed, s.cavity_pressure,
             self.kind, self.beta, inverse, w.active, w.order, w.number, lower, upper, w.inv_diag,
@@ -342,7 +341,7 @@ class LinerFilmSolver(FilmSolver):
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
         w, g, s = self.work, self.grid, self.system
-        lower, upper = _lu_buffers(w)
+        lower, upper = w.lower, w.upper
         if not self.exact:
             active = ~g.fixed if self.kind == CLIPPED else w.active
             factor_liner(

@@ -10,8 +10,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import PAD, number_cells
-from exudyn_ehd.film.banded.lu import add_flux, factor_lu, solve_lu
+from exudyn_ehd.film.banded.lu import add_flux, factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.workspace import PAD
 
 MAX_NEWTON_STEPS = 80
 # Shares of the peak pressure: the error at which the solution stands, and steps too small for the residual to fall any further.

@@ -28,9 +28,11 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.ldl import number_cells
-from exudyn_ehd.film.banded.lu import PAD, factor_lu, solve_lu_transposed
-from exudyn_ehd.film.cavitation.closures import clip_pressure
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu_transposed
+from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.cavitation.active_set import clip_pressure
 from exudyn_ehd.film.reynolds.links import conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
 from exudyn_ehd.status import InputError, Status, require_integer, require_number

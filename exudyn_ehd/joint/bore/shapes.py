@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.film.banded.tiles import TILE
+from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import add_transposed, put_rows, sparse_product
 from exudyn_ehd.film.sensitivity.mirror_symmetry import (

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.banded.ldl import number_cells
-from exudyn_ehd.film.banded.lu import PAD, factor_lu, solve_lu
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import assemble_energy, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant

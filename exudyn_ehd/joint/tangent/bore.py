@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.banded.tiles import make_tiles
+from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     gap_stencil,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.sparse import diags
 
-from exudyn_ehd.film.banded.tiles import make_tiles
+from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
 from exudyn_ehd.joint.tangent.bore import Balances, wrench_weights
 from exudyn_ehd.joint.tangent.elastic_product import TangentProduct

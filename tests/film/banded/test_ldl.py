@@ -7,16 +7,10 @@ import pytest
 import scipy.sparse as sp
 from scipy.sparse.linalg import spsolve
 
-from exudyn_ehd.film.banded.ldl import (
-    Workspace,
-    assemble_band,
-    factor_band,
-    number_cells,
-    solve_four_by_dots,
-    solve_many,
-    solve_one,
-)
-from exudyn_ehd.film.cavitation.closures import gather_rhs, solve_on_active
+from exudyn_ehd.film.banded.ldl import assemble_band
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.cavitation.active_set import gather_rhs, solve_on_active
 
 
 def _active_sets(n, m, seed):
@@ -141,30 +135,6 @@ def test_known_neighbours_move_to_the_right(make_film, dense_matrix):
     known = np.where(active, 0.0, P).ravel()
     expected = (f.b.ravel() - dense_matrix(f.kx, f.kz) @ known)[w.order[:count]]
     np.testing.assert_allclose(rhs, expected, rtol=1e-12, atol=1e-13)
-
-
-@pytest.mark.parametrize("count_rhs", (1, 3, 4, 5, 6, 8, 9, 10))
-def test_many_right_hand_sides(make_film, dense_matrix, count_rhs):
-    f = make_film(7, 14, 6)
-    active = _active_sets(14, 6, 7)["ring"]
-    w = Workspace(14, 6)
-    count, width = number_cells(active, f.kx, w.order, w.number)
-    assemble_band(f.kx, f.kz, w.number, w.order, count, width, 0, w.band)
-    assert factor_band(w.band, count, width, 0, w.inv_diag)
-    b = np.random.default_rng(8).normal(size=(count_rhs, count))
-    many = b.copy()
-    solve_many(w.band, w.inv_diag, count, width, many)
-    o = w.order[:count]
-    A = dense_matrix(f.kx, f.kz)[np.ix_(o, o)]
-    np.testing.assert_allclose(many, np.linalg.solve(A, b.T).T, rtol=1e-9, atol=1e-12)
-    for k in range(count_rhs):
-        one = b[k].copy()
-        solve_one(w.band, w.inv_diag, count, width, one)
-        np.testing.assert_allclose(many[k], one, rtol=1e-11, atol=1e-13)
-    if count_rhs >= 4:
-        four = b[:4].copy()
-        solve_four_by_dots(w.band, w.inv_diag, count, width, four)
-        np.testing.assert_allclose(four, many[:4], rtol=1e-11, atol=1e-13)
 
 
 def test_a_singular_film_is_refused(make_film):

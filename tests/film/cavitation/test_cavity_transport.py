@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.ldl import number_cells, solve_many
-from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.workspace import PAD, transport_buffers
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.film.cavitation.cavity_transport import (
     FRONT,
@@ -13,7 +14,6 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     factor_transport,
     flow_direction,
     solve_transport,
-    transport_buffers,
 )
 from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod
 
@@ -104,7 +104,7 @@ def test_against_dense(name):
     rows[0, t.shape[FULL_COUNT] :] = 0.0
     known[t.shape[FULL_COUNT] :, 0] = 0.0
     reduce_transposed(t, count, rows)
-    solve_many(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
+    solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
     np.testing.assert_allclose(rows.T, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
     assert (t.shape[FRONT] > 0) == (arguments[11].sum() < count and along * arguments[2].max() != 0.0)
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.ldl import number_cells
-from exudyn_ehd.film.banded.lu import PAD
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
 
 SHAPE = (8, 5)

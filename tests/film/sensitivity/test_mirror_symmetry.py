@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.tiles import TILE, make_tiles
+from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
 from exudyn_ehd.film.sensitivity.mirror_symmetry import (
     BLOCK,
     courses,

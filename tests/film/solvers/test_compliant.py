@@ -248,7 +248,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     s.balance(P, fill, conserves, 0.5, s.nothing)
     s.answer(P, fill, conserves, 0.5)
     free = ~SMALL.fixed
-    from exudyn_ehd.film.banded.ldl import number_cells
+    from exudyn_ehd.film.banded.numbering import number_cells
     from exudyn_ehd.film.solvers.compliant_newton import assemble_compliant
 
     w, g = s.work, SMALL

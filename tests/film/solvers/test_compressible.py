@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.banded.ldl import number_cells
+from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.density_matrix import (
     Balance,

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.banded.tiles import TILE, make_tiles
+from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore
 

@@ -1,0 +1,95 @@
+"""Numbering of a film's unknowns on a ring of columns.
+
+The matrix of the finite-volume Reynolds equation couples a cell with its two neighbours in theta and its two neighbours in z. Active
+cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of unknown rows. The ring of columns is
+cut
+
+* at a column without active cells or at a missing link (then one column couples only with the next one), or, if there is none,
+* nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
+
+The numbering, and with it every bit of the solution, depends on the active set alone and not on how it was found.
+"""
+
+from __future__ import annotations
+
+from numba import njit
+
+
+@njit(cache=True)
+def number_cells(active, kx, order_out, number_out):
+    """Number the active cells; returns (count, half-bandwidth).
+
+    Parameters
+    ----------
+    active : (n, m) bool array
+    kx : (n, m) float array
+        Conductance between columns i and i+1 (cyclic); a column of zeros is a missing link.
+    order_out : (n m,) int array
+        Flat cell index ``i m + j`` of every unknown.
+    number_out : (n, m) int array
+        Unknown of every cell, -1 if not active.
+    """
+    return number_along(active, kx, 1, order_out, number_out)
+
+
+@njit(cache=True)
+def number_along(active, kx, forth, order_out, number_out):
+    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1)."""
+    n, m = active.shape
+    first = -1
+    for i in range(n):
+        empty = True
+        for j in range(m):
+            if active[i, j]:
+                empty = False
+                break
+        if empty:
+            first = (i + forth + n) % n
+            break
+    if first < 0:
+        for i in range(n):
+            linked = False
+            for j in range(m):
+                if kx[i, j] != 0.0:
+                    linked = True
+                    break
+            if not linked:
+                first = (i + 1) % n if forth > 0 else i
+                break
+    count = 0
+    for s in range(n):
+        if first >= 0:
+            i = (first + forth * s + n) % n
+        elif s % 2 == 0:
+            i = s // 2
+        else:
+            i = n - 1 - s // 2
+        for j in range(m):
+            if active[i, j]:
+                number_out[i, j] = count
+                order_out[count] = i * m + j
+                count += 1
+            else:
+                number_out[i, j] = -1
+    width = 1
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a = number_out[i, j]
+            if a >= 0 and kx[i, j] != 0.0:
+                b = number_out[nxt, j]
+                if b >= 0:
+                    width = max(width, abs(b - a))
+    return count, width
+
+
+@njit(cache=True)
+def first_changed_row(order, old_order, old_count, count, width):
+    """Row up to which a matrix with this numbering equals the one with the old numbering; a multiple of 4."""
+    same = 0
+    while same < count and same < old_count and order[same] == old_order[same]:
+        same += 1
+    if same == count and same == old_count:
+        return count
+    row = max(0, same - width)
+    return row - row % 4

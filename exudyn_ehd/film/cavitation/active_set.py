@@ -1,0 +1,190 @@
+"""The film on a set of active vertices, and Swift-Stieber's iteration over such sets.
+
+The primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after finitely many steps (Hintermueller,
+Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47 (2009) 3001).
+
+Symbols: kx, kz conductances of the links, b right-hand side, P pressure, pc cavity pressure, all scaled (see
+`exudyn_ehd.film.reynolds.links`); active: P is unknown.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
+from exudyn_ehd.film.banded.substitution import solve_ldl
+
+MAX_ACTIVE_SET_STEPS = 200
+# A vertex leaves the film if its pressure is below the cavity's by more than this share of the peak: about 100 roundings.
+ACTIVE_SET_TOLERANCE = 1e-13
+
+
+class FilmSystem:
+    """One film problem and its solution, as arrays that closures read and write.
+
+    Attributes
+    ----------
+    kx, kz, b : (n, m) arrays
+        Link conductances and right-hand side.
+    fixed : (n, m) bool array
+        Vertices whose entry of ``pressure`` is prescribed.
+    cavity_pressure : float
+        Scaled.
+    pressure : (n, m) array
+        In: prescribed values at fixed vertices. Out: the film's pressure.
+    linear_pressure : (n, m) array
+        Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure clips.
+    fx, fz, H, H_t, area : (n, m) arrays
+        Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
+    fill, mass_old : (n, m) arrays
+        Film fraction, and the old value of fill H; only used by closures that conserve mass.
+    inverse_step : float
+        1 / time step since ``mass_old``, 1/s; 0: steady.
+    """
+
+    def __init__(self, shape: tuple[int, int], fixed: np.ndarray, area: np.ndarray, clips: bool, fills: bool) -> None:
+        self.kx = np.zeros(shape)
+        self.kz = np.zeros(shape)
+        self.b = np.zeros(shape)
+        self.fixed = fixed
+        self.cavity_pressure = 0.0
+        self.pressure = np.zeros(shape)
+        self.linear_pressure = np.zeros(shape) if clips else self.pressure
+        self.fx, self.fz = np.zeros(shape), np.zeros(shape)
+        self.H, self.H_t = np.ones(shape), np.zeros(shape)
+        self.area = area
+        self.inverse_step = 0.0
+        empty = np.ones(shape) if fills else np.ones((0, 0))
+        self.fill, self.mass_old = empty, empty.copy()
+
+
+@njit(cache=True)
+def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
+    """Right-hand side of the active vertices, with the known pressures of inactive neighbours moved over."""
+    n, m = b.shape
+    i = 0
+    for r in range(count):
+        j = order[r] - i * m
+        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        s = b[i, j]
+        if not active[prv, j]:
+            s += kx[prv, j] * P[prv, j]
+        if not active[nxt, j]:
+            s += kx[i, j] * P[nxt, j]
+        if j > 0 and not active[i, j - 1]:
+            s += kz[i, j - 1] * P[i, j - 1]
+        if j + 1 < m and not active[i, j + 1]:
+            s += kz[i, j] * P[i, j + 1]
+        rhs_out[r] = s
+
+
+@njit(cache=True)
+def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P):
+    """Factor and solve on the active vertices; P holds the known pressures elsewhere. Returns (ok, count, width).
+
+    ``old_order``, ``old_count`` and ``old_width`` describe the factor in ``band`` if it belongs to the same coefficients; only the
+    rows behind the first change are then factored again. ``old_count`` = 0: there is none.
+    """
+    count, width = number_cells(active, kx, order, number)
+    # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
+    first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else 0
+    assemble_band(kx, kz, number, order, count, width, first, band)
+    if not factor_band(band, count, width, first, inv_diag):
+        return False, count, width
+    gather_rhs(kx, kz, b, active, order, count, P, unknowns)
+    solve_ldl(band, inv_diag, count, width, unknowns.reshape(1, unknowns.size))
+    flat = P.reshape(-1)
+    for r in range(count):
+        flat[order[r]] = unknowns[r]
+    return True, count, width
+
+
+@njit(cache=True)
+def update_active_set(kx, kz, b, fixed, pc, active, P):
+    """One policy step from the pressures of the last one: who leaves, who joins; returns the number of changes.
+
+    An active vertex leaves if its pressure is below pc; another one joins if its residual at pc is not positive. Inactive
+    pressures are then set to pc.
+    """
+    n, m = b.shape
+    peak = 0.0
+    for i in range(n):
+        for j in range(m):
+            peak = max(peak, abs(P[i, j] - pc))
+    floor = pc - ACTIVE_SET_TOLERANCE * peak
+    changes = 0
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            if active[i, j]:
+                if P[i, j] < floor:
+                    active[i, j] = False
+                    changes += 1
+            elif not fixed[i, j]:
+                r = kx[i, j] * (pc - P[nxt, j]) + kx[prv, j] * (pc - P[prv, j]) - b[i, j]
+                if j > 0:
+                    r += kz[i, j - 1] * (pc - P[i, j - 1])
+                if j + 1 < m:
+                    r += kz[i, j] * (pc - P[i, j + 1])
+                if r <= 0.0:
+                    active[i, j] = True
+                    changes += 1
+    for i in range(n):
+        for j in range(m):
+            if not active[i, j] and not fixed[i, j]:
+                P[i, j] = pc
+    return changes
+
+
+@njit(cache=True)
+def solve_active_set(kx, kz, b, fixed, pc, active, order, old_order, number, band, inv_diag, unknowns, P):
+    """Swift-Stieber film; returns (ok, steps, count, width). ``active`` is the start and, on return, the result."""
+    n, m = b.shape
+    for i in range(n):
+        for j in range(m):
+            if fixed[i, j]:
+                active[i, j] = False
+            elif not active[i, j]:
+                P[i, j] = pc
+    count = 0
+    width = 1
+    for step in range(MAX_ACTIVE_SET_STEPS):
+        old_count, old_width = count, width
+        for r in range(old_count):
+            old_order[r] = order[r]
+        ok, count, width = solve_on_active(
+            kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P
+        )
+        if not ok:
+            return False, step + 1, count, width
+        if update_active_set(kx, kz, b, fixed, pc, active, P) == 0:
+            for i in range(n):
+                for j in range(m):
+                    if active[i, j] and P[i, j] < pc:
+                        P[i, j] = pc
+            return True, step + 1, count, width
+    return False, MAX_ACTIVE_SET_STEPS, count, width
+
+
+@njit(cache=True)
+def clip_pressure(linear, fixed, pc, P_out, active_out):
+    """Gumbel: P = max(linear, pc) at free vertices; active marks where nothing was cut."""
+    n, m = linear.shape
+    for i in range(n):
+        for j in range(m):
+            if fixed[i, j]:
+                P_out[i, j] = linear[i, j]
+                active_out[i, j] = False
+            elif linear[i, j] >= pc:
+                P_out[i, j] = linear[i, j]
+                active_out[i, j] = True
+            else:
+                P_out[i, j] = pc
+                active_out[i, j] = False
