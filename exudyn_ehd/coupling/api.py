@@ -7,6 +7,7 @@ import importlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
@@ -15,7 +16,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.axial import hold_axially
 from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.items.resolve import Item
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
@@ -68,7 +69,7 @@ class LubricatedJoint(JointResults):
         The nodal bush, if the bearing has one.
     """
 
-    def __init__(self, mbs: Any, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
+    def __init__(self, mbs: exu.MainSystem, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
         self.mbs = mbs
         self.name = name
         self.element = element
@@ -203,7 +204,7 @@ class LubricatedJoint(JointResults):
 
 
 def CreateLubricatedJoint(
-    mbs: Any,
+    mbs: exu.MainSystem,
     name: str = "",
     itemNumbers: Sequence[Any] = (None, None),
     position: Sequence[float] | np.ndarray = (),
@@ -312,7 +313,7 @@ def CreateLubricatedJoint(
 
 
 def attach(
-    mbs: Any,
+    mbs: exu.MainSystem,
     model: JointModel,
     housing: Item,
     journal: Item,
@@ -346,9 +347,9 @@ def attach(
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
     if not any(isinstance(side, MarkerSide) for side in sides):
-        check_start(model.bearing, (housing, sides[0]), (journal, sides[1]))
+        check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]))
     # planar bodies can't move axially: the constraint would be empty, and singular
-    flat = all(item.planar or item.kind == kinematics.GROUND for item in (housing, journal))
+    flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
     held = isinstance(axial, Held) and not flat
     element = FilmElement(model, *sides, name)
     nodes, more = [node for side in sides for node in side.nodes], {}

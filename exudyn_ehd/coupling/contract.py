@@ -1,13 +1,20 @@
-"""What the film element needs from a joint's film model, and what it gives."""
+"""What the coupling asks of a film, of a side of a joint and of a joint's element; names for Exudyn's types."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Any, Protocol, SupportsInt, TypeAlias
 
+import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.status import Status
+
+# Exudyn's index types exist at run time, but not in its type stubs.
+_indices: Any = exu
+NodeIndex, ObjectIndex, MarkerIndex = _indices.NodeIndex, _indices.ObjectIndex, _indices.MarkerIndex
+Index: TypeAlias = SupportsInt
+"""Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
 
 
 class Geometry(Protocol):
@@ -71,3 +78,34 @@ class JointModel(Protocol):
         ``spin`` the journal's angle against the housing about the axis [rad].
         """
         ...
+
+
+class Side(Protocol):
+    """What carries the frame of one side of a joint.
+
+    Attributes
+    ----------
+    nodes : list
+        Nodes it depends on.
+    size : int
+        Number n of their coordinates.
+    frame : ndarray (3, 6)
+    jac : ndarray (4, 3, n)
+        Work arrays of `exudyn_ehd.coupling.kinematics.rigid_nodes`.
+    """
+
+    nodes: list[Index]
+    size: int
+    frame: np.ndarray
+    jac: np.ndarray
+
+    def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
+        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
+
+    def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
+        """Fill Vq, Wq; `update` must have run at the same state."""
+
+    def geometric(
+        self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""

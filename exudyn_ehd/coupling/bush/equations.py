@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -48,7 +47,7 @@ class BushEquations:
     mass_rate: float
 
     def motion(
-        self, q: np.ndarray, q_t: np.ndarray, configuration: Any = exu.ConfigurationType.Current
+        self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at Exudyn's state in ``configuration``."""
         u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)

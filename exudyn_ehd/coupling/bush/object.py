@@ -12,24 +12,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
-from exudyn_ehd.coupling.items import carrier as carriers
-from exudyn_ehd.coupling.items.carrier import Carrier
+from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
+from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.resolve import resolve
-from exudyn_ehd.coupling.kinematics.sides import Side
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Load
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import InputError, require_vector
-
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -91,32 +87,32 @@ class FlexibleBush:
     equations : BushEquations
     """
 
-    mbs: Any
+    mbs: exu.MainSystem
     mesh: BushMesh
     solid: TotalLagrange
     objectNumber: Any
     nodeNumbers: np.ndarray
     equations: BushEquations
 
-    def coordinates(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the object's coordinates q without reference values."""
         places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
         return np.asarray(self.mbs.systemData.GetODE2Coordinates(configuration))[places]
 
-    def coordinates_t(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+    def coordinates_t(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the rates dq/dt of the object's coordinates."""
         places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
         return np.asarray(self.mbs.systemData.GetODE2Coordinates_t(configuration))[places]
 
-    def displacements(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+    def displacements(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the displacement of all mesh nodes, shape (n, 3) [m], global frame."""
         return self._motion(configuration)[0]
 
-    def velocities(self, configuration: Any = exu.ConfigurationType.Current) -> np.ndarray:
+    def velocities(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the velocity of all mesh nodes, shape (n, 3) [m/s], global frame."""
         return self._motion(configuration)[1]
 
-    def _motion(self, configuration: Any) -> tuple[np.ndarray, np.ndarray]:
+    def _motion(self, configuration: exu.ConfigurationType) -> tuple[np.ndarray, np.ndarray]:
         return self.equations.motion(self.coordinates(configuration), self.coordinates_t(configuration), configuration)
 
     @property
@@ -124,13 +120,15 @@ class FlexibleBush:
         """Stress recovery for `displacements`."""
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
-    def energy(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[float, float]:
+    def energy(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> tuple[float, float]:
         """Return strain and kinetic energy [J]."""
         v = self.velocities(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
         return self.solid.energy(self.displacements(configuration)), kinetic
 
-    def momentum(self, configuration: Any = exu.ConfigurationType.Current) -> tuple[np.ndarray, np.ndarray]:
+    def momentum(
+        self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
+    ) -> tuple[np.ndarray, np.ndarray]:
         """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s]."""
         flow = self.solid.scalar_mass @ self.velocities(configuration)
         positions = self.solid.mesh.nodes + self.displacements(configuration)
@@ -138,7 +136,7 @@ class FlexibleBush:
 
 
 def CreateFlexibleBush(
-    mbs: Any,
+    mbs: exu.MainSystem,
     name: str = "",
     *,
     bush: ANCFBush,
@@ -194,7 +192,7 @@ def CreateFlexibleBush(
     )  # fmt: skip
 
 
-def _carried(mbs: Any, number: Any, place: np.ndarray, rotation: np.ndarray) -> Mount:
+def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np.ndarray) -> Mount:
     """Side and initial frame of the bush's frame on an item."""
     where = "CarriedOuter.itemNumber"
     item = resolve(mbs, where, number)
@@ -205,7 +203,7 @@ def _carried(mbs: Any, number: Any, place: np.ndarray, rotation: np.ndarray) -> 
             f"CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis {rotation[:, 2]}."
         )
     side = item.side(item.position if item.is_marker else place, rotation)
-    return Mount(side, carriers.initial_frame(mbs, item, side), item.position if item.is_marker else place)
+    return Mount(side, initial_frame(mbs, item, side), item.position if item.is_marker else place)
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,7 +226,7 @@ class Mount:
 
 
 def add_bush(
-    mbs: Any,
+    mbs: exu.MainSystem,
     name: str,
     bush: ANCFBush,
     mount: Mount | None,
@@ -285,7 +283,7 @@ def add_bush(
     if mount is None:
         u, v = np.zeros_like(X), start[0] + np.cross(start[1], X - position)
     else:
-        u, v = carriers.positions(mount.initial, local) - X, carriers.velocities(mount.initial, local)
+        u, v = positions(mount.initial, local) - X, velocities(mount.initial, local)
     numbers = _add_nodes(mbs, equations, u, v)
     return _add_object(mbs, name, mesh, equations, numbers, show, color)
 
@@ -303,7 +301,7 @@ def _held_directions(mesh: BushMesh, supports: Sequence[Support]) -> np.ndarray:
     return held
 
 
-def _add_nodes(mbs: Any, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+def _add_nodes(mbs: exu.MainSystem, equations: BushEquations, u: np.ndarray, v: np.ndarray) -> np.ndarray:
     numbers = np.full(len(u), -1)
     X, held = equations.solid.mesh.nodes, equations.held
     v = np.where(held, 0.0, v)
@@ -322,7 +320,7 @@ def _add_nodes(mbs: Any, equations: BushEquations, u: np.ndarray, v: np.ndarray)
 
 
 def _add_object(
-    mbs: Any,
+    mbs: exu.MainSystem,
     name: str,
     mesh: BushMesh,
     equations: BushEquations,
@@ -339,7 +337,7 @@ def _add_object(
     def mass(mbs, t, itemNumber, q, q_t):
         return equations.mass(np.array(q))
 
-    nodes = [exu.NodeIndex(int(i)) for i in numbers[numbers >= 0]]
+    nodes = [NodeIndex(int(i)) for i in numbers[numbers >= 0]]
     carrier = equations.carrier
     arguments: dict = {"forceUserFunction": force, "jacobianUserFunction": jacobian}
     if carrier is None:

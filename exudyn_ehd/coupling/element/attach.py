@@ -5,19 +5,19 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
+from exudyn_ehd.coupling.contract import NodeIndex, Side
 from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.coupling.items.resolve import Item
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
@@ -27,15 +27,13 @@ from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.static_modes import BoreModes
 from exudyn_ehd.status import Status
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 SIZE = 10
 # Period over 2 pi of a mode on its numerical mass, s.
 NUMERICAL_PERIOD = 1e-6
 
 
 def attach_bush(
-    mbs: Any,
+    mbs: exu.MainSystem,
     model: Any,
     items: tuple[Item, Item],
     sides: tuple[Side, Side],
@@ -100,7 +98,7 @@ def attach_bush(
     return element, {"massMatrix": _mass_matrix(rigid, mass)}
 
 
-def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
+def _settle_modes(mbs: exu.MainSystem, model: Any, sides: tuple[Side, Side]) -> None:
     """Let the modes of a reduced body start in equilibrium with the film, unless the scene has set them."""
     bush: ReducedBore = model.bearing.bush
     node = sides[0].nodes[-1]
@@ -113,7 +111,7 @@ def _settle_modes(mbs: Any, model: Any, sides: tuple[Side, Side]) -> None:
 
 
 def _attach_nodes(
-    mbs: Any,
+    mbs: exu.MainSystem,
     model: Any,
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
@@ -127,10 +125,10 @@ def _attach_nodes(
         u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
         for number, shift in zip(bush.nodeNumbers, u):
             if number >= 0 and shift.any():
-                node = exu.NodeIndex(int(number))
+                node = NodeIndex(int(number))
                 initial = np.array(mbs.GetNodeParameter(node, "initialCoordinates")) + shift
                 mbs.SetNodeParameter(node, "initialCoordinates", initial.tolist())
-    nodes = [exu.NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
+    nodes = [NodeIndex(int(i)) for i in bush.nodeNumbers[bush.mesh.bore.nodes]]
     return NodalFilmElement(model, *sides, nodes, name, bush)
 
 
@@ -159,6 +157,6 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) 
         bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
     motion = np.empty(SIZE)
-    joint_kinematics.relative_motion(sides[0].frame, sides[1].frame, motion)
+    relative.relative_motion(sides[0].frame, sides[1].frame, motion)
     settled = film.evaluate_steady(motion).status is Status.CONVERGED
     return film.coordinates.copy() if settled else None

@@ -10,17 +10,15 @@ from __future__ import annotations
 
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.element.rigid import FilmElement, Trial
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.solid.fe_bore import ReducedBore
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 SIZE = 10
 
 
@@ -39,7 +37,7 @@ class BoreFilmElement(FilmElement):
         For messages.
     """
 
-    def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str) -> None:
+    def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
         super().__init__(model, housing, journal, name)
         self.bore_nodes = nodes
         self._places: np.ndarray | None = None
@@ -49,7 +47,7 @@ class BoreFilmElement(FilmElement):
         """Number of coordinates of housing and journal."""
         return self.sides[0].size + self.sides[1].size
 
-    def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
+    def _read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         q, q_t = super()._read(mbs, configuration)
         if self._places is None:
             self._places = np.concatenate([mbs.systemData.GetNodeLTGODE2(int(node)) for node in self.bore_nodes])
@@ -58,7 +56,9 @@ class BoreFilmElement(FilmElement):
         q_t += np.asarray(data.GetODE2Coordinates_t(configuration))[self._places].tolist()
         return q, q_t
 
-    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+    def _move(
+        self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
+    ) -> np.ndarray:
         """Motion (10 + 2 k,): that of the rigid surfaces, then the bore's coordinates and rates."""
         if not self._bound:
             self._bind(mbs)
@@ -74,7 +74,7 @@ class BoreFilmElement(FilmElement):
         """Map (n, 6) from the wrench on the journal, joint frame, to generalized forces on housing and journal."""
         housing, journal = self.sides
         out = np.empty((self.rigid_size, 6))
-        joint_kinematics.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
+        relative.wrench_map(housing.frame, journal.frame, housing.jac, journal.jac, out)
         return out
 
 
@@ -93,14 +93,14 @@ class ModalFilmElement(BoreFilmElement):
     """
 
     def __init__(
-        self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str, stiffness: np.ndarray
+        self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str, stiffness: np.ndarray
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
         self.stiffness = stiffness
         self.inertia: ModalInertia | None = None
         self._weighed = False
 
-    def mass(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+    def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""
         assert self.inertia is not None
         if not self._bound:
@@ -124,9 +124,9 @@ class ModalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
         n, k = self.rigid_size, self.stiffness.size
-        joint_kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        relative.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        relative.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
         force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
         if self.inertia is not None:
             on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
@@ -134,19 +134,19 @@ class ModalFilmElement(BoreFilmElement):
             force[n:] += on_modes
         return force
 
-    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+    def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         evaluation: Any = trial.evaluation
         T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
         whole = np.empty((n + k, n + k))
-        joint_kinematics.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
+        relative.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
         if self.inertia is not None:
             by_place, by_rate = self.inertia.derivatives(*self._inertia_state(trial))
             places = np.r_[: self.sides[0].size, n : n + k]
             whole[np.ix_(places, places)] -= f_q * by_place + f_qt * by_rate
         return whole
 
-    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+    def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""
         model: Any = self.model
         if isinstance(model.bore.modes, ReducedBore):

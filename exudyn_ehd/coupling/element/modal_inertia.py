@@ -20,19 +20,16 @@ With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore answers t
 from __future__ import annotations
 
 import warnings
-from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Index, ObjectIndex, Side
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.items.resolve import body_of_node
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, Side, detached
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, detached
 from exudyn_ehd.solid.static_modes import BoreModes
 from exudyn_ehd.status import InputError
-
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 
 _CURRENT = exu.ConfigurationType.Current
 
@@ -41,7 +38,7 @@ _CURRENT = exu.ConfigurationType.Current
 INDEFINITE = -1e-6
 
 
-def require_heavy_housing(mbs: Any, node: Any, modes: BoreModes, name: str) -> None:
+def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, modes: BoreModes, name: str) -> None:
     """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it."""
     body = None if node is None else body_of_node(mbs, node)
     if body is None:
@@ -72,7 +69,7 @@ class ModalInertia:
         With mass.
     """
 
-    def __init__(self, mbs: Any, side: Side, modes: BoreModes) -> None:
+    def __init__(self, mbs: exu.MainSystem, side: Side, modes: BoreModes) -> None:
         assert modes.mass is not None
         self.mbs = mbs
         self.side: Side = detached(side)
@@ -98,7 +95,7 @@ class ModalInertia:
         n, k = len(places), len(self.modal_mass)
         whole = np.zeros((n + k, n + k))
         for number in range(data.NumberOfObjects()):
-            item = exu.ObjectIndex(number)
+            item = ObjectIndex(number)
             coordinates = np.asarray(data.GetObjectLTGODE2(item), dtype=int)
             here, there = np.nonzero(coordinates[:, None] == places)
             matrix = object_mass(mbs, item) if len(here) else None

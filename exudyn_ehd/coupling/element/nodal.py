@@ -16,10 +16,10 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
+from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.element.modal import SIZE, BoreFilmElement
 from exudyn_ehd.coupling.element.rigid import Trial
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.tangent.traction import BoreForces
 from exudyn_ehd.status import Status
 
@@ -39,7 +39,7 @@ class NodalFilmElement(BoreFilmElement):
     """
 
     def __init__(
-        self, model: Any, housing: Side, journal: Side, nodes: list[Any], name: str, bush: FlexibleBush
+        self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str, bush: FlexibleBush
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
         self.bush = bush
@@ -63,9 +63,9 @@ class NodalFilmElement(BoreFilmElement):
         """Nodal forces (count, 3, ...) of pressure and shear (count, 3, ...) and of the rest of minus the wrench (6, ...)."""
         x = self.arms @ self.sides[0].frame[:, :3]
         rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
-        return local + np.tensordot(joint_kinematics.spread_matrix(x), rest, 1)
+        return local + np.tensordot(relative.spread_matrix(x), rest, 1)
 
-    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray:
+    def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
         """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
         frame = self.sides[0].frame
         positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
@@ -89,14 +89,14 @@ class NodalFilmElement(BoreFilmElement):
         evaluation: Any = trial.evaluation
         housing, journal = self.sides
         n = self.rigid_size
-        joint_kinematics.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        relative.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        relative.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
         force[: housing.size] = 0.0
         force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
         return force
 
-    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         evaluation: Any = trial.evaluation
         wrench, nodal = evaluation.nodal_tangent(self.forces)
         T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
@@ -122,7 +122,7 @@ class NodalFilmElement(BoreFilmElement):
         return stiffness, damping
 
     def operator(
-        self, mbs: Any, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
+        self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> NodalTangent | None:
         """The matrix of `jacobian` as an operator, valid until the film's next evaluation; None if there is no film."""
         trial = self._try(mbs, q, q_t, _CURRENT, t)
@@ -180,7 +180,7 @@ class NodalTangent:
     f_q, f_qt : float
     """
 
-    def __init__(self, element: NodalFilmElement, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> None:
+    def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
         evaluation: Any = trial.evaluation
         self.film = evaluation.nodal_product(element.forces)
         self.factors = f_q, f_qt
@@ -192,7 +192,7 @@ class NodalTangent:
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
         self.turning = (self.frame[:, :2].T @ -_skew(omega)).T
         x = element.arms @ self.frame
-        self.spread, self.resultant = joint_kinematics.spread_matrix(x).reshape(-1, 6), resultant(x)
+        self.spread, self.resultant = relative.spread_matrix(x).reshape(-1, 6), resultant(x)
         if self.n_h:
             self.place, self.drift = element._housing_maps()
             self.turned = f_q * element._turning_forces(evaluation)

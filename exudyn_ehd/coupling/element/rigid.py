@@ -16,13 +16,13 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import advice
-from exudyn_ehd.coupling.contract import Evaluation, JointModel
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, Side, read_state
+from exudyn_ehd.coupling.contract import Evaluation, JointModel, Side
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, read_state
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import Record, eccentricity_ratios, make_row
-from exudyn_ehd.coupling.watch import solver_state as solvers
+from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
@@ -99,12 +99,10 @@ class FilmElement:
         self._bound = False
         self._loads = np.zeros((4, 3))
 
-    # --- user functions -------------------------------------------------------------------------------------------
-
-    def force(self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
         start = mbs.systemData.GetTime(_START_OF_STEP)
-        run = solvers.stored_solvers(mbs)
+        run = solver_state.stored_solvers(mbs)
         if start != self._start or run[0] is not self._run[0] or run[1] is not self._run[1]:
             self._accept(mbs, start, run)
         trial = self._try(mbs, q, q_t, _CURRENT, t)
@@ -116,7 +114,7 @@ class FilmElement:
         return self._generalized_force(trial)
 
     def jacobian(
-        self, mbs: Any, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
+        self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
         trial = self._try(mbs, q, q_t, _CURRENT, t)
@@ -129,14 +127,14 @@ class FilmElement:
         """Q (n,) at the trial, to which the sides' arrays belong."""
         assert trial.evaluation is not None
         housing, journal = self.sides
-        joint_kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        relative.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        joint_kinematics.generalized_force(housing.jac, journal.jac, self._loads, force)
+        relative.generalized_force(housing.jac, journal.jac, self._loads, force)
         return force
 
-    # --- evaluation -----------------------------------------------------------------------------------------------
-
-    def _try(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any, time: float) -> Trial:
+    def _try(
+        self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType, time: float
+    ) -> Trial:
         """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there."""
         # a list compares as a whole; other callers than Exudyn may hand over arrays
         q, q_t = list(q), list(q_t)
@@ -156,11 +154,15 @@ class FilmElement:
         self._trial = Trial(q, q_t, memory, step, motion, evaluation)
         return self._trial
 
-    def _move(self, mbs: Any, q: list[float], q_t: list[float], configuration: Any) -> np.ndarray:
+    def _move(
+        self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
+    ) -> np.ndarray:
         """Motion (10,) at a state, to which the sides' frames and Jp, Jr are brought."""
         return self._move_rigid(mbs, np.array(q), np.array(q_t), configuration)
 
-    def _move_rigid(self, mbs: Any, qv: np.ndarray, qv_t: np.ndarray, configuration: Any) -> np.ndarray:
+    def _move_rigid(
+        self, mbs: exu.MainSystem, qv: np.ndarray, qv_t: np.ndarray, configuration: exu.ConfigurationType
+    ) -> np.ndarray:
         if not self._bound:
             self._bind(mbs)
         housing, journal = self.sides
@@ -168,7 +170,7 @@ class FilmElement:
         housing.update(mbs, qv[:n], qv_t[:n], configuration)
         journal.update(mbs, qv[n:], qv_t[n:], configuration)
         motion = np.empty(10)
-        joint_kinematics.relative_motion(housing.frame, journal.frame, motion)
+        relative.relative_motion(housing.frame, journal.frame, motion)
         return motion
 
     def _spin(self) -> float:
@@ -177,40 +179,40 @@ class FilmElement:
         turn = housing.frame[:, :3].T @ journal.frame[:, 0]
         return math.atan2(turn[1], turn[0])
 
-    def _bind(self, mbs: Any) -> None:
+    def _bind(self, mbs: exu.MainSystem) -> None:
         for side in self.sides:
             if isinstance(side, MarkerSide):
                 side.bind(mbs)
         self._bound = True
 
-    def _jacobian(self, mbs: Any, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+    def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
         stiffness, damping = self._derivatives(mbs, trial)
         return -(f_q * stiffness + f_qt * damping)
 
-    def _derivatives(self, mbs: Any, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
         assert trial.evaluation is not None
         stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(trial.evaluation.tangent()))
         return stiffness, damping
 
     def _rigid_derivatives(
-        self, mbs: Any, trial: Trial, tangent: np.ndarray
+        self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
         assert trial.evaluation is not None
         housing, journal = self.sides
         n_h, n = housing.size, housing.size + journal.size
         q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
-        joint_kinematics.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
+        relative.global_loads(housing.frame, journal.frame, trial.evaluation.wrench, self._loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
         motion_q, motion_qt = np.empty((10, n)), np.empty((10, n))
-        joint_kinematics.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
+        relative.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
         stiffness, damping = np.zeros((n, n)), np.empty((n, n))
         housing.geometric(mbs, q[:n_h], self._loads[0], self._loads[1], stiffness[:n_h, :n_h])
         journal.geometric(mbs, q[n_h:], self._loads[2], self._loads[3], stiffness[n_h:, n_h:])
-        joint_kinematics.tangent_matrices(
+        relative.tangent_matrices(
             housing.frame,
             journal.frame,
             housing.jac,
@@ -224,11 +226,9 @@ class FilmElement:
         )
         return stiffness, damping, motion_q, motion_qt
 
-    # --- failures -------------------------------------------------------------------------------------------------
-
     def _fail(self, t: float, trial: Trial) -> None:
         """Return if the solver can still reject the step, else raise."""
-        if not solvers.can_reject_step(self._solver):
+        if not solver_state.can_reject_step(self._solver):
             raise FilmError(self._message(t, trial))
 
     def _message(self, t: float, trial: Trial) -> str:
@@ -244,7 +244,7 @@ class FilmElement:
             state = self._place(trial)
         explicit = (
             " An explicit solver can't repeat a step: use smaller ones, or an implicit solver."
-            if solvers.is_explicit(self._solver)
+            if solver_state.is_explicit(self._solver)
             else ""
         )
         return where + state + advice(trial.status, bearing) + explicit
@@ -294,18 +294,16 @@ class FilmElement:
             f"way out; {WAY_OUT}"
         )
 
-    # --- accepted steps -------------------------------------------------------------------------------------------
-
-    def _accept(self, mbs: Any, start: float, run: tuple[Any, Any]) -> None:
+    def _accept(self, mbs: exu.MainSystem, start: float, run: tuple[Any, Any]) -> None:
         """Record the state at the start of the current step, exactly as accepted, and let the film remember it."""
         resumed = False
         if run[0] is not self._run[0] or run[1] is not self._run[1]:
-            self._solver = solvers.running_solver(self._run, run)
+            self._solver = solver_state.running_solver(self._run, run)
             self._run = run
-            self._chatter = ChatterWatch(self.model.bearing) if solvers.is_explicit(self._solver) else None
+            self._chatter = ChatterWatch(self.model.bearing) if solver_state.is_explicit(self._solver) else None
             self._ringing = self._ringing_watch()
             # the time of a static solve is a load parameter: the film is the steady one
-            self._uses_memory = self.model.remembers and not solvers.is_static(self._solver)
+            self._uses_memory = self.model.remembers and not solver_state.is_static(self._solver)
             goes_on = self._goes_on(mbs, start)
             if not self._uses_memory or not goes_on:
                 self._memory = None
@@ -352,7 +350,7 @@ class FilmElement:
         if self._chatter is not None and row is not None and self._chatter.sees_chatter(start, trial.motion):
             raise FilmError(self._chatter_message(start, start - last, trial, self._chatter.error))
 
-    def _goes_on(self, mbs: Any, start: float) -> bool:
+    def _goes_on(self, mbs: exu.MainSystem, start: float) -> bool:
         """Whether a run goes on with the record: it starts behind it, and elsewhere than the run before, whose end has become the initial state.
 
         Where nothing has moved either run starts where the other ended.
@@ -361,22 +359,22 @@ class FilmElement:
         return start > self._record.last_time and (self._first != before or self._seen == before)
 
     def _ringing_watch(self) -> ringing.RingingWatch | None:
-        if solvers.is_explicit(self._solver) or solvers.is_static(self._solver):
+        if solver_state.is_explicit(self._solver) or solver_state.is_static(self._solver):
             return None
         bearing = self.model.bearing
         return ringing.RingingWatch(2.0 * bearing.journal_radius * bearing.length)
 
-    def _read(self, mbs: Any, configuration: Any) -> tuple[list[float], list[float]]:
+    def _read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""
         return read_state(mbs, self.sides, configuration)
 
-    def _first_memory(self, mbs: Any) -> Any:
+    def _first_memory(self, mbs: exu.MainSystem) -> Any:
         q, q_t = self._read(mbs, _START_OF_STEP)
         motion = self._move(mbs, q, q_t, _START_OF_STEP)
         self._trial = None
         return self.model.initial_history(motion) if np.isfinite(motion.sum()) else None
 
-    def _look(self, mbs: Any, time: float, configuration: Any) -> Trial:
+    def _look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
         """Evaluate the film at the state that Exudyn holds in ``configuration``."""
         q, q_t = self._read(mbs, configuration)
         trial = self._try(mbs, q, q_t, configuration, time)
@@ -396,7 +394,7 @@ class FilmElement:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
 
-    def current_row(self, mbs: Any) -> np.ndarray | None:
+    def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
         time = mbs.systemData.GetTime(_CURRENT)
         return self._row(time, self._look(mbs, time, _CURRENT))
@@ -409,24 +407,24 @@ class FilmElement:
     @property
     def is_idle(self) -> bool:
         """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
-        return solvers.is_finished(self._solver)
+        return solver_state.is_finished(self._solver)
 
-    def look_at_accepted(self, mbs: Any) -> tuple[float, Trial, Any]:
+    def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, Any]:
         """Time of the last accepted state, the film there, and the configuration; the model then holds that film's fields."""
         configuration = self._accepted()
         time = mbs.systemData.GetTime(configuration)
         return time, self._look(mbs, time, configuration), configuration
 
-    def fields(self, mbs: Any, time: float, configuration: Any) -> FilmFields:
+    def fields(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> FilmFields:
         """Fields of the film that was evaluated last, at the state in ``configuration``."""
         model: Any = self.model
         return film_fields(model, time, self.bush_displacement(mbs, configuration))
 
-    def bush_displacement(self, mbs: Any, configuration: Any) -> np.ndarray | None:
+    def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""
         return None
 
-    def remembered(self, mbs: Any) -> tuple[float, Any, np.ndarray]:
+    def remembered(self, mbs: exu.MainSystem) -> tuple[float, Any, np.ndarray]:
         """Time of the last accepted state, what the film remembers there, and the record up to it."""
         time, trial, _ = self.look_at_accepted(mbs)
         row, memory = self._row(time, trial), self._memory
@@ -448,7 +446,7 @@ class FilmElement:
         # the next run is a new one, whatever was run before
         self._run = (self, self)
 
-    def snapshot(self, mbs: Any) -> Any:
+    def snapshot(self, mbs: exu.MainSystem) -> Any:
         """The record, completed by the current state if that is later than the last recorded step."""
         final = None
         configuration = self._accepted()

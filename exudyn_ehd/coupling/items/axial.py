@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
@@ -14,7 +15,12 @@ _WHERE = "CreateLubricatedJoint"
 
 
 def hold_axially(
-    mbs: Any, name: str, housing: Item, journal: Item, points: tuple[np.ndarray, np.ndarray], rotation: np.ndarray
+    mbs: exu.MainSystem,
+    name: str,
+    housing: Item,
+    journal: Item,
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
 ) -> Any:
     """Constrain the relative displacement along the joint axis to its reference value."""
     axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
@@ -51,7 +57,7 @@ def hold_axially(
     )
 
 
-def _rigid_marker(mbs: Any, name: str, item: Item, transform: np.ndarray) -> Any:
+def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray) -> Any:
     """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
     if item.node is None:
         # a ground object of our own at the origin holds the marker

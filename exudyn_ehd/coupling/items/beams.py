@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.kinematics import cables as slope_kinematics
+from exudyn_ehd.coupling.contract import Index, NodeIndex
+from exudyn_ehd.coupling.kinematics import cables
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
 from exudyn_ehd.status import InputError
-
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 
 SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
 """Node types that hold a position and a slope, and their dimension."""
@@ -27,7 +25,7 @@ ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
 BEYOND_END = 1e-6
 
 
-def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Reference and initial coordinates and initial velocities (n,) of nodes."""
     data = [mbs.GetNode(node) for node in nodes]
     rate = ["initialVelocities" if "initialVelocities" in d else "initialCoordinates_t" for d in data]
@@ -38,17 +36,17 @@ def node_coordinates(mbs: Any, nodes: tuple[Any, ...]) -> tuple[np.ndarray, np.n
     return reference, initial, velocities
 
 
-def element_nodes(data: dict[str, Any]) -> tuple[Any, ...]:
+def element_nodes(data: dict[str, Any]) -> tuple[Index, ...]:
     """Nodes of an object."""
     numbers = data["nodeNumbers"] if "nodeNumbers" in data else [data["nodeNumber"]]
-    return tuple(exu.NodeIndex(int(number)) for number in numbers)
+    return tuple(NodeIndex(int(number)) for number in numbers)
 
 
 def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
     """Reference frame (3, 3) of a beam or cable without an orientation: x along it, z as close to the global z as can be."""
     t = tangent / np.linalg.norm(tangent)
     across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
-    return slope_kinematics.slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
+    return cables.slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
 
 
 # --- cables -------------------------------------------------------------------------------------------------------------------------------
@@ -82,7 +80,7 @@ def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarr
 
 def cable_side(
     where: str,
-    nodes: tuple[Any, ...],
+    nodes: tuple[Index, ...],
     reference: np.ndarray,
     length: float | None,
     x: float | None,
@@ -144,7 +142,7 @@ def _within(where: str, x: float, low: float, high: float) -> float:
 # --- beams --------------------------------------------------------------------------------------------------------------------------------
 
 
-def beam_ends(mbs: Any, nodes: tuple[Any, ...], node_kinds: dict[str, int]) -> tuple[NodeSide, NodeSide]:
+def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...], node_kinds: dict[str, int]) -> tuple[NodeSide, NodeSide]:
     """The nodes' own frames of a geometrically exact beam element."""
     ends = []
     for node in nodes:
@@ -170,7 +168,7 @@ def beam_side(
 
 
 def marker_on_body(
-    mbs: Any, where: str, body: Any, nodes: tuple[Any, ...], point: np.ndarray, rotation: np.ndarray
+    mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...], point: np.ndarray, rotation: np.ndarray
 ) -> MarkerSide:
     """Side through a marker of our own on an ANCF beam element or a RotationalMass1D, at a point of the reference configuration."""
     output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
@@ -198,7 +196,13 @@ def marker_on_body(
 
 
 def marker_on_node(
-    mbs: Any, where: str, node: Any, place: np.ndarray, frame: np.ndarray, point: np.ndarray, rotation: np.ndarray
+    mbs: exu.MainSystem,
+    where: str,
+    node: Index,
+    place: np.ndarray,
+    frame: np.ndarray,
+    point: np.ndarray,
+    rotation: np.ndarray,
 ) -> MarkerSide:
     """Side through a marker of our own on a node that has an orientation, at the node."""
     if np.linalg.norm(point - place) > 1e-9 * max(1.0, float(np.linalg.norm(place))):

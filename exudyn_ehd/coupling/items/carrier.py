@@ -11,14 +11,13 @@ where Vq, Wq are the derivatives of v and omega to q. Sides that know no derivat
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.resolve import Item
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, Side, detached
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, detached
 
 _CURRENT, _REFERENCE = exu.ConfigurationType.Current, exu.ConfigurationType.Reference
 # Displacement, m or rad, over which initial velocities are found as differences of positions.
@@ -39,7 +38,7 @@ class Carrier:
         X [m].
     """
 
-    def __init__(self, mbs: Any, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
+    def __init__(self, mbs: exu.MainSystem, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
         self.mbs = mbs
         self.side: Side = detached(side)
         self.initial = initial
@@ -47,11 +46,11 @@ class Carrier:
         self._bound = not isinstance(side, MarkerSide)
 
     @property
-    def nodes(self) -> list[Any]:
+    def nodes(self) -> list[Index]:
         """Nodes of the side."""
         return self.side.nodes
 
-    def move(self, q: np.ndarray, q_t: np.ndarray, configuration: Any = _CURRENT) -> None:
+    def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = _CURRENT) -> None:
         """Bring frame and Jacobians to coordinates ``q`` and rates ``q_t`` (n,), those of Exudyn's ``configuration``."""
         if not self._bound:
             self.side.bind(self.mbs)  # type: ignore[attr-defined]
@@ -105,11 +104,11 @@ def velocities(frame: np.ndarray, local: np.ndarray) -> np.ndarray:
     return frame[:, 4] + np.cross(frame[:, 5], local @ frame[:, :3].T)
 
 
-def initial_frame(mbs: Any, item: Item, side: Side) -> np.ndarray:
+def initial_frame(mbs: exu.MainSystem, item: Item, side: Side) -> np.ndarray:
     """Frame (3, 6) of a side in the initial configuration, before Assemble."""
     if not isinstance(side, MarkerSide):
         own: Side = detached(side)
-        own.update(mbs, item.initial_coordinates, item.initial_velocities, None)
+        own.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
         return own.frame
     reference, initial, rates = node_coordinates(mbs, tuple(side.nodes))
     place, matrix = _marker_frame(mbs, side, reference + initial, reference)
@@ -126,7 +125,7 @@ def initial_frame(mbs: Any, item: Item, side: Side) -> np.ndarray:
 
 
 def _marker_frame(
-    mbs: Any, side: MarkerSide, coordinates: np.ndarray, reference: np.ndarray
+    mbs: exu.MainSystem, side: MarkerSide, coordinates: np.ndarray, reference: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Position and rotation of a marker at coordinates of its nodes.
 
@@ -141,7 +140,7 @@ def _marker_frame(
         _set_reference(mbs, side.nodes, reference)
 
 
-def _set_reference(mbs: Any, nodes: list[Any], coordinates: np.ndarray) -> None:
+def _set_reference(mbs: exu.MainSystem, nodes: list[Index], coordinates: np.ndarray) -> None:
     start = 0
     for node in nodes:
         size = len(mbs.GetNodeParameter(node, "referenceCoordinates"))

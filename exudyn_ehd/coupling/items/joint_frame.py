@@ -6,17 +6,18 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Geometry, Side
 from exudyn_ehd.coupling.items.resolve import Item, resolve
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics.sides import Side
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
 
 
-def resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
+def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
     """Housing and journal of ``itemNumbers``; `InputError` for what can't be one."""
     where = f"{_WHERE}.itemNumbers"
     if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
@@ -26,8 +27,9 @@ def resolve_pair(mbs: Any, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    # Exudyn adds up what an object hands to a node that it lists twice
-    if shared and not (housing.inner and journal.inner and int(housing.marker) != int(journal.marker)):
+    # Exudyn adds up what an object hands to a node that it lists twice: two points that move against each other may share one
+    inner = {int(item.marker) for item in (housing, journal) if item.inner and item.marker is not None}
+    if shared and len(inner) < 2:
         raise InputError(
             f"{where}: housing and journal are the same body, got {list(itemNumbers)!r}; give two different bodies."
         )
@@ -94,14 +96,14 @@ def joint_points(housing: Item, journal: Item, position: Any, use_global: bool) 
     return point, point.copy()
 
 
-def check_start(bearing: Any, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
+def check_start(mbs: exu.MainSystem, bearing: Geometry, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
     """Refuse an initial state in which the journal isn't inside the bore."""
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
             raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
-        side.update(None, item.initial_coordinates, item.initial_velocities, None)
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
     motion = np.empty(10)
-    cosine = joint_kinematics.relative_motion(housing[1].frame, journal[1].frame, motion)
+    cosine = relative.relative_motion(housing[1].frame, journal[1].frame, motion)
     clearance, length = bearing.radial_clearance, bearing.length
     tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
     if tilt * length >= 2.0 * clearance:

@@ -3,24 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
+from exudyn_ehd.coupling.contract import Index
 
 
-def object_mass(mbs: Any, item: Any) -> np.ndarray | csc_matrix | None:
+def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | None:
     """Mass matrix (n, n) of an object in its own coordinates; None without a constant one, or one that Exudyn returns."""
     data = mbs.GetObject(item)
     if data["objectType"] == "GenericODE2":
         matrix = as_sparse(data["massMatrix"])
         return None if matrix is None or matrix.nnz == 0 else matrix.tocsc()
     if data["objectType"].startswith("MassPoint"):
-        return point_mass(mbs, item, len(mbs.systemData.GetObjectLTGODE2(item)))(mbs)
+        return point_mass(mbs, item, len(mbs.systemData.GetObjectLTGODE2(int(item))))(mbs)
     if data["objectType"] == "RigidBody2D":
         return planar_mass(mbs, item)(mbs)
     if exu.ComputeItemType.MassMatrix not in mbs.ComputeItem(item):
@@ -29,17 +27,17 @@ def object_mass(mbs: Any, item: Any) -> np.ndarray | csc_matrix | None:
     return matrix if matrix.size else None
 
 
-def point_mass(mbs: Any, item: Any, size: int) -> Callable:
+def point_mass(mbs: exu.MainSystem, item: Index, size: int) -> Callable:
     """Mass matrix of a mass point: density times position Jacobian."""
     mass = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:size]
     return lambda mbs: mass
 
 
-def planar_mass(mbs: Any, item: Any) -> Callable:
+def planar_mass(mbs: exu.MainSystem, item: Index) -> Callable:
     """Mass matrix of a planar rigid body; density times position Jacobian are its first two rows, centre of mass off the node included."""
     inertia = float(mbs.GetObjectParameter(item, "inertia"))
 
-    def mass(mbs: Any) -> np.ndarray:
+    def mass(mbs: exu.MainSystem) -> np.ndarray:
         out = np.zeros((3, 3))
         out[:2] = np.asarray(mbs.ComputeItem(item, exu.ComputeItemType.MassWeightedPositionJacobian))[:2]
         out[2, :2], out[2, 2] = out[:2, 2], inertia

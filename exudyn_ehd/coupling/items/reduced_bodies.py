@@ -7,12 +7,13 @@ and as the bore's coordinates, for the rest. Exudyn adds up what an object hands
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
 
+import exudyn as exu
 import numpy as np
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.resolve import Item
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore, bore_faces, find_bore
@@ -22,7 +23,7 @@ _WHERE = "CreateLubricatedJoint.bearing with bush=FEBore(...)"
 
 
 def hold_fe_bore(
-    mbs: Any, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
+    mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
 ) -> tuple[JournalBearing, Item]:
     """Bearing with the bore that was found in the housing, and the housing that moves with it.
 
@@ -102,7 +103,7 @@ class FloatingBoreSide:
     """
 
     def __init__(
-        self, frame: NodeSide, modal_node: Any, origin: np.ndarray, rotation: np.ndarray, rigid: np.ndarray
+        self, frame: NodeSide, modal_node: Index, origin: np.ndarray, rotation: np.ndarray, rigid: np.ndarray
     ) -> None:
         self.floating = frame
         self.nodes = [*frame.nodes, modal_node]
@@ -114,7 +115,9 @@ class FloatingBoreSide:
         rest = np.zeros(self.size)
         self.update(None, rest, rest, None)
 
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
         n, floating = self.floating.size, self.floating
         if not np.isfinite(q.sum()):
@@ -133,13 +136,15 @@ class FloatingBoreSide:
         self.frame[:, 4] = floating.frame[:, 4] + np.cross(omega, self.arm) + self.jac[0, :, n:] @ q_t[n:]
         self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
 
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
         n = self.floating.size
         self.change = floating_change(self.floating, q[:n], self.arm, self.jac)
         self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
 
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    def geometric(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
         out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
 

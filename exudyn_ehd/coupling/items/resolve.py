@@ -6,24 +6,22 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.items import beams as beam_items
+from exudyn_ehd.coupling.contract import Index, MarkerIndex, NodeIndex, ObjectIndex, Side
+from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
-from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, MeshSide, NodeSide, Side, TreeSide
+from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, MeshSide, NodeSide, TreeSide
 from exudyn_ehd.status import InputError
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
-
 _NODE_KINDS = {
-    "RigidBodyEP": kinematics.EULER_PARAMETERS,
-    "RigidBodyRxyz": kinematics.TAIT_BRYAN,
-    "RigidBodyRotVecLG": kinematics.ROTATION_VECTOR,
-    "RigidBody2D": kinematics.PLANAR,
+    "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
+    "RigidBodyRxyz": rigid_nodes.TAIT_BRYAN,
+    "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
+    "RigidBody2D": rigid_nodes.PLANAR,
 }
 _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
@@ -68,15 +66,15 @@ class Item:
     kind: int | None
     planar: bool = False
     inner: bool = False
-    node: Any = None
-    marker: Any = None
-    nodes: tuple[Any, ...] = ()
+    node: Index | None = None
+    marker: Index | None = None
+    nodes: tuple[Index, ...] = ()
     node_position: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(3))
     node_rotation: np.ndarray = dataclasses.field(default_factory=lambda: np.eye(3))
     reference_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_coordinates: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
     initial_velocities: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
-    body: Any = None
+    body: Index | None = None
     node_kind: int | None = None
     build: Callable[[np.ndarray, np.ndarray], Side] | None = None
 
@@ -90,7 +88,7 @@ class Item:
         return NodeSide(self.kind, self.node, reference, rho, self.node_rotation.T @ joint_rotation)
 
 
-def resolve(mbs: Any, where: str, number: Any) -> Item:
+def resolve(mbs: exu.MainSystem, where: str, number: Index) -> Item:
     """Find out what an item number stands for.
 
     Parameters
@@ -108,12 +106,12 @@ def resolve(mbs: Any, where: str, number: Any) -> Item:
         If it is no such item, or nothing that can turn.
     """
     try:
-        if isinstance(number, exu.MarkerIndex):
+        if isinstance(number, MarkerIndex):
             return _marker_item(mbs, where, number)
-        if isinstance(number, exu.NodeIndex):
+        if isinstance(number, NodeIndex):
             return _node_item(mbs, where, number)
-        if isinstance(number, exu.ObjectIndex) or (isinstance(number, int) and not isinstance(number, bool)):
-            return _body_item(mbs, where, exu.ObjectIndex(int(number)))
+        if isinstance(number, ObjectIndex) or (isinstance(number, int) and not isinstance(number, bool)):
+            return _body_item(mbs, where, ObjectIndex(int(number)))
     except exu.ExudynError as error:
         raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
     raise InputError(
@@ -122,7 +120,7 @@ def resolve(mbs: Any, where: str, number: Any) -> Item:
     )
 
 
-def _node_item(mbs: Any, where: str, node: Any) -> Item:
+def _node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     data = mbs.GetNode(node)
     if data["nodeType"] in SLOPE_NODES:
         return _cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
@@ -135,16 +133,16 @@ def _node_item(mbs: Any, where: str, node: Any) -> Item:
             "rigid marker on the flexible body."
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
-    nt = 2 if kind == kinematics.PLANAR else 3
+    nt = 2 if kind == rigid_nodes.PLANAR else 3
     position = np.zeros(3)
     position[:nt] = reference[:nt]
-    rotation, _ = kinematics.node_rotation(kind, reference[nt:])
+    rotation, _ = rigid_nodes.node_rotation(kind, reference[nt:])
     return Item(
         position=position,
         rotation=rotation,
         is_marker=False,
         kind=kind,
-        planar=kind == kinematics.PLANAR,
+        planar=kind == rigid_nodes.PLANAR,
         node=node,
         nodes=(node,),
         node_position=position,
@@ -155,7 +153,7 @@ def _node_item(mbs: Any, where: str, node: Any) -> Item:
     )
 
 
-def _body_item(mbs: Any, where: str, body: Any) -> Item:
+def _body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     data = mbs.GetObject(body)
     kind = data["objectType"]
     if kind == "Ground":
@@ -163,11 +161,11 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
             position=np.array(data["referencePosition"], dtype=float),
             rotation=np.array(data["referenceRotation"], dtype=float),
             is_marker=False,
-            kind=kinematics.GROUND,
+            kind=rigid_nodes.GROUND,
         )
     if kind in ("RigidBody", "RigidBody2D"):
-        return _node_item(mbs, where, exu.NodeIndex(int(data["nodeNumber"])))
-    nodes = beam_items.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
+        return _node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
+    nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
     if kind in CABLES:
         return _cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
     if kind in EXACT_BEAMS:
@@ -183,7 +181,7 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
             is_marker=False,
             kind=None,
             nodes=nodes,
-            build=lambda point, rotation: beam_items.marker_on_body(mbs, where, body, nodes, point, rotation),
+            build=lambda point, rotation: beams.marker_on_body(mbs, where, body, nodes, point, rotation),
         )
     if kind == "FFRFreducedOrder":
         return _reduced_body_item(mbs, where, body, nodes)
@@ -199,10 +197,10 @@ def _body_item(mbs: Any, where: str, body: Any) -> Item:
     )
 
 
-def _reduced_body_item(mbs: Any, where: str, body: Any, nodes: tuple[Any, ...]) -> Item:
+def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...]) -> Item:
     """Reduced finite-element body, which can hold a film in its bore and nothing else without a marker."""
     rigid = _node_item(mbs, where, nodes[0])
-    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
 
     def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
         raise InputError(
@@ -223,7 +221,7 @@ def _reduced_body_item(mbs: Any, where: str, body: Any, nodes: tuple[Any, ...]) 
     )
 
 
-def _slope_pair_item(mbs: Any, where: str, node: Any) -> Item:
+def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     """Node of an ANCF beam."""
     output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
     place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
@@ -234,24 +232,29 @@ def _slope_pair_item(mbs: Any, where: str, node: Any) -> Item:
         is_marker=False,
         kind=None,
         nodes=(node,),
-        build=lambda point, rotation: beam_items.marker_on_node(mbs, where, node, place, frame, point, rotation),
+        build=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
     )
 
 
 def _cable_item(
-    mbs: Any, where: str, nodes: tuple[Any, ...], dimension: int, length: float | None, x: float | None = None
+    mbs: exu.MainSystem,
+    where: str,
+    nodes: tuple[Index, ...],
+    dimension: int,
+    length: float | None,
+    x: float | None = None,
 ) -> Item:
     """Node (``length`` None) or element of cables; ``x`` is the place of a marker along the element."""
-    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
-    place, slope = beam_items.cable_maps(dimension, length, 0.0 if x is None else x)
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
+    place, slope = beams.cable_maps(dimension, length, 0.0 if x is None else x)
     return Item(
         position=place @ reference,
-        rotation=beam_items.frame_along(slope @ reference, dimension == 2),
+        rotation=beams.frame_along(slope @ reference, dimension == 2),
         is_marker=x is not None,
         kind=None,
         planar=dimension == 2,
         nodes=nodes,
-        build=lambda point, rotation: beam_items.cable_side(where, nodes, reference, length, x, point, rotation),
+        build=lambda point, rotation: beams.cable_side(where, nodes, reference, length, x, point, rotation),
         reference_coordinates=reference,
         initial_coordinates=initial,
         initial_velocities=velocities,
@@ -259,11 +262,11 @@ def _cable_item(
 
 
 def _beam_item(
-    mbs: Any, where: str, nodes: tuple[Any, ...], length: float, transform: np.ndarray | None = None
+    mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
     """Element of a geometrically exact beam; ``transform`` (4, 4) that of a marker in the element's local coordinates."""
-    ends = beam_items.beam_ends(mbs, nodes, _NODE_KINDS)
-    reference, initial, velocities = beam_items.node_coordinates(mbs, nodes)
+    ends = beams.beam_ends(mbs, nodes, _NODE_KINDS)
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length
     position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
     rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
@@ -277,16 +280,16 @@ def _beam_item(
         rotation=rotation,
         is_marker=transform is not None,
         kind=None,
-        planar=ends[0].kind == kinematics.PLANAR,
+        planar=ends[0].kind == rigid_nodes.PLANAR,
         nodes=nodes,
-        build=lambda point, joint: beam_items.beam_side(where, ends, share, point, joint),
+        build=lambda point, joint: beams.beam_side(where, ends, share, point, joint),
         reference_coordinates=reference,
         initial_coordinates=initial,
         initial_velocities=velocities,
     )
 
 
-def _marker_item(mbs: Any, where: str, marker: Any) -> Item:
+def _marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
     data = mbs.GetMarker(marker)
     item = _known_marker_item(mbs, where, data)
     if item is not None:
@@ -311,11 +314,11 @@ def _marker_item(mbs: Any, where: str, marker: Any) -> Item:
     )
 
 
-def _known_marker_item(mbs: Any, where: str, data: dict[str, Any]) -> Item | None:
+def _known_marker_item(mbs: exu.MainSystem, where: str, data: dict[str, Any]) -> Item | None:
     """Item of a marker on a body or node whose kinematics are known here; None for any other."""
     kind = data["markerType"]
     if kind in ("NodeRigid", "NodePosition"):
-        node = exu.NodeIndex(int(data["nodeNumber"]))
+        node = NodeIndex(int(data["nodeNumber"]))
         node_type = mbs.GetNode(node)["nodeType"]
         if node_type in SLOPE_NODES:
             return _cable_item(mbs, where, (node,), SLOPE_NODES[node_type], None, 0.0)
@@ -328,7 +331,7 @@ def _known_marker_item(mbs: Any, where: str, data: dict[str, Any]) -> Item | Non
             item = _cable_item(
                 mbs,
                 where,
-                beam_items.element_nodes(body),
+                beams.element_nodes(body),
                 CABLES[body["objectType"]],
                 float(body["length"]),
                 float(local[0]),
@@ -338,9 +341,7 @@ def _known_marker_item(mbs: Any, where: str, data: dict[str, Any]) -> Item | Non
                 item, position=item.position + item.rotation[:, 1:] @ local[1:], rotation=item.rotation @ turn
             )
         if kind == "BodyRigid" and body["objectType"] in EXACT_BEAMS:
-            return _beam_item(
-                mbs, where, beam_items.element_nodes(body), float(body["length"]), np.array(data["localHT"])
-            )
+            return _beam_item(mbs, where, beams.element_nodes(body), float(body["length"]), np.array(data["localHT"]))
         if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
             return _transformed(_body_item(mbs, where, data["bodyNumber"]), data)
     return None
@@ -355,13 +356,15 @@ def _transformed(base: Item, data: dict[str, Any]) -> Item:
     )
 
 
-def _marker_side(mbs: Any, marker: Any, data: dict[str, Any]) -> tuple[Callable[[np.ndarray], Side], tuple[Any, ...]]:
+def _marker_side(
+    mbs: exu.MainSystem, marker: Index, data: dict[str, Any]
+) -> tuple[Callable[[np.ndarray], Side], tuple[Index, ...]]:
     """Function from the rotation of the joint frame in the marker's to the side, and the nodes it depends on."""
     if "nodeNumber" in data:
-        nodes = (exu.NodeIndex(int(data["nodeNumber"])),)
+        nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
         return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
     body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
-    nodes = beam_items.element_nodes(body)
+    nodes = beams.element_nodes(body)
     kind = data["markerType"]
     if kind == "KinematicTreeRigid":
         return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
@@ -378,10 +381,10 @@ def _marker_side(mbs: Any, marker: Any, data: dict[str, Any]) -> tuple[Callable[
     return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
 
 
-def body_of_node(mbs: Any, node: Any) -> Any:
+def body_of_node(mbs: exu.MainSystem, node: Index) -> Any:
     """The rigid body that moves ``node``, or None if there is none yet."""
     for i in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(i)
         if body["objectType"] in ("RigidBody", "RigidBody2D") and int(body["nodeNumber"]) == int(node):
-            return exu.ObjectIndex(i)
+            return ObjectIndex(i)
     return None

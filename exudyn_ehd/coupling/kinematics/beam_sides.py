@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+import exudyn as exu
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from exudyn_ehd.coupling.kinematics import cables as slope_kinematics
+from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.kinematics import cables
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 
 
@@ -65,7 +65,9 @@ class BeamSide:
         turn = Rotation.from_matrix(first.T @ second).as_rotvec()
         return first @ Rotation.from_rotvec(self.weights[1] * turn).as_matrix()
 
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
         if not np.isfinite(q.sum()):
             self.frame[:] = np.nan
@@ -81,7 +83,7 @@ class BeamSide:
             self.jac[:2, :, place] = weight * end.jac[:2]
         self.jac[0] += np.cross(self.jac[1].T, self.arm).T
 
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
         for end, weight, place in self._parts():
             end.vary(mbs, q[place], q_t[place])
@@ -89,7 +91,9 @@ class BeamSide:
         moved = np.cross(self.jac[1].T, self.arm)
         self.jac[2] += (np.cross(self.jac[3].T, self.arm) + np.cross(self.frame[:, 5], moved)).T
 
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    def geometric(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
         total = moment + np.cross(self.arm, force)
         for end, weight, place in self._parts():
@@ -98,7 +102,7 @@ class BeamSide:
 
 
 class SlopeSide:
-    """Frame on a cable, whose nodes hold positions and slopes; see `slope_kinematics`.
+    """Frame on a cable, whose nodes hold positions and slopes; see `cables`.
 
     The roll about the cable is no coordinate: a moment about the cable's axis finds no resistance and no motion there.
 
@@ -118,7 +122,7 @@ class SlopeSide:
 
     def __init__(
         self,
-        nodes: list[Any],
+        nodes: list[Index],
         reference: np.ndarray,
         place: np.ndarray,
         slope: np.ndarray,
@@ -131,15 +135,17 @@ class SlopeSide:
         self.size = reference.size
         self.place, self.slope = np.ascontiguousarray(place), np.ascontiguousarray(slope)
         self.director = np.ascontiguousarray(director)
-        own = slope_kinematics.slope_rotation(self.slope @ reference, self.director)
+        own = cables.slope_rotation(self.slope @ reference, self.director)
         self.rho = own.T @ (point - self.place @ reference)
         self.rotation = own.T @ rotation
         self.frame = np.zeros((3, 6))
         self.jac = np.zeros((4, 3, self.size))
 
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
-        slope_kinematics.slope_frame(
+        cables.slope_frame(
             self.place,
             self.slope,
             self.reference + q,
@@ -151,12 +157,12 @@ class SlopeSide:
             self.jac,
         )
 
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
-        slope_kinematics.slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
+        cables.slope_variation(self.slope, self.reference + q, q_t, self.director, self.rho, self.jac)
 
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    def geometric(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
-        slope_kinematics.slope_geometric(
-            self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out
-        )
+        cables.slope_geometric(self.slope, self.reference + q, self.director, self.rho, self.jac, force, moment, out)

@@ -7,15 +7,14 @@ geometrically exact beams and cables, `MarkerSide` for any other rigid marker th
 from __future__ import annotations
 
 import copy
-from typing import Any, Protocol
+from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.kinematics import rigid_nodes
 
-# ExudynError exists at run time, but not in the type stubs
-exu: Any = exudyn
 _CURRENT = exu.ConfigurationType.Current
 _EMPTY = np.zeros(0)
 
@@ -26,7 +25,7 @@ class NodeSide:
     Parameters
     ----------
     kind : int
-        How the node turns (`kinematics.GROUND` and others).
+        How the node turns (`rigid_nodes.GROUND` and others).
     node : exudyn.NodeIndex or None
         The node; None for ground.
     reference : ndarray (n,)
@@ -37,10 +36,12 @@ class NodeSide:
         Joint frame to node frame; to global for ground.
     """
 
-    def __init__(self, kind: int, node: Any, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray) -> None:
+    def __init__(
+        self, kind: int, node: Index | None, reference: np.ndarray, rho: np.ndarray, rotation: np.ndarray
+    ) -> None:
         self.kind = kind
         self.nodes = [] if node is None else [node]
-        self.size = kinematics.COORDINATES[kind]
+        self.size = rigid_nodes.COORDINATES[kind]
         self.reference = np.ascontiguousarray(reference, dtype=float)
         self.rho = np.ascontiguousarray(rho, dtype=float)
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
@@ -49,20 +50,24 @@ class NodeSide:
         self.frame[:, 3] = self.rho
         self.jac = np.zeros((4, 3, self.size))
 
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+    def update(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType | None
+    ) -> None:
         """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
         if self.size:
-            kinematics.node_frame(self.kind, q, q_t, self.reference, self.rho, self.rotation, self.frame, self.jac)
+            rigid_nodes.node_frame(self.kind, q, q_t, self.reference, self.rho, self.rotation, self.frame, self.jac)
 
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+    def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
         if self.size:
-            kinematics.node_variation(self.kind, q, q_t, self.reference, self.rho, self.jac)
+            rigid_nodes.node_variation(self.kind, q, q_t, self.reference, self.rho, self.jac)
 
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    def geometric(
+        self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``."""
         if self.size:
-            kinematics.node_geometric(self.kind, q, self.reference, self.rho, force, moment, out)
+            rigid_nodes.node_geometric(self.kind, q, self.reference, self.rho, force, moment, out)
 
 
 class MarkerSide:
@@ -82,7 +87,7 @@ class MarkerSide:
         Joint frame to marker frame.
     """
 
-    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray) -> None:
+    def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray) -> None:
         self.marker = marker
         self.nodes = nodes
         self.rotation = np.ascontiguousarray(rotation, dtype=float)
@@ -92,7 +97,7 @@ class MarkerSide:
         self.change: np.ndarray | None = None
         self._offers_change = True
 
-    def bind(self, mbs: Any) -> None:
+    def bind(self, mbs: exu.MainSystem) -> None:
         """Find the number of coordinates, which Exudyn knows only after Assemble."""
         self.size = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian).shape[1]
         self.jac = np.zeros((4, 3, self.size))
@@ -101,13 +106,13 @@ class MarkerSide:
         except exu.ExudynError:
             self._offers_change = False
 
-    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+    def _jacobian(self, mbs: exu.MainSystem, item: exu.ComputeItemType) -> np.ndarray:
         return np.asarray(mbs.ComputeItem(self.marker, item))
 
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
+    def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame from the marker in ``configuration``, and Jp, Jr if that is the current one."""
         output = exu.OutputVariableType
-        a = mbs.GetMarkerOutput(self.marker, output.RotationMatrix, configuration).reshape(3, 3)
+        a = np.asarray(mbs.GetMarkerOutput(self.marker, output.RotationMatrix, configuration)).reshape(3, 3)
         self.frame[:, :3] = a @ self.rotation
         self.frame[:, 3] = mbs.GetMarkerOutput(self.marker, output.Position, configuration)
         self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
@@ -116,18 +121,20 @@ class MarkerSide:
             self.jac[0] = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian)
             self.jac[1] = self._jacobian(mbs, exu.ComputeItemType.RotationJacobian)
 
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
+    def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
         self.change = self._jacobian_change(mbs, q)
         if self.change is not None:
             self.jac[2:] = np.einsum("iab,a->ib", self.change, q_t).reshape(2, 3, self.size)
 
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
+    def geometric(
+        self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
+    ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
         if self.change is not None:
             out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
 
-    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray | None:
+    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray | None:
         """Entries d J[i, a] / dq_b (6, n, n) of J = [Jp, Jr]; None if unknown."""
         if not self._offers_change:
             return None
@@ -148,13 +155,13 @@ class TreeSide(MarkerSide):
     dJp_k/dq_j = omega_k x Jp_j (j > k). Parents come before their children; joints off the path to the link have zero columns.
     """
 
-    def bind(self, mbs: Any) -> None:
+    def bind(self, mbs: exu.MainSystem) -> None:
         """Find the number of coordinates."""
         super().bind(mbs)
         before = np.tri(self.size, dtype=bool)  # [k, j]: j <= k
         self._turning, self._leading = before, ~before
 
-    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         Jp, Jr = self.jac[0].T, self.jac[1].T
         turned = np.cross(Jr[None, :, :], np.stack([Jp, Jr])[:, :, None, :])
         turned[0][self._leading] = np.cross(Jr[:, None, :], Jp[None, :, :])[self._leading]
@@ -177,11 +184,11 @@ class FloatingSide(MarkerSide):
         The rigid node's own frame.
     """
 
-    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, frame: NodeSide) -> None:
+    def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray, frame: NodeSide) -> None:
         super().__init__(marker, nodes, rotation)
         self.floating = frame
 
-    def _jacobian_change(self, mbs: Any, q: np.ndarray) -> np.ndarray:
+    def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         n = self.floating.size
         self.floating.update(mbs, q[:n], np.zeros(n), _CURRENT)
         return floating_change(self.floating, q[:n], self.frame[:, 3] - self.floating.frame[:, 3], self.jac)
@@ -231,41 +238,12 @@ class MeshSide(MarkerSide):
         Their columns in the marker's Jacobians.
     """
 
-    def __init__(self, marker: Any, nodes: list[Any], rotation: np.ndarray, columns: np.ndarray) -> None:
+    def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray, columns: np.ndarray) -> None:
         super().__init__(marker, nodes, rotation)
         self.columns = columns
 
-    def _jacobian(self, mbs: Any, item: Any) -> np.ndarray:
+    def _jacobian(self, mbs: exu.MainSystem, item: exu.ComputeItemType) -> np.ndarray:
         return np.asarray(mbs.ComputeItem(self.marker, item))[:, self.columns]
-
-
-class Side(Protocol):
-    """What carries the frame of one side of a joint.
-
-    Attributes
-    ----------
-    nodes : list
-        Nodes it depends on.
-    size : int
-        Number n of their coordinates.
-    frame : ndarray (3, 6)
-    jac : ndarray (4, 3, n)
-        Work arrays of `kinematics`.
-    """
-
-    nodes: list[Any]
-    size: int
-    frame: np.ndarray
-    jac: np.ndarray
-
-    def update(self, mbs: Any, q: np.ndarray, q_t: np.ndarray, configuration: Any) -> None:
-        """Fill the frame and Jp, Jr at coordinates ``q`` and rates ``q_t`` (n,)."""
-
-    def vary(self, mbs: Any, q: np.ndarray, q_t: np.ndarray) -> None:
-        """Fill Vq, Wq; `update` must have run at the same state."""
-
-    def geometric(self, mbs: Any, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
 
 
 def detached(side: Any) -> Any:
@@ -281,7 +259,9 @@ def detached(side: Any) -> Any:
     return out
 
 
-def read_state(mbs: Any, sides: tuple[Side, Side], configuration: Any) -> tuple[list[float], list[float]]:
+def read_state(
+    mbs: exu.MainSystem, sides: tuple[Side, Side], configuration: exu.ConfigurationType
+) -> tuple[list[float], list[float]]:
     """Coordinates (without reference values) and rates of both sides, in the film element's order."""
     q: list[float] = []
     q_t: list[float] = []

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import exudyn
+import exudyn as exu
 import exudyn.graphics
 import numpy as np
 
@@ -20,8 +20,6 @@ from exudyn_ehd.status import Status
 if TYPE_CHECKING:
     from exudyn_ehd.coupling.element.rigid import FilmElement
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 _VISUALIZATION = exu.ConfigurationType.Visualization
 EDGE = [0.0, 0.0, 0.0, 1.0]
 BUSH = [0.72, 0.74, 0.78, 0.35]
@@ -60,7 +58,7 @@ class FilmDisplay:
         if modes is not None:
             self.bush = np.tensordot(model.coordinates, modes.displacements, 1)
 
-    def graphics(self, mbs: Any, itemNumber: int) -> list[Any]:
+    def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Any]:
         """User function of Exudyn: the list of graphics data at the state that the renderer shows, in global coordinates."""
         self.wanted = True
         model: Any = self.element.model
@@ -89,7 +87,7 @@ class FilmDisplay:
             data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=BUSH))
         return data
 
-    def _frame(self, mbs: Any) -> np.ndarray:
+    def _frame(self, mbs: exu.MainSystem) -> np.ndarray:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
         if self._housing is None:
             self._housing = detached(self.element.sides[0])

@@ -6,6 +6,8 @@ import dataclasses
 import pathlib
 from typing import TYPE_CHECKING, Any
 
+import exudyn as exu
+
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.revolutions import Revolutions
@@ -29,7 +31,7 @@ class JointResults:
     """
 
     name: str
-    mbs: Any
+    mbs: exu.MainSystem
     element: FilmElement
 
     @property

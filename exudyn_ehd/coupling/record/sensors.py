@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
@@ -14,7 +15,7 @@ _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quant
 
 
 def add_sensor(
-    mbs: Any, element: FilmElement, quantity: Quantity, name: str, file_name: str, write_to_file: bool
+    mbs: exu.MainSystem, element: FilmElement, quantity: Quantity, name: str, file_name: str, write_to_file: bool
 ) -> Any:
     """Add a sensor of one quantity; its values are stored in the sensor.
 
@@ -23,7 +24,9 @@ def add_sensor(
     """
     size = _SIZE.get(quantity, 1)
 
-    def read(mbs: Any, t: float, sensorNumbers: Any, factors: Any, configuration: Any) -> list[float]:
+    def read(
+        mbs: exu.MainSystem, t: float, sensorNumbers: Any, factors: Any, configuration: exu.ConfigurationType
+    ) -> list[float]:
         row = element.current_row(mbs)
         values = np.full(size, np.nan) if row is None else column(row, quantity)
         return values.tolist()

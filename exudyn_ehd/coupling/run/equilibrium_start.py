@@ -9,8 +9,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
 from exudyn_ehd.joint.seams import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -21,7 +20,7 @@ _INITIAL = exu.ConfigurationType.Initial
 _WHERE = "LubricatedJoint.place_in_equilibrium"
 
 
-def place(mbs: Any, element: FilmElement, name: str, load: Any, speed: float | None) -> EquilibriumResult:
+def place(mbs: exu.MainSystem, element: FilmElement, name: str, load: Any, speed: float | None) -> EquilibriumResult:
     """Move the journal's node to its equilibrium; see `LubricatedJoint.place_in_equilibrium`."""
     journal = element.sides[1]
     if not mbs.systemIsConsistent:
@@ -52,7 +51,7 @@ def place(mbs: Any, element: FilmElement, name: str, load: Any, speed: float | N
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(_INITIAL), dtype=float)
     rates = np.array(mbs.systemData.GetODE2Coordinates_t(_INITIAL), dtype=float)
     places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])), dtype=int)
-    size = 2 if journal.kind == kinematics.PLANAR else 3
+    size = 2 if journal.kind == rigid_nodes.PLANAR else 3
     coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
     # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
     rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
@@ -61,21 +60,21 @@ def place(mbs: Any, element: FilmElement, name: str, load: Any, speed: float | N
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
         coordinates[where], bore = bore[: where.size], bore[where.size :]
         rates[where] = 0.0
-    mbs.systemData.SetODE2Coordinates(coordinates, _INITIAL)
-    mbs.systemData.SetODE2Coordinates_t(rates, _INITIAL)
+    mbs.systemData.SetODE2Coordinates(coordinates.tolist(), _INITIAL)
+    mbs.systemData.SetODE2Coordinates_t(rates.tolist(), _INITIAL)
     at_rest = motion.copy()
     at_rest[:2], at_rest[4:8] = result.position, 0.0
     element.resume(float(mbs.systemData.GetTime(_INITIAL)), _memory(element.model, at_rest, result), element.no_rows())
     return result
 
 
-def _motion(mbs: Any, element: FilmElement, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
+def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
     """Motion (10,) of the rigid surfaces in the initial state."""
     n = element.sides[0].size
     for side, part in zip(element.sides, (slice(0, n), slice(n, n + element.sides[1].size)), strict=True):
         side.update(mbs, q[part], q_t[part], _INITIAL)
     motion = np.empty(10)
-    joint_kinematics.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
+    relative.relative_motion(element.sides[0].frame, element.sides[1].frame, motion)
     return motion
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.watch import solver_state as solvers
+from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.seams import History
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
@@ -71,12 +71,12 @@ class SystemState:
     joints: tuple[JointState, ...]
 
     @classmethod
-    def of(cls, mbs: Any, joints: Sequence[Any]) -> SystemState:
+    def of(cls, mbs: exu.MainSystem, joints: Sequence[Any]) -> SystemState:
         """Take the last accepted state of a system and its joints after a run."""
         solver = mbs.sys.get("dynamicSolver")
         if not mbs.systemIsConsistent or solver is None:
             raise InputError("SystemState: the system has no run to take a state from; call SolveDynamic before.")
-        finished = solvers.is_finished(solver)
+        finished = solver_state.is_finished(solver)
         configuration = exu.ConfigurationType.Current if finished else exu.ConfigurationType.StartOfStep
         data, algorithmic = mbs.systemData, None
         if isinstance(solver, exu.MainSolverImplicitSecondOrder):
@@ -91,7 +91,7 @@ class SystemState:
             joints=tuple(joint.state() for joint in joints),
         )
 
-    def put_into(self, mbs: Any, joints: Sequence[Any]) -> None:
+    def put_into(self, mbs: exu.MainSystem, joints: Sequence[Any]) -> None:
         """Make this the initial state of a system of the same build, and of its joints."""
         data, initial = mbs.systemData, exu.ConfigurationType.Initial
         own = [np.size(part) for part in data.GetSystemState(initial)]
@@ -109,7 +109,7 @@ class SystemState:
             check_owner(joint, state)
         data.SetSystemState([part.tolist() for part in self.coordinates], initial)
         accelerations = self.accelerations if self.algorithmic is None else self.algorithmic
-        data.SetODE2Coordinates_tt(accelerations, initial)
+        data.SetODE2Coordinates_tt(accelerations.tolist(), initial)
         data.SetTime(self.time, initial)
         for joint, state in zip(joints, self.joints, strict=True):
             joint.restore_state(state)

@@ -17,7 +17,7 @@ from exudyn_ehd.status import EHDError, InputError, RunError
 JOINTS = "lubricatedJoints"
 
 
-def require_system(where: str, mbs: Any) -> None:
+def require_system(where: str, mbs: exu.MainSystem) -> None:
     """Refuse what is no system of Exudyn."""
     if not isinstance(mbs, exu.MainSystem):
         raise InputError(
@@ -33,13 +33,17 @@ def require_settings(where: str, settings: Any) -> None:
         )
 
 
-def joints_of(mbs: Any) -> list[Any]:
+def joints_of(mbs: exu.MainSystem) -> list[Any]:
     """The lubricated joints of a system, in the order in which they were created."""
     return mbs.variables.setdefault(JOINTS, [])
 
 
 def SolveDynamic(
-    mbs: Any, simulationSettings: Any, *, restart: SystemState | str | pathlib.Path | None = None, **options: Any
+    mbs: exu.MainSystem,
+    simulationSettings: Any,
+    *,
+    restart: SystemState | str | pathlib.Path | None = None,
+    **options: Any,
 ) -> bool:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
 
@@ -93,7 +97,7 @@ def SolveDynamic(
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
 
-def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
+def SolveStatic(mbs: exu.MainSystem, simulationSettings: Any, **options: Any) -> bool:
     """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`.
 
     Parameters
@@ -119,7 +123,7 @@ def SolveStatic(mbs: Any, simulationSettings: Any, **options: Any) -> bool:
         return bool(mbs.SolveStatic(simulationSettings, **options))
 
 
-def SaveState(mbs: Any, path: str | pathlib.Path) -> SystemState:
+def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     """Store the last accepted state of a system with all its lubricated joints; the file appears whole or not at all.
 
     Parameters
@@ -140,7 +144,7 @@ def SaveState(mbs: Any, path: str | pathlib.Path) -> SystemState:
 
 
 @contextmanager
-def own_errors(mbs: Any, where: str) -> Iterator[None]:
+def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     """Turn Exudyn's errors into this package's; errors of other user functions pass."""
     try:
         yield
@@ -158,12 +162,12 @@ def own_errors(mbs: Any, where: str) -> Iterator[None]:
         raise RunError(f"{where}: {_story(mbs, static=where == 'SolveStatic')}") from error
 
 
-def _kept(mbs: Any) -> str:
+def _kept(mbs: exu.MainSystem) -> str:
     time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
     return f"The last accepted state is at t = {time:.9g} s; joint.history holds all steps up to it."
 
 
-def _story(mbs: Any, *, static: bool) -> str:
+def _story(mbs: exu.MainSystem, *, static: bool) -> str:
     """What the joints looked like when a solver gave up."""
     time = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
     parts = [f"Exudyn's solver ended without success at t = {time:.9g} s, though every film could be evaluated; "]
@@ -188,7 +192,7 @@ def _story(mbs: Any, *, static: bool) -> str:
     return "".join(parts)
 
 
-def start_guess(mbs: Any, before: Any = None) -> StartGuess:
+def start_guess(mbs: exu.MainSystem, before: Any = None) -> StartGuess:
     """The start of Newton's method for the joints of a system, ahead of the run; ``before`` is the user's own function."""
     elements = [joint.element for joint in joints_of(mbs)]
     bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
@@ -197,7 +201,7 @@ def start_guess(mbs: Any, before: Any = None) -> StartGuess:
 
 
 @contextmanager
-def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
+def _better_start(mbs: exu.MainSystem, options: dict[str, Any]) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
     # without a stored solver its step size and parameters are not known
     if not options.get("storeSolver", True):
@@ -214,7 +218,7 @@ def _better_start(mbs: Any, options: dict[str, Any]) -> Iterator[None]:
 
 
 @contextmanager
-def _restarted(mbs: Any, settings: Any, state: SystemState) -> Iterator[None]:
+def _restarted(mbs: exu.MainSystem, settings: Any, state: SystemState) -> Iterator[None]:
     """Put a state into a system for the run within; user functions and settings are given back afterwards."""
     if not mbs.systemIsConsistent:
         raise InputError("SolveDynamic.restart: the system is not assembled; call mbs.Assemble() first.")
@@ -231,10 +235,10 @@ def _restarted(mbs: Any, settings: Any, state: SystemState) -> Iterator[None]:
     before = before["function"] if isinstance(before, dict) else before
     first = [True]
 
-    def pre_step(mbs: Any, t: float) -> bool:
+    def pre_step(mbs: exu.MainSystem, t: float) -> bool:
         if first[0]:
             # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
-            mbs.systemData.SetODE2Coordinates_tt(state.accelerations, exu.ConfigurationType.Current)
+            mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), exu.ConfigurationType.Current)
             first[0] = False
         return bool(before(mbs, t)) if callable(before) else True
 

@@ -26,7 +26,7 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
@@ -35,8 +35,6 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.status import require_integer, require_number
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 
@@ -107,7 +105,7 @@ class SparseRun:
 
 
 def SolveDynamicSparse(
-    mbs: Any,
+    mbs: exu.MainSystem,
     simulationSettings: Any | None = None,
     *,
     reuse: FactorReuse | None = None,
@@ -140,7 +138,8 @@ def SolveDynamicSparse(
     loop = _Newton(
         matrix=SystemMatrix.of(mbs), guess=start_guess(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run
     )
-    solver = exu.MainSolverImplicitSecondOrder()
+    # Exudyn's stubs lack the self of its methods
+    solver: Any = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
@@ -172,7 +171,7 @@ class _Newton:
     baseline: int = 0
     excess: int = 0
 
-    def __call__(self, solver: Any, mbs: Any, settings) -> bool:
+    def __call__(self, solver: Any, mbs: exu.MainSystem, settings) -> bool:
         newton = settings.timeIntegration.newton
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, mbs.systemData.GetTime(), 0, 0)
@@ -228,7 +227,7 @@ class _Newton:
         self.run.seconds_jacobian += time.perf_counter() - start
         return True
 
-    def _solve(self, solver: Any, mbs: Any, residual: np.ndarray) -> np.ndarray:
+    def _solve(self, solver: Any, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
         """Newton's step: with the factor, or with it and the films' operators."""
         assert self.factor is not None
         films = self.matrix.film_operators(mbs, solver)

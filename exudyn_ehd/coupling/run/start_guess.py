@@ -22,11 +22,11 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
+from exudyn_ehd.coupling.contract import NodeIndex
+
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
@@ -48,7 +48,7 @@ class StartGuess:
     """
 
     def __init__(
-        self, mbs: Any, before: Callable[[Any, float, int, int], Any] | None, bushes: Collection[int] = ()
+        self, mbs: exu.MainSystem, before: Callable[[Any, float, int, int], Any] | None, bushes: Collection[int] = ()
     ) -> None:
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
@@ -59,7 +59,7 @@ class StartGuess:
         self.past: list[tuple[float, np.ndarray]] = []
         self.guess: np.ndarray | None = None
 
-    def __call__(self, mbs: Any, t: float, iteration: int, discontinuous: int) -> None:
+    def __call__(self, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
         if iteration == 0 and discontinuous == 0:
             solver = mbs.sys.get("dynamicSolver")
             # a stored solver outlives its run
@@ -68,7 +68,7 @@ class StartGuess:
         if self.before is not None:
             self.before(mbs, t, iteration, discontinuous)
 
-    def _set_start(self, mbs: Any, solver: Any) -> None:
+    def _set_start(self, mbs: exu.MainSystem, solver: Any) -> None:
         data = mbs.systemData
         start = data.GetTime(_START_OF_STEP)
         if not self.past:
@@ -126,11 +126,11 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
     return np.where(lasts, expected, 0.0)
 
 
-def additive_coordinates(mbs: Any) -> np.ndarray:
+def additive_coordinates(mbs: exu.MainSystem) -> np.ndarray:
     """One for every second-order coordinate (n,) that displacements are added to, zero for rotations of Lie group nodes."""
     mask = np.ones(len(mbs.systemData.GetODE2Coordinates()))
     for number in range(mbs.systemData.NumberOfNodes()):
-        node = exu.NodeIndex(number)
+        node = NodeIndex(number)
         kind = mbs.GetNode(node)["nodeType"]
         if "LG" in kind or "LieGroup" in kind:
             first = mbs.GetNodeODE2Index(node)
@@ -138,11 +138,11 @@ def additive_coordinates(mbs: Any) -> np.ndarray:
     return mask
 
 
-def coordinate_groups(mbs: Any, bushes: Collection[int]) -> np.ndarray:
+def coordinate_groups(mbs: exu.MainSystem, bushes: Collection[int]) -> np.ndarray:
     """Group (n,) of every second-order coordinate: deformations of a body one each, everything else together."""
     groups = np.zeros(len(mbs.systemData.GetODE2Coordinates()), dtype=np.intp)
     for number in range(mbs.systemData.NumberOfNodes()):
-        node = exu.NodeIndex(number)
+        node = NodeIndex(number)
         values = mbs.GetNode(node)
         if values["nodeType"] == "GenericODE2" and number not in bushes:
             first = mbs.GetNodeODE2Index(node)

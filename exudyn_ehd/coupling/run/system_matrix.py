@@ -6,16 +6,15 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import exudyn
+import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 
+from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
 from exudyn_ehd.status import InputError
 
-# the index types exist at run time, but not in the type stubs
-exu: Any = exudyn
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
 _SIMPLE = ("Ground", "RigidBody", "RigidBody2D", "MassPoint", "MassPoint2D", "Mass1D", "RotationalMass1D")
 # Exudyn's steps of numerical differentiation: settings.timeIntegration.newton.numericalDifferentiation.
@@ -40,11 +39,11 @@ class SystemMatrix:
     films: tuple[tuple[Any, np.ndarray], ...]
 
     @classmethod
-    def of(cls, mbs: Any) -> SystemMatrix:
+    def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
         """Look up the objects of an assembled model."""
         data = mbs.systemData
         for number in range(data.NumberOfNodes()):
-            kind = mbs.GetNode(exu.NodeIndex(number))["nodeType"]
+            kind = mbs.GetNode(NodeIndex(number))["nodeType"]
             if "LG" in kind or "LieGroup" in kind:
                 raise InputError(
                     f"SolveDynamicSparse mbs must have additive coordinates only, got node {number} of type {kind}; "
@@ -54,9 +53,9 @@ class SystemMatrix:
         n = len(data.GetODE2Coordinates())
         films: list[tuple[Any, np.ndarray]] = []
         parts: list[Callable] = [
-            _euler_parameters(mbs, exu.NodeIndex(number), n)
+            _euler_parameters(mbs, NodeIndex(number), n)
             for number in range(data.NumberOfNodes())
-            if mbs.GetNode(exu.NodeIndex(number))["nodeType"] == "RigidBodyEP"
+            if mbs.GetNode(NodeIndex(number))["nodeType"] == "RigidBodyEP"
         ]
         if len(data.GetODE1Coordinates()):
             raise InputError(
@@ -64,7 +63,7 @@ class SystemMatrix:
                 f"{len(data.GetODE1Coordinates())} of first order; use mbs.SolveDynamic."
             )
         for number in range(data.NumberOfObjects()):
-            item = exu.ObjectIndex(number)
+            item = ObjectIndex(number)
             places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
             if len(places) == 0:
                 continue
@@ -77,7 +76,7 @@ class SystemMatrix:
                 parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
         return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
 
-    def film_operators(self, mbs: Any, solver: Any) -> list[tuple[np.ndarray, Callable]]:
+    def film_operators(self, mbs: exu.MainSystem, solver: Any) -> list[tuple[np.ndarray, Callable]]:
         """Places and operators of the films on nodal bushes at the current state, scaled by beta h^2."""
         if not self.films:
             return []
@@ -87,7 +86,7 @@ class SystemMatrix:
         made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
         return [(places, operator) for places, operator in made if operator is not None]
 
-    def assemble(self, mbs: Any, solver: Any) -> csc_matrix:
+    def assemble(self, mbs: exu.MainSystem, solver: Any) -> csc_matrix:
         """Return the iteration matrix of the current state, scaled by beta h^2."""
         h = solver.it.currentStepSize
         factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
@@ -102,7 +101,7 @@ class SystemMatrix:
         return system
 
 
-def _nodal_film(mbs: Any, item: Any) -> NodalFilmElement | None:
+def _nodal_film(mbs: exu.MainSystem, item: Index) -> NodalFilmElement | None:
     """The film element behind an object, if its bore is that of a nodal bush."""
     if mbs.GetObject(item)["objectType"] != "GenericODE2":
         return None
@@ -111,7 +110,7 @@ def _nodal_film(mbs: Any, item: Any) -> NodalFilmElement | None:
     return element if isinstance(element, NodalFilmElement) else None
 
 
-def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
+def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
     """Triplets of an ObjectGenericODE2 through its own functions and matrices."""
 
     def function(name: str) -> Callable | None:
@@ -152,7 +151,7 @@ def _generic(mbs: Any, item: Any, places: np.ndarray) -> Callable:
     return part
 
 
-def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) -> Callable:
+def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: np.ndarray) -> Callable:
     """Triplets of a body, connector or constraint through Exudyn's own matrices."""
     kind = exu.ComputeItemType
     offered = mbs.ComputeItem(item)
@@ -196,7 +195,7 @@ def _standard(mbs: Any, item: Any, places: np.ndarray, equations: np.ndarray) ->
     return part
 
 
-def _differences(mbs: Any, item: Any, places: np.ndarray, fK: float, fD: float) -> np.ndarray:
+def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float, fD: float) -> np.ndarray:
     """fK K + fD D (n, n) of an object whose forces Exudyn differentiates by differences too, in its own steps."""
     kind, data = exu.ComputeItemType.ODE2LHS, mbs.systemData
     out = np.zeros((len(places), len(places)))
@@ -212,13 +211,13 @@ def _differences(mbs: Any, item: Any, places: np.ndarray, fK: float, fD: float) 
             moved = state.copy()
             step = RELATIVE_STEP * (SMALLEST_COORDINATE + abs(state[place]))
             moved[place] += step
-            write(moved)
+            write(moved.tolist())
             out[:, column] += factor / step * (np.array(mbs.ComputeItem(item, kind)) - still)
-        write(state)
+        write(state.tolist())
     return out
 
 
-def _euler_parameters(mbs: Any, node: Any, n: int) -> Callable:
+def _euler_parameters(mbs: exu.MainSystem, node: Index, n: int) -> Callable:
     """Triplets of a node's norm condition theta.theta - 1 = 0, which no object returns."""
     data = mbs.systemData
     columns = np.array(data.GetNodeLTGODE2(int(node)), dtype=np.int32)[3:]

@@ -9,7 +9,7 @@ import exudyn as exu
 _REJECTING = (exu.MainSolverImplicitSecondOrder, exu.MainSolverStatic)
 
 
-def stored_solvers(mbs: Any) -> tuple[Any, Any]:
+def stored_solvers(mbs: exu.MainSystem) -> tuple[Any, Any]:
     """The solver objects that Exudyn's SolveDynamic and SolveStatic left in ``mbs.sys``; new ones for every run."""
     stored = mbs.sys
     return stored.get("dynamicSolver"), stored.get("staticSolver")

@@ -9,7 +9,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
-from exudyn_ehd.coupling.watch import solver_state as solvers
+from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number
 
 # Gap beside which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the clearance.
@@ -75,7 +75,7 @@ class GapWatch:
         too_far = abs(self._gap(motion) - self.gap) > self.share * max(self.gap, self.range)
         if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
             return False
-        if not solvers.can_reject_step(solver):
+        if not solver_state.can_reject_step(solver):
             return False
         self.rejections += 1
         return True

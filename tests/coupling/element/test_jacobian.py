@@ -14,7 +14,7 @@ import pytest
 import scenes
 from exudyn.advancedUtilities import NumericalJacobian
 
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics import rigid_nodes
 
 STEP = 2e-8
 TOLERANCE = 1e-6
@@ -27,7 +27,7 @@ def perturbed(element, q, k, step):
     out = q.copy()
     start = 0
     for side in element.sides:
-        if side.kind == kinematics.ROTATION_VECTOR and start + 3 <= k < start + 6:
+        if side.kind == rigid_nodes.ROTATION_VECTOR and start + 3 <= k < start + 6:
             ref = side.reference[3:]
             increment = np.zeros(3)
             increment[k - start - 3] = step
@@ -70,7 +70,7 @@ def assert_blocks(element, got, expected):
     start = 0
     for side in element.sides:
         if side.size:
-            split = 2 if side.kind == kinematics.PLANAR else 3
+            split = 2 if side.kind == rigid_nodes.PLANAR else 3
             cuts += [slice(start, start + split), slice(start + split, start + side.size)]
         start += side.size
     for rows, columns in itertools.product(cuts, cuts):

@@ -9,8 +9,7 @@ import pytest
 import scenes
 import toy
 
-from exudyn_ehd.coupling.kinematics import relative as joint_kinematics
-from exudyn_ehd.coupling.kinematics import rigid_nodes as kinematics
+from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 
 ALL = [pair for pair in itertools.product(("ground", "EP", "Rxyz", "RotVec"), repeat=2) if pair != ("ground",) * 2]
 
@@ -37,11 +36,11 @@ def test_frame_and_jacobians_are_exudyns(node):
         q_t[3:] -= reference[3:] * (reference[3:] @ q_t[3:])
     mbs.systemData.SetODE2Coordinates(q.tolist())
     mbs.systemData.SetODE2Coordinates_t(q_t.tolist())
-    kind = {"EP": kinematics.EULER_PARAMETERS, "Rxyz": kinematics.TAIT_BRYAN}.get(
-        node, kinematics.PLANAR if planar else kinematics.ROTATION_VECTOR
+    kind = {"EP": rigid_nodes.EULER_PARAMETERS, "Rxyz": rigid_nodes.TAIT_BRYAN}.get(
+        node, rigid_nodes.PLANAR if planar else rigid_nodes.ROTATION_VECTOR
     )
     frame, jac = np.zeros((3, 6)), np.zeros((4, 3, q.size))
-    kinematics.node_frame(kind, q, q_t, reference, rho, local, frame, jac)
+    rigid_nodes.node_frame(kind, q, q_t, reference, rho, local, frame, jac)
     output, item = exu.OutputVariableType, exu.ComputeItemType
     # 1e-14: a handful of operations on numbers of order one
     for got, name in ((frame[:, 3], "Position"), (frame[:, 4], "Velocity"), (frame[:, 5], "AngularVelocity")):
@@ -79,7 +78,7 @@ def moved(frame, matrix, shift, spin, velocity):
 
 def motion_of(housing, journal):
     motion = np.empty(10)
-    joint_kinematics.relative_motion(housing, journal, motion)
+    relative.relative_motion(housing, journal, motion)
     return motion
 
 
