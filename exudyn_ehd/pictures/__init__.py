@@ -2,14 +2,13 @@
 
 Module map
 ----------
+protocols  what pictures look at: a film, the film of a joint, a history
+mixins     ``plot_...`` methods of what carries a film or a history; draws nothing itself
 style      sizes, colours, fonts; opening and writing a figure
 units      in which unit a quantity is shown, and its label
-methods    ``plot_...`` of what carries a film or a history; draws nothing itself
 maps       unrolled maps of pressure, gap, fill and temperature
 bearing3d  pressure around the bore with the journal in it
-orbit      orbit in the clearance circle
-load       polar diagram of the load on the bush
-traces     quantities over time or angle
+histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle
 bush       deformed bushes with contours of a nodal field
 animation  orbit and pressure as gif or mp4
 vtk        film and bush as files for ParaView

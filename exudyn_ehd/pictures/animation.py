@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib import animation
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.data import Film, History
+from exudyn_ehd.pictures.histories import draw_clearance
 from exudyn_ehd.pictures.maps import PRESSURE, draw_map, draw_rupture, field_values, on_picture
-from exudyn_ehd.pictures.orbit import draw_clearance
+from exudyn_ehd.pictures.protocols import History, JointFilm
 from exudyn_ehd.pictures.style import BLUE, PAGE, VERMILION, style_ticks, styled
 from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError, require_integer
@@ -26,12 +26,11 @@ class Frames:
 
     Parameters
     ----------
-    films : sequence of Film
-        With ``time``.
+    films : sequence of JointFilm
     history : History
     """
 
-    def __init__(self, films: Sequence[Any], history: History) -> None:
+    def __init__(self, films: Sequence[JointFilm], history: History) -> None:
         self.films, self.history = films, history
         largest = max(float(np.max(film.pressure)) for film in films)
         lowest = min(float(np.min(film.pressure)) for film in films)
@@ -51,9 +50,9 @@ class Frames:
             bar = self.figure.colorbar(self.image, ax=self.right, label=label("pressure", self.unit), pad=0.02)
             style_ticks(bar.ax)
             self.title = self.figure.suptitle(" ")
-        self.outline: Any = None
+        self.outline: ContourSet | None = None
 
-    def show(self, film: Any) -> None:
+    def show(self, film: JointFilm) -> None:
         """Bring the picture to the instant of a film."""
         until = self.history.time <= film.time
         self.trail.set_data(*self.length(self.history.eccentricity[until]).T)
@@ -69,7 +68,7 @@ class Frames:
 
 
 def animate(
-    films: Sequence[Film],
+    films: Sequence[JointFilm],
     history: History,
     path: str | pathlib.Path,
     *,
@@ -80,8 +79,7 @@ def animate(
 
     Parameters
     ----------
-    films : sequence of Film
-        With ``time``.
+    films : sequence of JointFilm
     history : History
     path : path
         Ending in ``.gif`` or ``.mp4``.
@@ -107,7 +105,7 @@ def animate(
             writer.grab_frame()
 
 
-def _writer(target: pathlib.Path, rate: int) -> Any:
+def _writer(target: pathlib.Path, rate: int) -> animation.AbstractMovieWriter:
     if target.suffix == ".gif":
         return animation.PillowWriter(fps=rate)
     if target.suffix != ".mp4":

@@ -1,20 +1,20 @@
 """The bearing in space: pressure around the bore, with the journal in it.
 
-Clearance and pressure are far too small and too large to be drawn to scale beside the radius: the clearance is shown as a fixed
-share of the radius, the peak pressure as a hill of fixed height.
+Clearance and pressure are far too small and too large to be drawn to scale beside the radius: the clearance is shown as
+a fixed share of the radius, the peak pressure as a hill of fixed height.
 """
 
 from __future__ import annotations
 
-from typing import Any
-
 import matplotlib
 import numpy as np
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-from exudyn_ehd.pictures.data import Film
 from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
+from exudyn_ehd.pictures.protocols import Film, Target
 from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError
@@ -28,14 +28,17 @@ FACETS, ROWS = 120, 31
 SIDE, CAP = (0.72, 0.74, 0.78), (0.82, 0.84, 0.87)
 
 
-def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Any:
-    """Draw the pressure as a coloured hill on the bore, the journal at its place in it, and the load on the bush (arrow).
+def plot_bearing(
+    film: Film, *, camera: tuple[float, float] | None = None, ax: Axes3D | None = None, path: Target = None
+) -> Figure:
+    """Draw the pressure as a coloured hill on the bore, the journal in it, and the load on the bush (arrow).
 
     Parameters
     ----------
     film : Film
     camera : (float, float), optional
-        Elevation and azimuth, degrees, with y upright and x to the right at azimuth -90; by default the hill is in view.
+        Elevation and azimuth, degrees, with y upright and x to the right at azimuth -90; by default the hill is in
+        view.
     ax : matplotlib Axes3D, optional
     path : path, optional
 
@@ -63,8 +66,8 @@ def plot_bearing(film: Film, *, camera: tuple[float, float] | None = None, ax: A
         figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
         quads, values = _quads(hill), _quads(unit(p)[..., None])[..., 0].mean(axis=1)
         sides, caps = _quads(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
-        # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four corners, since
-        # it pads shorter ones with whatever the memory holds, and scales the axes by it
+        # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
+        # corners, since it pads shorter ones with whatever the memory holds, and scales the axes by it
         polygons = _turned(np.concatenate([quads, sides, caps]))
         greys = [np.tile([*shade, 1.0], (len(part), 1)) for shade, part in ((SIDE, sides), (CAP, caps))]
         faces = np.concatenate([colours(norm(values)), *greys])
@@ -119,7 +122,7 @@ def _turned(points: np.ndarray) -> np.ndarray:
     return np.stack([points[..., 0], -points[..., 2], points[..., 1]], axis=-1)
 
 
-def _draw_arrows(ax: Any, film: Film, z: np.ndarray) -> None:
+def _draw_arrows(ax: Axes3D, film: Film, z: np.ndarray) -> None:
     """The joint's x and y, and the load of the journal on the bush, at the end z = L/2 and in front of everything."""
     start = np.array([0.0, 0.0, z[-1]])
     box = {"boxstyle": "circle,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
@@ -142,7 +145,7 @@ def _camera(peak: float) -> tuple[float, float]:
     return float(elevation), float(np.degrees(np.arctan2(-1.0, sideways)))
 
 
-def _finish_axes(ax: Any, z: np.ndarray, reach: float, camera: tuple[float, float]) -> None:
+def _finish_axes(ax: Axes3D, z: np.ndarray, reach: float, camera: tuple[float, float]) -> None:
     ax.set_axis_off()
     box = np.array([[-reach, reach], [-z[-1], -z[0]], [-reach, reach]])
     ax.set(xlim=box[0], ylim=box[1], zlim=box[2])

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
+from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 
-from exudyn_ehd.pictures.data import Film
+from exudyn_ehd.pictures.protocols import Film, Target
 from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import Unit, label, unit_for
 from exudyn_ehd.status import InputError
@@ -99,8 +102,8 @@ def closed_ring(theta: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.n
 def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) -> np.ndarray:
     """Field (n, m) on the uniform grid of a picture, linear between vertices.
 
-    With ``prescribed_ends=False`` the two rows at the bearing's ends take their neighbours' values: there a film fraction is that of
-    the surroundings, not of the film.
+    With ``prescribed_ends=False`` the two rows at the bearing's ends take their neighbours' values: there a film
+    fraction is that of the surroundings, not of the film.
     """
     theta, values = closed_ring(film.theta, values)
     if not prescribed_ends and values.shape[1] > 2:
@@ -111,7 +114,7 @@ def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) 
     return np.stack([np.interp(around, theta, column) for column in rows.T], axis=1)
 
 
-def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -> Any:
+def plot_map(film: Film, field: MapField, *, ax: Axes | None = None, path: Target = None) -> Figure:
     """Draw the unrolled map of a field.
 
     The dashed line bounds the unbroken film, black lines the supply areas in the housing.
@@ -140,15 +143,15 @@ def plot_map(film: Film, field: MapField, *, ax: Any = None, path: Any = None) -
 
 
 def draw_map(
-    ax: Any,
+    ax: Axes,
     film: Film,
     field: MapField,
     unit: Unit,
     limits: tuple[float, float] | None = None,
     *,
     outlines: bool = True,
-) -> Any:
-    """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of the colours in the shown unit."""
+) -> AxesImage:
+    """Draw the map with axes and outlines into ``ax``; returns the image. ``limits`` of colours in its unit."""
     values = unit(on_picture(film, field_values(film, field), prescribed_ends=field.name != "fill"))
     low, high = limits or colour_limits(values, field)
     image = ax.imshow(
@@ -186,7 +189,7 @@ def colour_limits(values: np.ndarray, field: MapField) -> tuple[float, float]:
     return low, high
 
 
-def draw_rupture(ax: Any, film: Film) -> Any:
+def draw_rupture(ax: Axes, film: Film) -> ContourSet | None:
     """Draw the boundary of the unbroken film; None if there is none inside."""
     # vertices with a prescribed pressure are none of the solver's: full where the pressure is above the cavity's
     full = film.unbroken | (film.pressure > film.bearing.cavitation.cavity_pressure)
@@ -201,7 +204,7 @@ def draw_rupture(ax: Any, film: Film) -> Any:
     )
 
 
-def _draw_supply(ax: Any, film: Film) -> None:
+def _draw_supply(ax: Axes, film: Film) -> None:
     """Outlines of the supply areas that lie in the housing."""
     theta = np.linspace(0.0, TURN, FINE[0])
     z = np.linspace(film.z[0], film.z[-1], FINE[1])

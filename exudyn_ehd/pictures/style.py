@@ -1,4 +1,4 @@
-"""One style for all pictures: sizes for a journal's column and page, a palette safe for colour-blind readers, small type.
+"""One style for all pictures: sizes for a column and a page, small type, a palette safe for colour-blind readers.
 
 Palette: M. Okabe and K. Ito, Color Universal Design (2008). Maps use matplotlib's perceptually uniform colours.
 """
@@ -9,11 +9,14 @@ import pathlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any
+from typing import Any, cast
 
 import matplotlib
 from cycler import cycler
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from exudyn_ehd.pictures.protocols import Target
 
 BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK, GREY = (
     "#0072B2",
@@ -64,15 +67,16 @@ _type_size: ContextVar[float] = ContextVar("type size of the styled context", de
 
 @contextmanager
 def styled(type_size: float | None = None) -> Iterator[None]:
-    """Context, or decorator of a function, in which everything drawn has the style; the user's own settings come back after it.
+    """Context, or decorator, in which everything drawn has the style; the user's own settings come back after it.
 
-    It sets all sizes of type, whatever others have left in matplotlib's settings: Exudyn's ``mbs.PlotSensor`` leaves large ones.
+    It sets all sizes of type, whatever others have left in matplotlib's settings: Exudyn's ``mbs.PlotSensor`` leaves
+    large ones.
 
     Parameters
     ----------
     type_size : float, optional
-        Type of titles and labels, pt; by default that of the styled context around this one, or `TYPE_SIZE`. Figures wider than a
-        page take more.
+        Type of titles and labels, pt; by default that of the styled context around this one, or `TYPE_SIZE`. Figures
+        wider than a page take more.
     """
     size = _type_size.get() if type_size is None else type_size
     sizes = dict.fromkeys(TEXT, size) | dict.fromkeys(SMALL_TEXT, 0.875 * size)
@@ -84,7 +88,7 @@ def styled(type_size: float | None = None) -> Iterator[None]:
         _type_size.reset(token)
 
 
-def open_axes(ax: Any, size: tuple[float, float], **options: Any) -> tuple[Any, Any]:
+def open_axes(ax: Axes | None, size: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
     """Figure and axes to draw into: those given, or new ones of ``size`` (inch); call it inside `styled`.
 
     Parameters
@@ -95,20 +99,20 @@ def open_axes(ax: Any, size: tuple[float, float], **options: Any) -> tuple[Any, 
         For ``Figure.add_subplot``.
     """
     if ax is not None:
-        return ax.figure, ax
+        return cast(Figure, ax.figure), ax
     figure = Figure(figsize=size, layout="constrained")
     ax = figure.add_subplot(**options)
     style_ticks(ax)
     return figure, ax
 
 
-def style_ticks(ax: Any) -> None:
-    """Give the ticks their style now, inside of `styled`: matplotlib makes most of them when it draws, outside of it."""
+def style_ticks(ax: Axes) -> None:
+    """Give the ticks their style inside of `styled`: matplotlib makes most of them when it draws, outside of it."""
     ax.tick_params(which="both", labelsize=matplotlib.rcParams["xtick.labelsize"])
     ax.tick_params(width=RC["xtick.major.width"])
 
 
-def finish(figure: Any, path: str | pathlib.Path | None) -> Any:
+def finish(figure: Figure, path: Target) -> Figure:
     """Write the figure if a path is given (its suffix sets the format), and return it."""
     if path is not None:
         path = pathlib.Path(path)

@@ -1,7 +1,7 @@
 """Film and bush as VTK files through the package meshio, an optional extra: ``pip install exudyn-ehd[vtk]``.
 
-A series is a ``.pvd`` file, which ParaView opens as one animation, beside a folder with a ``.vtu`` file per part and instant. Everything
-stands in the joint frame, in SI units.
+A series is a ``.pvd`` file, which ParaView opens as one animation, beside a folder with a ``.vtu`` file per part and
+instant. Everything stands in the joint frame, in SI units.
 """
 
 from __future__ import annotations
@@ -9,25 +9,32 @@ from __future__ import annotations
 import importlib
 import pathlib
 from collections.abc import Sequence
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from exudyn_ehd.pictures.protocols import JointFilm
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.storage import replacing
 
+if TYPE_CHECKING:
+    from exudyn_ehd.solid.stress import StressRecovery
 
-def export_films(films: Sequence[Any], path: str | pathlib.Path, *, magnification: float = 1.0) -> list[pathlib.Path]:
+
+def export_films(
+    films: Sequence[JointFilm], path: str | pathlib.Path, *, magnification: float = 1.0
+) -> list[pathlib.Path]:
     """Write films, and the bush where there is one.
 
-    The film is a surface of quadrilaterals on the bore, moved by its displacement, with the fields pressure, gap, unbroken and, where there
-    are any, fill, temperature and bore displacement. The bush is its mesh of 20-node hexahedra, moved by the displacement of its nodes, with
-    displacement and von Mises stress.
+    The film is a surface of quadrilaterals on the bore, moved by its displacement, with the fields pressure, gap,
+    unbroken and, where there are any, fill, temperature and bore displacement. The bush is its mesh of 20-node
+    hexahedra, moved by the displacement of its nodes, with displacement and von Mises stress.
 
     Parameters
     ----------
-    films : sequence of FilmFields
+    films : sequence of JointFilm
     path : path
         Ending in ``.pvd``.
     magnification : float
@@ -53,7 +60,7 @@ def export_films(films: Sequence[Any], path: str | pathlib.Path, *, magnificatio
     folder = target.with_suffix("")
     folder.mkdir(parents=True, exist_ok=True)
     written, entries = [], []
-    recovery: Any = None
+    recovery: StressRecovery | None = None
     for k, film in enumerate(films):
         parts = [("film", *film_mesh(film, factor))]
         if film.bush_displacement is not None:
@@ -66,18 +73,17 @@ def export_films(films: Sequence[Any], path: str | pathlib.Path, *, magnificatio
             relative = quoteattr(f"{folder.name}/{file.name}")
             entries.append(f'    <DataSet timestep="{film.time!r}" part="{number}" name="{name}" file={relative}/>\n')
     with replacing(target) as out:
-        out.write(
-            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n  <Collection>\n'
-        )
+        out.write('<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">\n')
+        out.write("  <Collection>\n")
         out.writelines(entries)
         out.write("  </Collection>\n</VTKFile>\n")
     return [target, *written]
 
 
 def film_mesh(
-    film: Any, magnification: float = 1.0
+    film: JointFilm, magnification: float = 1.0
 ) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
-    """Points (n m, 3), cells and point fields of the film on the bore; the ring closes between the last and the first vertex."""
+    """Points (n m, 3), cells and point fields of the film on the bore; a closed ring."""
     n, m = film.pressure.shape
     delta = np.zeros((n, m)) if film.bore_displacement is None else film.bore_displacement
     r = film.bearing.journal_radius + film.bearing.radial_clearance + magnification * delta
@@ -100,23 +106,26 @@ def film_mesh(
 
 
 def bush_mesh(
-    film: Any, recovery: Any, magnification: float = 1.0
+    film: JointFilm, recovery: StressRecovery, magnification: float = 1.0
 ) -> tuple[np.ndarray, list[tuple[str, np.ndarray]], dict[str, np.ndarray]]:
     """Points (k, 3), cells and point fields of the bush; ``recovery`` is the `StressRecovery` of its mesh."""
     u = film.bush_displacement
+    assert u is not None
     # the nodes' order of the Abaqus element C3D20 is VTK's, too
     cells = [("hexahedron20", recovery.mesh.elements)]
     fields = {"displacement [m]": u, "von Mises stress [Pa]": recovery.von_mises_at_nodes(u)}
     return recovery.mesh.nodes + magnification * u, cells, fields
 
 
-def _recovery(bush: Any) -> Any:
+def _recovery(bush: object) -> StressRecovery:
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.stress import StressRecovery
 
+    assert isinstance(bush, ANCFBush | ModalBush)
     return StressRecovery(mesh=bush.build_mesh(), material=bush.material)
 
 
-def _meshio() -> Any:
+def _meshio() -> ModuleType:
     try:
         return importlib.import_module("meshio")
     except ImportError:

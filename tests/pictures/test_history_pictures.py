@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from exudyn_ehd.pictures.load import plot_load
-from exudyn_ehd.pictures.orbit import plot_orbit
-from exudyn_ehd.pictures.traces import plot_traces
+from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.units import unit_for
 from exudyn_ehd.status import InputError
 

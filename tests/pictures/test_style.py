@@ -12,11 +12,9 @@ from matplotlib.figure import Figure
 from exudyn_ehd.pictures.animation import Frames
 from exudyn_ehd.pictures.bearing3d import plot_bearing
 from exudyn_ehd.pictures.bush import Frame, contour_figure
-from exudyn_ehd.pictures.load import plot_load
+from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
-from exudyn_ehd.pictures.orbit import plot_orbit
 from exudyn_ehd.pictures.style import TYPE_SIZE, styled
-from exudyn_ehd.pictures.traces import plot_traces
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.report.pictures import summary_figure, work_precision
 from tests.benchmarks.accuracy.table import DATA, Row, read_table

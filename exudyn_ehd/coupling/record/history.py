@@ -14,7 +14,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import Geometry
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
-from exudyn_ehd.pictures.methods import HistoryPictures
+from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 from exudyn_ehd.tables import write_csv

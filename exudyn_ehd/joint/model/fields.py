@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.pictures.methods import FilmPictures
+from exudyn_ehd.pictures.mixins import FilmPictures
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

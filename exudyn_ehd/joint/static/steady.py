@@ -16,7 +16,7 @@ from exudyn_ehd.joint.model.fields import grid_fields
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.seams import History
 from exudyn_ehd.joint.static.steady_temperature import settle
-from exudyn_ehd.pictures.methods import FilmPictures
+from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
 
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}

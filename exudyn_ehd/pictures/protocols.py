@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+import pathlib
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from exudyn_ehd.bearing import JournalBearing
+
+Target = str | pathlib.Path | None
+"""Where a picture is written; None: nowhere."""
 
 
 class Film(Protocol):
@@ -29,7 +36,22 @@ class Film(Protocol):
     @property
     def motion(self) -> np.ndarray: ...
     @property
-    def bearing(self) -> Any: ...
+    def bearing(self) -> JournalBearing: ...
+
+
+class JointFilm(Film, Protocol):
+    """The film of a joint at one instant of a run."""
+
+    @property
+    def time(self) -> float: ...
+    @property
+    def bore_displacement(self) -> np.ndarray | None: ...
+    @property
+    def bush_displacement(self) -> np.ndarray | None: ...
+    @property
+    def contact_pressure(self) -> np.ndarray | None: ...
+    @property
+    def wear_depth(self) -> np.ndarray | None: ...
 
 
 class History(Protocol):

@@ -1,0 +1,237 @@
+"""Pictures of a history: orbit in the clearance circle, polar diagram of the load, quantities over time or an angle."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import Enum
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.projections.polar import PolarAxes
+from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+from exudyn_ehd.pictures.protocols import History, Target
+from exudyn_ehd.pictures.style import (
+    BLUE,
+    COLUMN,
+    GREY,
+    PAGE,
+    SKY,
+    VERMILION,
+    finish,
+    open_axes,
+    style_ticks,
+    styled,
+)
+from exudyn_ehd.pictures.units import QUANTITIES, Unit, label, unit_for
+from exudyn_ehd.status import InputError
+
+# Sizes of the pictures, and of the traces' margin and of one panel of them, inch.
+ORBIT, LOAD = (COLUMN, 1.12 * COLUMN), (COLUMN, 1.15 * COLUMN)
+MARGIN, PANEL = 0.55, 1.35
+# Distances of ticks on an axis of angles, degrees.
+_TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
+
+
+def plot_orbit(
+    history: History, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None
+) -> Figure:
+    """Draw the orbit of the journal's axis in the mid-plane, in the circle that a rigid aligned journal can't leave.
+
+    Parameters
+    ----------
+    history : History
+    ends : bool
+        Also draw the axis at both ends of the bearing.
+    text : str
+        Name of the orbit in the legend; two orbits in the same ``ax`` share one circle if their clearances agree.
+    ax : matplotlib Axes, optional
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib Figure
+    """
+    c = history.radial_clearance
+    unit = unit_for("length", c)
+    with styled():
+        own = ax is None
+        figure, ax = open_axes(ax, ORBIT)
+        draw_clearance(ax, c, unit)
+        e = history.eccentricity
+        if ends:
+            half = 0.5 * history.length
+            for sign, colour in ((-1.0, SKY), (1.0, VERMILION)):
+                at = unit(e + sign * half * history.motion[:, 2:4])
+                ax.plot(at[:, 0], at[:, 1], lw=0.8, color=colour, label=f"at z = {'+' if sign > 0 else '-'}L/2")
+        (line,) = ax.plot(*unit(e).T, color=BLUE if own else None, label=text or "mid-plane")
+        if len(e):
+            _mark_ends(ax, unit(e), line.get_color(), own)
+        ax.set(xlabel=label("x", unit), ylabel=label("y", unit), aspect="equal")
+        if own:
+            figure.legend(loc="outside lower center", ncols=3)
+        elif text:
+            ax.legend()
+        return finish(figure, path)
+
+
+def draw_clearance(ax: Axes, c: float, unit: Unit) -> None:
+    """Draw the clearance circle, once per radius and axes."""
+    name = f"clearance {unit(c):.4g} {unit.symbol}"
+    if any(line.get_label() == name for line in ax.lines):
+        return
+    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    ax.plot(unit(c) * np.cos(around), unit(c) * np.sin(around), "--", color=GREY, lw=0.8, label=name)
+    style_ticks(ax)
+
+
+def plot_load(history: History, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
+    """Draw the tip of the load of the journal on the bush, housing's joint frame: the opposite of ``history.force``.
+
+    Parameters
+    ----------
+    history : History
+    text : str
+        Name in the legend.
+    ax : matplotlib PolarAxes, optional
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib Figure
+
+    Raises
+    ------
+    InputError
+        If ``ax`` is not polar.
+    """
+    if ax is not None and ax.name != "polar":
+        raise InputError(
+            f"plot_load: ax must be polar, got {ax.name} axes; use subplots(subplot_kw={{'projection': 'polar'}})."
+        )
+    load = -history.force[:, :2]
+    size = np.hypot(load[:, 0], load[:, 1])
+    unit = unit_for("force", size)
+    with styled():
+        own = ax is None
+        figure, ax = open_axes(ax, LOAD, projection="polar")
+        angle = np.arctan2(load[:, 1], load[:, 0])
+        (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
+        if size.size:
+            _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), own)
+        ax.set_rlim(bottom=0.0)
+        ax.yaxis.set_major_locator(MaxNLocator(4))
+        ax.set_rlabel_position(_freest(angle))
+        ax.set_title(f"load of the journal on the bush [{unit.symbol}]")
+        ax.grid(True, lw=0.4, color="#D0D0D0")
+        if own:
+            figure.legend(loc="outside lower center", ncols=3)
+        elif text:
+            ax.legend()
+        return finish(figure, path)
+
+
+def _mark_ends(ax: Axes, points: np.ndarray, colour: str, own: bool) -> None:
+    """Mark start and end of a curve of points (n, 2); in the legend of a picture of its own."""
+    ax.plot(*points[:1].T, "o", mfc="white", mec=colour, label="start" if own else "_start")
+    ax.plot(*points[-1:].T, "o", color=colour, label="end" if own else "_end")
+
+
+def _freest(angle: np.ndarray) -> float:
+    """Angle between two labelled rays, in degrees, where the fewest of the angles (rad) lie: for the radial labels."""
+    count, _ = np.histogram(np.mod(angle, 2.0 * np.pi), bins=8, range=(0.0, 2.0 * np.pi))
+    return 22.5 + 45.0 * int(np.argmin(count))
+
+
+def plot_traces(
+    history: History,
+    quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"),
+    *,
+    angle: np.ndarray | None = None,
+    angle_text: str = "angle",
+    text: str = "",
+    axes: Sequence[Axes] | np.ndarray | None = None,
+    path: Target = None,
+) -> Figure:
+    """Draw quantities below each other over the time, or over an angle.
+
+    Parameters
+    ----------
+    history : History
+    quantities : sequence of Quantity or str
+        Scalars of the history.
+    angle : (n,) array, optional
+        Drawn along in place of the time, rad; for instance a crank angle, ``speed * history.time``.
+    angle_text : str
+        What the angle is.
+    text : str
+        Name in the legend.
+    axes : sequence of matplotlib Axes, optional
+        One for every quantity.
+    path : path, optional
+
+    Returns
+    -------
+    matplotlib Figure
+
+    Raises
+    ------
+    InputError
+        For quantities that are no scalars of a history, or that the film does not provide.
+    """
+    names = [_checked(history, q) for q in quantities]
+    if not names or (axes is not None and np.size(np.asarray(axes, dtype=object)) != len(names)):
+        raise InputError(
+            f"plot_traces: axes must be as many as the quantities ({len(names)}, at least 1), got {axes!r}."
+        )
+    if angle is not None and np.shape(angle) != history.time.shape:
+        raise InputError(
+            f"plot_traces: angle must have shape {history.time.shape} as history.time, got {np.shape(angle)}."
+        )
+    along = history.time if angle is None else np.asarray(angle, dtype=float)
+    unit = unit_for("time" if angle is None else "angle", along)
+    with styled():
+        if axes is None:
+            width = 0.62 * PAGE if len(names) > 1 else COLUMN
+            figure = Figure(figsize=(width, MARGIN + PANEL * len(names)), layout="constrained")
+            panels = list(figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0])
+        else:
+            panels = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+            figure = panels[0].figure
+        for ax, name in zip(panels, names, strict=True):
+            words, kind = QUANTITIES[name]
+            values = getattr(history, name)
+            shown = unit_for(kind, values)
+            ax.plot(unit(along), shown(values), label=text or None)
+            ax.set_ylabel(label(words, shown))
+            if axes is None:
+                style_ticks(ax)
+                ax.grid(True, lw=0.4, color="#D0D0D0")
+                ax.margins(x=0.0)
+            if kind in ("length", "ratio"):
+                largest = float(np.nanmax(shown(values)))
+                ax.set_ylim(0.0, max(ax.get_ylim()[1], 1.08 * largest))
+            if text:
+                ax.legend()
+        if angle is not None:
+            # at most nine ticks on fractions or multiples of a turn
+            span = float(np.ptp(unit(along))) if along.size else 0.0
+            panels[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in _TICKS if span <= 8.0 * b)))
+        if axes is None:
+            figure.align_ylabels(panels)
+        panels[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
+        return finish(figure, path)
+
+
+def _checked(history: History, quantity: Enum | str) -> str:
+    name = str(getattr(quantity, "value", quantity))
+    if name not in QUANTITIES or name == "time":
+        known = ", ".join(sorted(set(QUANTITIES) - {"time"}))
+        raise InputError(f"plot_traces: quantities must be scalars of a history, got {quantity!r}; known are {known}.")
+    if not np.isfinite(getattr(history, name)).any():
+        raise InputError(
+            f"plot_traces: this film has no {QUANTITIES[name][0]}, the history holds nan throughout; name other "
+            "quantities."
+        )
+    return name

@@ -1,0 +1,84 @@
+"""The ``plot_...`` methods of what carries a film or a history. Matplotlib is imported when something is drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, cast
+
+from exudyn_ehd.pictures.protocols import Film, History, Target
+
+if TYPE_CHECKING:
+    from enum import Enum
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
+
+
+class FilmPictures:
+    """Pictures of a film at one instant; mixed into what has the attributes of `pictures.protocols.Film`.
+
+    Every method draws into ``ax`` if given (a matplotlib Axes, so that pictures can be combined) or into a figure of
+    its own, writes it to ``path`` if given, and returns the figure.
+    """
+
+    def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of the pressure, with the boundary of the unbroken film and the housing's supply areas."""
+        return self._map("PRESSURE", ax, path)
+
+    def plot_gap(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of the gap, as `plot_pressure`."""
+        return self._map("GAP", ax, path)
+
+    def plot_fill(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of the film fraction of a mass-conserving film, as `plot_pressure`."""
+        return self._map("FILL", ax, path)
+
+    def plot_temperature(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of the film's temperature, as `plot_pressure`."""
+        return self._map("TEMPERATURE", ax, path)
+
+    def plot_contact_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of the pressure of asperities or wall, as `plot_pressure`; of a joint's film."""
+        return self._map("CONTACT_PRESSURE", ax, path)
+
+    def plot_wear_depth(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
+        """Unrolled map of what was worn off the bore, as `plot_pressure`; of a joint's film."""
+        return self._map("WEAR_DEPTH", ax, path)
+
+    def plot_bearing(
+        self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
+    ) -> Figure:
+        """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees."""
+        from exudyn_ehd.pictures.bearing3d import plot_bearing
+
+        return plot_bearing(cast(Film, self), camera=camera, ax=ax, path=path)
+
+    def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
+        from exudyn_ehd.pictures import maps
+
+        return maps.plot_map(cast(Film, self), getattr(maps, field), ax=ax, path=path)
+
+
+class HistoryPictures:
+    """Pictures of a history; mixed into what has the attributes of `pictures.protocols.History`. See `FilmPictures`."""
+
+    def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
+        """Orbit of the journal in the clearance circle, with ``ends`` also at both ends; ``text`` is for a legend."""
+        from exudyn_ehd.pictures.histories import plot_orbit
+
+        return plot_orbit(cast(History, self), ends=ends, text=text, ax=ax, path=path)
+
+    def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
+        """Polar diagram of the load of the journal on the bush, in the housing's joint frame."""
+        from exudyn_ehd.pictures.histories import plot_load
+
+        return plot_load(cast(History, self), text=text, ax=ax, path=path)
+
+    def plot_traces(
+        self, quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
+    ) -> Figure:
+        """Quantities over time, or over an ``angle``; options as in `pictures.histories.plot_traces`."""
+        from exudyn_ehd.pictures.histories import plot_traces
+
+        return plot_traces(cast(History, self), quantities, **options)
