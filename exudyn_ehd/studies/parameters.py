@@ -1,18 +1,18 @@
-"""Studies over parameters with Exudyn's `ParameterVariation`: in this process, in several, under MPI, on a cluster of hosts.
+"""Studies over parameters with Exudyn's `ParameterVariation`: in this process, in several, under MPI, on hosts.
 
 The same call serves all four; what differs is how the script is started:
 
-=============  ==========================================  =======================================================
+=============  ==========================================  =============================================================
 where          call                                        start
-=============  ==========================================  =======================================================
+=============  ==========================================  =============================================================
 this process   ``parameter_study(f, parameters)``          ``python study.py``
 processes      ``..., processes=4``                        ``python study.py``; under ``if __name__ == "__main__":``
-MPI            ``..., mpi=True``                           ``mpiexec -n 5 python -m mpi4py.futures study.py``: one rank leads, four
-                                                           compute; needs mpi4py and an MPI library; under
+MPI            ``..., mpi=True``                           ``mpiexec -n 5 python -m mpi4py.futures study.py``: one rank
+                                                           leads, four compute; needs mpi4py and an MPI library; under
                                                            ``if __name__ == "__main__":``
-hosts          ``..., hosts=("10.0.0.2", "10.0.0.3")``     ``python study.py``, with ``dispynode.py`` of the package dispy running on
-                                                           every host and this package installed there
-=============  ==========================================  =======================================================
+hosts          ``..., hosts=("10.0.0.2", "10.0.0.3")``     ``python study.py``, with ``dispynode.py`` of the package
+                                                           dispy running on every host and this package installed there
+=============  ==========================================  =============================================================
 
 Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: every worker has its own linear algebra.
 """
@@ -88,8 +88,8 @@ class StudyTable:
 class EquilibriumPoint:
     """A function for `parameter_study`: equilibrium of a bearing under a load, with parameters replaced by name.
 
-    Parameters that it knows: the bearing's ``journal_radius``, ``length``, ``radial_clearance``; ``viscosity`` of its lubricant; ``speed``;
-    ``load`` (its size; the direction stays).
+    Parameters that it knows: the bearing's ``journal_radius``, ``length``, ``radial_clearance``; ``viscosity`` of its
+    lubricant; ``speed``; ``load`` (its size; the direction stays).
 
     Parameters
     ----------
@@ -141,7 +141,8 @@ def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalB
     unknown = sorted(set(values) - set(known))
     if unknown:
         raise InputError(
-            f"varied: parameters must be among {', '.join(known)}, got {', '.join(unknown)}; write a function of your own."
+            f"varied: parameters must be among {', '.join(known)}, got {', '.join(unknown)}; "
+            "write a function of your own."
         )
     if "viscosity" in values:
         lubricant = dataclasses.replace(bearing.lubricant, viscosity=values.pop("viscosity"))
@@ -164,9 +165,9 @@ def parameter_study(
     Parameters
     ----------
     function : callable
-        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For processes and MPI it must be
-        importable: a function or an instance of a class defined at the top of a module. Hosts get the source of a plain function alone:
-        let it import what it needs.
+        Gets a dict of parameters and returns a number or a dict of numbers. It builds its own model. For processes and
+        MPI it must be importable: a function or an instance of a class defined at the top of a module. Hosts get the
+        source of a plain function alone: let it import what it needs.
     parameters : dict
         Name: sequence of numbers.
     processes : int
@@ -188,8 +189,8 @@ def parameter_study(
     Raises
     ------
     InputError
-        For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at once, missing
-        packages.
+        For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at
+        once, missing packages.
     EHDError
         If every row failed.
     """
@@ -301,8 +302,8 @@ def _check_picklable(function: Any) -> None:
         pickle.dumps(function)
     except (pickle.PicklingError, AttributeError, TypeError) as error:
         raise InputError(
-            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a lambda or inside "
-            "another function."
+            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a "
+            "lambda or inside another function."
         ) from None
 
 

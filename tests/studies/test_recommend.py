@@ -1,4 +1,4 @@
-"""`recommend`: what it says holds for bearings that were not measured, and it says nothing where nothing was measured."""
+"""`recommend`: what it says holds for bearings that were not measured; where nothing was measured it says nothing."""
 
 import dataclasses
 import math

@@ -65,7 +65,7 @@ def steady_film(scene: SteadyScene, *, quick: bool) -> Study:
 
 
 def steady_closures(scene: SteadyScene) -> Study:
-    """Cavitation closures at a steady position: cavity 1 bar below ambient, oil from an axial groove at the widest gap, 1 bar above."""
+    """Closures at a steady position: cavity 1 bar below ambient, oil 1 bar above from a groove at the widest gap."""
     groove = AxialGroove(angle=_middle(scene) + math.pi, width_angle=0.3, pressure=1e5)
     scene = dataclasses.replace(scene, bearing=dataclasses.replace(scene.bearing, supply=(groove,)))
     return Study(
@@ -130,7 +130,7 @@ def steady_effects() -> Study:
     return ladders.effects_study(scene, off, ("load", "friction", "peak pressure", "leakage", "attitude"))
 
 
-# --- moving journals ---------------------------------------------------------------------------------------------------
+# --- moving journals --------------------------------------------------------------------------------------------------
 
 
 def film_study(scene: MovingScene, *, quick: bool = False) -> Study:
@@ -159,7 +159,7 @@ def film_study(scene: MovingScene, *, quick: bool = False) -> Study:
 
 
 def _classic() -> list[Setting]:
-    """The paper's scheme: rule (11) at its own tolerance with a Newton tolerance that its noise allows, and converged."""
+    """The paper's scheme: its own tolerance with a Newton tolerance that its noise allows, and converged."""
     out = []
     for tolerance, newton in ((ladders.PAPER_TOLERANCE, 1e-3), (1e-9, 1e-6)):
         grid = ladders.PAPER_GRID
@@ -269,7 +269,7 @@ def mixed_effects_study(scene: MovingScene) -> Study:
     return ladders.effects_study(scene, off)
 
 
-# --- all of them -------------------------------------------------------------------------------------------------------
+# --- all of them ------------------------------------------------------------------------------------------------------
 
 
 def moving_catalogue() -> dict[str, Callable[[], Study]]:
@@ -315,6 +315,6 @@ def full_catalogue() -> dict[str, Callable[[], Study]]:
 
 
 def quick_catalogue() -> dict[str, Callable[[], Study]]:
-    """A minute's worth of it: film models at a steady position and on a journal's path, and step and integrator there."""
+    """A minute's worth of it: film models at a steady position and on a journal's path."""
     main = steady_scene(0.8)
     return {f"{main.name}_film": partial(steady_film, main, quick=True)} | quick_moving_catalogue()

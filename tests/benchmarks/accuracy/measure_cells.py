@@ -89,7 +89,7 @@ BLOCKS = (RIGID, LINER, SOLID)
 def cell_bearing(
     kind: str, length_to_diameter: float, elasticity: float, film: Film, *, tilted: bool = False
 ) -> JournalBearing:
-    """A bearing with the cell's L/D and kappa at the spin `SPEED`; ``tilted``: a solid bush has modes that are odd in z."""
+    """A bearing with the cell's L/D and kappa at the spin `SPEED`; ``tilted``: a solid bush has modes odd in z."""
     length = 2.0 * RADIUS * length_to_diameter
     plain = JournalBearing(
         journal_radius=RADIUS,

@@ -37,8 +37,8 @@ class Row:
     reference_error : float
         Estimated error of that reference.
     own_error, own_reference_error : float
-        Error of the discretisation alone, against the converged solution of the setting's own model, and that solution's own
-        error; nan where the study has none.
+        Error of the discretisation alone, against the converged solution of the setting's own model, and that
+        solution's own error; nan where the study has none.
     seconds, low, high : float
         Median and quartiles of the time; nan if it was not measured.
     setup, compile : float
@@ -199,11 +199,11 @@ def format_rows(rows: Iterable[Row]) -> str:
     out = []
     for quantity, block in blocks.items():
         reference = next((r for r in block if not r.failure), block[0])
+        own = f"itself good to {_percent(reference.reference_error)}"
+        out.append(f"{reference.study}: {quantity}; error against {reference.reference}, {own}")
         out.append(
-            f"{reference.study}: {quantity}; error against {reference.reference}, itself good to {_percent(reference.reference_error)}"
-        )
-        out.append(
-            f"  {'setting':34s}{'family':26s}{'value':>11s}{'error':>10s}{'own error':>11s}{'time':>11s}{'spread':>8s}{'newton':>8s}{'films':>7s}"
+            f"  {'setting':34s}{'family':26s}{'value':>11s}{'error':>10s}{'own error':>11s}"
+            f"{'time':>11s}{'spread':>8s}{'newton':>8s}{'films':>7s}"
         )
         for row in block:
             start = f"  {row.setting:34s}{row.family:26s}"

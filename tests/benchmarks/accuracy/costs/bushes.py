@@ -1,9 +1,10 @@
-"""What a bush costs under a film in a run: steps, Newton iterations, the film's Jacobian, and the assembly of its elements.
+"""What a bush costs under a film: steps and Newton iterations of a run, the film's Jacobian, assembly of its elements.
 
-A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of 20 mm) under a
-load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6; tilted cases load it beside its middle. Runs of all
-bores take turns in a process; times are process times, factors those of one process. Several processes, one after the other, tell how much these differ
-from one to the next: more than from turn to turn, since the products of modal bushes feel what else shares the processor's caches.
+A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of
+20 mm) under a load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6; tilted cases load it
+beside its middle. Runs of all bores take turns in a process; times are process times, factors those of one process.
+Several processes, one after the other, tell how much these differ from one to the next: more than from turn to turn,
+since the products of modal bushes feel what else shares the processor's caches.
 """
 
 from __future__ import annotations
@@ -211,7 +212,10 @@ class Block:
 
 
 def measure_block(cases: Mapping[str, Case], turns: int, share: float) -> Block:
-    """Every case in ``turns`` turns of ``share`` of its steps (time per step: mean over the turns), Jacobians and assemblies, here and now."""
+    """Every case in ``turns`` turns of ``share`` of its steps, Jacobians and assemblies, in this process.
+
+    The time per step is the mean over the turns.
+    """
     out = Block()
     for turn in range(turns + 1):
         for name, case in cases.items():

@@ -1,13 +1,14 @@
 """What every effect, closure and reduced film costs over the plain film.
 
-The journal moves along an orbit at eccentricity ratios of 0.75 to 0.85, a degree per evaluation, and every state is evaluated with its
-exact tangent, as in a time integration; three states are a step, of which the last is accepted. From the same run:
+The journal moves along an orbit at eccentricity ratios of 0.75 to 0.85, a degree per evaluation, and every state is
+evaluated with its exact tangent, as in a time integration; three states are a step, of which the last is accepted. From
+the same run:
 
     evaluation with tangent    mean over the states,
     accepted step              three evaluations, two tangents and one history, which effects that remember pay in.
 
-Every state counts with the best of some rounds that alternate between the cases (what else the machine does only adds); several such
-blocks, each with models built anew, give the spread: where a model lies in memory makes a per cent or two.
+Every state counts with the best of some rounds that alternate between the cases (what else the machine does only adds);
+several such blocks, each with models built anew, give the spread: where a model lies in memory makes a per cent or two.
 """
 
 from __future__ import annotations
@@ -148,7 +149,7 @@ def orbit(clearance: float = CLEARANCE, speed: float = SPEED, count: int = COUNT
 
 
 def stages(model: Any, states: np.ndarray) -> np.ndarray:
-    """Processor times (len(states), 3) in s of evaluation, tangent and history along the orbit, from its first state's history on."""
+    """Processor times (len(states), 3) in s of evaluation, tangent and history along the orbit."""
     out = np.zeros((len(states), 3))
     step = 3.0 * DEGREE / (WHIRL * states[0, 8])
     clock = time.process_time
@@ -166,7 +167,10 @@ def stages(model: Any, states: np.ndarray) -> np.ndarray:
 
 
 def block(models: Mapping[str, Any], states: np.ndarray, rounds: int) -> dict[str, tuple[float, float]]:
-    """Times of an evaluation with tangent and of an accepted step by case: best of ``rounds`` for every state, all cases in turns."""
+    """Times of an evaluation with tangent and of an accepted step by case.
+
+    Of every state the best of ``rounds``, all cases in turns.
+    """
     best = {name: np.full((len(states), 3), math.inf) for name in models}
     for _ in range(rounds):
         for name, model in models.items():

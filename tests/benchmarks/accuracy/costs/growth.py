@@ -1,6 +1,7 @@
 """How cost grows with the film's grid, the modes of a bush and the joints in a model: times and fitted exponents.
 
-``t ~ n^k``: k is the slope of a straight line through log t over log n. Processor time of one thread, median of several rounds in turns.
+``t ~ n^k``: k is the slope of a straight line through log t over log n. Processor time of one thread, median of several
+rounds in turns.
 """
 
 from __future__ import annotations

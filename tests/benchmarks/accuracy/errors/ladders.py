@@ -37,8 +37,8 @@ CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 
 CAVITY = -1e5
 SOLID = "elastic solid"
 BushLevel = tuple[MeshSize, float, Grid | None]
-# Mesh, tolerance and film are refined together: next to the ends a bore gives way within less than an interval of a coarse film, and finer
-# modes on such a film converge to something else.
+# Mesh, tolerance and film are refined together: next to the ends a bore gives way within less than an interval of a
+# coarse film, and finer modes on such a film converge to something else.
 BUSH_LEVELS: tuple[BushLevel, ...] = (
     ((4, 2, 32), 8e-3, (128, 16)),
     ((6, 3, 48), 4e-3, (192, 24)),

@@ -4,9 +4,10 @@ With values f1, f2, f3 on levels that are each ``ratio`` times finer than the on
 
     p = log(|f2 - f1| / |f3 - f2|) / log(ratio),    |f3 - f| = |f3 - f2| / (ratio^p - 1).
 
-Source: L. F. Richardson, Phil. Trans. Royal Soc. A 210 (1911) 307; use and limits as in P. J. Roache, J. Fluids Engineering 116 (1994)
-405. The observed order is cut off at the scheme's formal order, beyond which it is luck, and at 1/2, below which the levels do not
-converge visibly (the rupture line snaps to columns): the estimate then is pessimistic.
+Source: L. F. Richardson, Phil. Trans. Royal Soc. A 210 (1911) 307; use and limits as in P. J. Roache, J. Fluids
+Engineering 116 (1994) 405. The observed order is cut off at the scheme's formal order, beyond which it is luck, and at
+1/2, below which the levels do not converge visibly (the rupture line snaps to columns): the estimate then is
+pessimistic.
 """
 
 from __future__ import annotations

@@ -1,13 +1,13 @@
 """A study: scene + ladder of settings + references -> table of errors and times.
 
-Errors are told apart by what they are measured against. Every model that a study names may have a reference: three settings
-finer than the finest rung of that model, from which `converged` estimates the reference's own error. The first reference is that of
-the scene's dearest model; a rung's ``error`` is measured against it and holds what its model leaves out, its ``own_error`` against
-its own model's reference and holds the discretisation alone.
+Errors are told apart by what they are measured against. Every model that a study names may have a reference: three
+settings finer than the finest rung of that model, from which `converged` estimates the reference's own error. The first
+reference is that of the scene's dearest model; a rung's ``error`` is measured against it and holds what its model
+leaves out, its ``own_error`` against its own model's reference and holds the discretisation alone.
 
-Times are processor time of one thread. The first run of a setting is apart (compilation); then all settings run in turns, so that a
-disturbance of the machine meets them alike, and the median counts with the quartiles as spread. References are not timed and run side
-by side.
+Times are processor time of one thread. The first run of a setting is apart (compilation); then all settings run in
+turns, so that a disturbance of the machine meets them alike, and the median counts with the quartiles as spread.
+References are not timed and run side by side.
 """
 
 from __future__ import annotations
@@ -127,7 +127,8 @@ def run_study(
     budget : float
         Processor time in s after which a setting that has run three times is not repeated further.
     processes : int
-        More than 1: settings run side by side through Exudyn's `ParameterVariation`; errors are the same, times are not measured.
+        More than 1: settings run side by side through Exudyn's `ParameterVariation`; errors are the same, times are not
+        measured.
     reference_processes : int
         How many of the references' settings run side by side, after the timed ones.
     progress : function or None

@@ -75,12 +75,14 @@ def paper_text(folder: pathlib.Path) -> str:
     (paper,) = (row for row in rows if "(paper)" in row.setting and row.quantity == "load")
     coarse, default, film_map = (_row(rows, name, "load") for name in ("2D 48 x 6", "2D 96 x 10", "map"))
     return (
-        "The scheme of the paper that this package starts from (finite differences, SOR, Guembel, tolerance 1e-5; its film grid is not "
-        f"printed, here one point per node of its bush) takes {format_seconds(paper.seconds)} and misses the load by "
-        f"{_percent(paper.error)}, nearly all of it for the closure: against a converged Guembel film it is {_percent(paper.own_error)} off. "
-        f"`FiniteLength(n_theta=48, n_z=6)` takes {format_seconds(coarse.seconds)} for {_percent(coarse.error)}, the default grid "
-        f"{format_seconds(default.seconds)} for {_percent(default.error)}, an `ImpedanceMap` {format_seconds(film_map.seconds)} for "
-        f"{_percent(film_map.error)} once it is tabulated ({machine_of(notes)}, one thread)."
+        "The scheme of the paper that this package starts from (finite differences, SOR, Gümbel, tolerance 1e-5; "
+        "its film grid is not printed, here one point per node of its bush) "
+        f"takes {format_seconds(paper.seconds)} and misses the load by {_percent(paper.error)}, nearly all of it for "
+        f"the closure: against a converged Gümbel film it is {_percent(paper.own_error)} off. "
+        f"`FiniteLength(n_theta=48, n_z=6)` takes {format_seconds(coarse.seconds)} for {_percent(coarse.error)}, "
+        f"the default grid {format_seconds(default.seconds)} for {_percent(default.error)}, "
+        f"an `ImpedanceMap` {format_seconds(film_map.seconds)} for {_percent(film_map.error)} once it is tabulated "
+        f"({machine_of(notes)}, one thread)."
     )
 
 
@@ -116,8 +118,9 @@ def growth_text(folder: pathlib.Path) -> str:
         key=lambda r: r.seconds,
     )
     return text + (
-        f"\n\nThe journal under a step load takes explicit Runge-Kutta, stable from {explicit.setting.split()[1]} steps on, "
-        f"{format_seconds(explicit.seconds)}; generalised alpha {format_seconds(implicit.seconds)} for {implicit.setting.split()[0]} steps "
+        "\n\nThe journal under a step load takes explicit Runge-Kutta, stable from "
+        f"{explicit.setting.split()[1]} steps on, {format_seconds(explicit.seconds)}; "
+        f"generalised alpha {format_seconds(implicit.seconds)} for {implicit.setting.split()[0]} steps "
         f"and {_percent(implicit.error)} of the clearance."
     )
 
@@ -151,8 +154,9 @@ def effect_text(folder: pathlib.Path) -> str:
         "evaluation, over `ElrodAdams`",
         "accepted step, over `ElrodAdams`",
     ]
-    text = f"Time over that of the plain film ({format_seconds(plain.seconds)} per evaluation with exact tangent, grid 96 x 10)"
-    return table(head, lines) + "\n\n" + _source(EFFECT_FACTORS, notes, f"{text}, ± half the distance of the quartiles")
+    each = f"{format_seconds(plain.seconds)} per evaluation with exact tangent, grid 96 x 10"
+    text = f"Time over that of the plain film ({each}), ± half the distance of the quartiles"
+    return table(head, lines) + "\n\n" + _source(EFFECT_FACTORS, notes, text)
 
 
 def bush_text(folder: pathlib.Path) -> str:

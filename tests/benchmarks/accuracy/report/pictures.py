@@ -13,12 +13,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.transforms import Bbox
 
 from exudyn_ehd.pictures.style import BLACK, GREY, PALETTE, RESOLUTION, style_ticks, styled
 from exudyn_ehd.tables import format_seconds
 from tests.benchmarks.accuracy.report.front import cheapest, pareto_front
 from tests.benchmarks.accuracy.table import Row
 
+# Left, lower, right, upper, in pixels.
+Box = tuple[float, float, float, float]
 LEVELS = (0.1, 0.01, 0.001)
 # Errors below this are rounding.
 FLOOR = 1e-12
@@ -34,7 +37,7 @@ MARKERS = "osD^vP*X<>ph8"
 
 
 def work_precision(rows: Sequence[Row], title: str, per: str) -> Figure:
-    """Error against time of one study and quantity: every point labelled, families by colour, the Pareto front as a line.
+    """Error against time of one study and quantity: labelled points, families by colour, the Pareto front as a line.
 
     Parameters
     ----------
@@ -146,10 +149,7 @@ def short_label(row: Row) -> str:
 
 def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
     """Write every label beside its point where it covers neither a label nor a point; far ones get a thin line."""
-    to_screen = axes.transData.transform
-    box = axes.get_window_extent()
-    scale = axes.figure.dpi / 72.0
-    size = 5.5
+    to_screen, scale, size = axes.transData.transform, axes.figure.dpi / 72.0, 5.5
     place = np.array([to_screen((row.seconds, _error(row))) for row in points])
     taken = [(x - 3 * scale, y - 3 * scale, x + 3 * scale, y + 3 * scale) for x, y in place]
     # error bars and front are no place for text either
@@ -159,35 +159,15 @@ def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
     line = to_screen(_front_line(points, axes.get_ylim()[1], axes.get_xlim()[1]))
     for (x0, y0), (x1, y1) in itertools.pairwise(line):
         taken.append((min(x0, x1) - scale, min(y0, y1) - scale, max(x0, x1) + scale, max(y0, y1) + scale))
-    order = np.argsort(place[:, 0] + 0.3 * place[:, 1])
-    for k in order:
+    for k in np.argsort(place[:, 0] + 0.3 * place[:, 1]):
         text = short_label(points[k])
         w, h = (0.60 * size * len(text) + 1.0) * scale, 1.15 * size * scale
-        x, y = place[k]
-        best: tuple[float, float, float] | None = None
-        for distance in (5.0, 9.0, 14.0, 20.0, 28.0, 38.0, 50.0, 65.0):
-            for angle in (20, -20, 160, -160, 60, -60, 90, -90, 120, -120, 0, 180):
-                a = math.radians(angle)
-                cx = (
-                    x
-                    + (distance * math.cos(a)) * scale
-                    + (0.5 * w if math.cos(a) > 0.2 else -0.5 * w if math.cos(a) < -0.2 else 0.0)
-                )
-                cy = y + distance * math.sin(a) * scale
-                mine = (cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h)
-                inside = mine[0] > box.x0 and mine[2] < box.x1 and mine[1] > box.y0 and mine[3] < box.y1
-                if inside and not any(_overlap(mine, other) for other in taken):
-                    best = (cx, cy, distance)
-                    break
-            if best is not None:
-                break
-        if best is None:
+        found = _free_place(place[k], (w, h), taken, axes.get_window_extent(), scale)
+        if found is None:
             continue
-        cx, cy, distance = best
-        taken.append((cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h))
-        arrow = (
-            {"arrowstyle": "-", "lw": 0.35, "color": GREY, "shrinkA": 0.0, "shrinkB": 2.0} if distance > 9.0 else None
-        )
+        cx, cy, distance = found
+        taken.append(_box(cx, cy, w, h))
+        thin = {"arrowstyle": "-", "lw": 0.35, "color": GREY, "shrinkA": 0.0, "shrinkB": 2.0}
         axes.annotate(
             text,
             (points[k].seconds, _error(points[k])),
@@ -196,18 +176,39 @@ def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
             fontsize=size,
             ha="center",
             va="center",
-            arrowprops=arrow,
+            arrowprops=thin if distance > 9.0 else None,
             zorder=4,
             annotation_clip=False,
         )
 
 
-def _overlap(a: Sequence[float], b: Sequence[float]) -> bool:
+def _free_place(
+    point: np.ndarray, size: tuple[float, float], taken: Sequence[Box], page: Bbox, scale: float
+) -> tuple[float, float, float] | None:
+    """Centre of a label of a size (pixels) and its distance to its point (pt): the nearest that covers nothing."""
+    w, h = size
+    for distance in (5.0, 9.0, 14.0, 20.0, 28.0, 38.0, 50.0, 65.0):
+        for angle in (20, -20, 160, -160, 60, -60, 90, -90, 120, -120, 0, 180):
+            cosine, sine = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            aside = 0.5 * w if cosine > 0.2 else -0.5 * w if cosine < -0.2 else 0.0
+            cx, cy = point[0] + distance * cosine * scale + aside, point[1] + distance * sine * scale
+            mine = _box(cx, cy, w, h)
+            inside = mine[0] > page.x0 and mine[2] < page.x1 and mine[1] > page.y0 and mine[3] < page.y1
+            if inside and not any(_overlap(mine, other) for other in taken):
+                return cx, cy, distance
+    return None
+
+
+def _box(cx: float, cy: float, w: float, h: float) -> Box:
+    return cx - 0.5 * w, cy - 0.5 * h, cx + 0.5 * w, cy + 0.5 * h
+
+
+def _overlap(a: Box, b: Box) -> bool:
     return a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
 
 
 def summary_rows(tables: Iterable[tuple[Sequence[Row], str]]) -> list[list[str]]:
-    """One line per study and quantity: study, quantity, reference with its own error, cheapest setting within 10, 1 and 0.1 %.
+    """One line per study and quantity under `HEADINGS`, with the cheapest setting within 10, 1 and 0.1 %.
 
     Parameters
     ----------

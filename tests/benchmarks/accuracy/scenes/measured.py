@@ -41,7 +41,7 @@ WHIRL_TURNS = 8
 
 
 def paper_journal() -> JournalBearing:
-    """The rotating journal of the EHD joint paper: 66 mm long, clearance 30 um, 9 mPa s; R = 30 mm, which it leaves out."""
+    """The rotating journal of the paper on EHD joints: L = 66 mm, c = 30 um, 9 mPa s; R = 30 mm, which it omits."""
     return JournalBearing(
         journal_radius=0.03, length=0.066, radial_clearance=30e-6, lubricant=Lubricant(viscosity=9e-3)
     )
@@ -65,7 +65,7 @@ def steady_scene(eccentricity_ratio: float, tilt_ratio: float = 0.0) -> SteadySc
 
 
 def loaded_bearing() -> JournalBearing:
-    """The paper's journal in an oil with every law of this package, with a film temperature field and rough surfaces."""
+    """The paper's journal with pressure, temperature and shear laws of its oil, a heated film and rough surfaces."""
     oil = Lubricant(
         viscosity=9e-3,
         temperature=353.15,
@@ -85,7 +85,7 @@ def loaded_bearing() -> JournalBearing:
 
 
 def step_load_orbit() -> MovingScene:
-    """Journal of 2 kg, d = 50 mm, c = 50 um, B = 25 mm, 0.02 Pa s, 100 pi rad/s; 2000 N from t = 0, concentric at rest."""
+    """Journal of 2 kg, d = 50 mm, c = 50 um, L = 25 mm, 0.02 Pa s, 100 pi rad/s; 2000 N from t = 0, concentric."""
     motion = mechanisms.ConstantSpin(spin=100.0 * math.pi)
     bearing = JournalBearing(
         journal_radius=0.025, length=0.025, radial_clearance=50e-6, lubricant=Lubricant(viscosity=0.02)
@@ -106,7 +106,10 @@ def step_load_orbit() -> MovingScene:
 
 
 def slider_pin() -> MovingScene:
-    """Gudgeon pin of a slider-crank at 5000 rpm, R = 10 mm, L = 20 mm, c = 20 um, 0.02 Pa s; what follows the first half turn counts."""
+    """Gudgeon pin of a slider-crank at 5000 rpm, R = 10 mm, L = 20 mm, c = 20 um, 0.02 Pa s.
+
+    What follows the first half turn counts.
+    """
     spin = 5000.0 * 2.0 * math.pi / 60.0
     bearing = JournalBearing(
         journal_radius=0.010, length=0.020, radial_clearance=20e-6, lubricant=Lubricant(viscosity=0.02)
@@ -202,7 +205,7 @@ CONTACT = GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1.1e11)
 
 
 def start_stop() -> MovingScene:
-    """Loaded journal that starts from rest on its bush and stops again: boundary, mixed and full lubrication; R = 25 mm, L = 25 mm."""
+    """Loaded journal that starts from rest on its bush and stops again: boundary, mixed and full lubrication."""
     bearing = JournalBearing(
         journal_radius=0.025,
         length=0.025,

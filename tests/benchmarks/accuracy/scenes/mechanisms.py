@@ -57,7 +57,7 @@ def rotor(
     position: tuple[float, float] = (0.0, 0.0),
     driven: bool = True,
 ) -> Built:
-    """A disc of ``mass`` (kg) with prescribed rotation (rad, rad/s), free in x and y under ``load`` (N), in a bearing fixed to ground.
+    """A disc of ``mass`` (kg), rotation prescribed (rad, rad/s), free in x and y under ``load`` (N).
 
     Without ``driven`` it keeps its first spin by a huge inertia: explicit integrators know no constraints.
     """
@@ -112,7 +112,7 @@ def slider_crank(
     piston_force: OfTime | None = None,
     big_end: bool = False,
 ) -> Built:
-    """A slider-crank at constant spin from the outer dead centre, lubricated at the pin of the slider or at the big end.
+    """A slider-crank at constant spin from the outer dead centre; a lubricated pin at the slider or at the big end.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ class StartStop:
 
 @dataclass(frozen=True, kw_only=True)
 class GasPulse:
-    """Force on a piston in x: one pulse of ``peak`` (N) towards the crank just after the outer dead centre of every second turn."""
+    """Force on a piston in x: a pulse of ``peak`` (N) after the outer dead centre of every second turn."""
 
     spin: float
     peak: float

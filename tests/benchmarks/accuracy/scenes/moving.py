@@ -139,10 +139,10 @@ def extremes_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
 
 
 def growth(history: JointHistory, instants: np.ndarray, offset: tuple[float, float], spin: float) -> dict[str, float]:
-    """Growth rate and frequency, over the spin, of a small vibration that was released at ``offset`` (m) from its centre.
+    """Growth rate and frequency, over the spin, of a small vibration released at ``offset`` (m) from its centre.
 
-    Of a linear vibration in one mode, ``u = exp(g t) (a cos w t + b sin w t)``, the swept area ``|u x du/dt| = w |a x b| exp(2 g t)``
-    grows without ripple; the angle of the ellipse, stretched to a circle, is w t.
+    Of a linear vibration in one mode, ``u = exp(g t) (a cos w t + b sin w t)``, the swept area ``|u x du/dt| = w |a x
+    b| exp(2 g t)`` grows without ripple; the angle of the ellipse, stretched to a circle, is w t.
     """
     kept = history.time >= instants[0] * (1.0 - 1e-9)
     centre = history.eccentricity[0] - np.array(offset)

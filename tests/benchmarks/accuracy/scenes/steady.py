@@ -1,7 +1,8 @@
 """Scenes: a journal at a prescribed position, evaluated with its exact tangent as in the steps of an implicit run.
 
-A scene looks at several directions of the eccentricity, one degree apart, because the rupture line snaps to the grid: errors are the
-worst over the directions, the time is that of one evaluation with tangent, each started from the one before.
+A scene looks at several directions of the eccentricity, one degree apart, because the rupture line snaps to the grid:
+errors are the worst over the directions, the time is that of one evaluation with tangent, each started from the one
+before.
 """
 
 from __future__ import annotations
@@ -57,8 +58,8 @@ class SteadyScene:
     eccentricity_ratio : float
         e/c at the mid-plane.
     tilt_ratio : float
-        Share of the mid-plane's smallest gap that the tilt takes at one end, 0 to 1; the journal tilts in the plane of its
-        eccentricity.
+        Share of the mid-plane's smallest gap that the tilt takes at one end, 0 to 1; the journal tilts in the plane of
+        its eccentricity.
     directions : int
         How many directions of the eccentricity, one degree apart.
     start_direction : float
@@ -116,7 +117,10 @@ def _tangent(model: Any, evaluation: Any) -> np.ndarray:
 def motion_at(
     bearing: JournalBearing, speed: float, eccentricity_ratio: float, tilt_ratio: float, direction: float
 ) -> np.ndarray:
-    """Motion (10,) of a journal at rest but for its spin; the tilt takes ``tilt_ratio`` of the smallest gap, towards ``direction``."""
+    """Motion (10,) of a journal that only spins, eccentric and tilted towards ``direction``.
+
+    The tilt takes ``tilt_ratio`` of the smallest gap.
+    """
     radial = np.array([math.cos(direction), math.sin(direction)])
     motion = np.zeros(10)
     motion[:2] = eccentricity_ratio * bearing.radial_clearance * radial
