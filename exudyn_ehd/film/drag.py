@@ -13,7 +13,7 @@ in both directions, summed over the links as the carriers' part of the flow is, 
 
 Scaled: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``, its torque on the journal is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
 
-Symbols: cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_z the links' gaps, as in `exudyn_ehd.film.reynolds.flux`; P pressure.
+Symbols: cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_z the links' gaps, as in `exudyn_ehd.film.reynolds.links`; P pressure.
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.status import Status, require_integer
 
 
@@ -65,16 +66,14 @@ def long_bearing_grid(
 class LongSolver(FilmSolver):
     """`FilmSolver` without any axial flow, that of an axially moving surface included."""
 
-    plain_links = False
-
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
         """As `FilmSolver.solve`; vz is not used."""
         return super().solve(vx, 0.0, cavity_pressure, mass_old, step)
 
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """As `FilmSolver.sensitivities`, with none to vz."""
-        out = super().sensitivities(lam)
-        out.speed[:, 1] = 0.0
+    def link_derivatives(self) -> LinkDerivatives:
+        """As `FilmSolver.link_derivatives`, with no flow by vz."""
+        out = super().link_derivatives()
+        out.SZ[:] = 0.0
         return out

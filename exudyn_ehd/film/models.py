@@ -6,7 +6,7 @@ from exudyn_ehd.film.cavitation.closures import Gumbel
 from exudyn_ehd.film.grid import FilmGrid, FiniteLength, ShortBearing, bearing_grid
 from exudyn_ehd.film.long_bearing import LongBearing, LongSolver, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.reynolds.flux import FluxEffect
+from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.compliant_parts import ColumnContact, ColumnLimiter, ColumnOil
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.reynolds.flux import FluxEffect
+from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 
 if TYPE_CHECKING:

@@ -130,8 +130,8 @@ class _RelaxedFilm:
         rigid_gap(pose, m.cos_f, m.sin_f, g.z, 1.0, s.HF)
         rigid_gap(rate, m.cos_x, m.sin_x, g.z, 0.0, s.H_t)
         y = s.system
-        conductances(s.H, s.HF, g.width_x, g.width_z, g.link_x, g.link_z, 1.0, y.kx, y.kz)
-        couette_fluxes(s.H, s.HF, vx, vz, g.width_x, g.width_z, g.link_x, y.fx, y.fz)
+        conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
+        couette_fluxes(s.H, s.HF, None, vx, vz, g.mesh, y.fx, y.fz)
         right_hand_side(y.fx, y.fz, y.b)
         add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
         sweeps = _sor(y.kx, y.kz, y.b, 0.0, self.relax, self.tolerance, P)

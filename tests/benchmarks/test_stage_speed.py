@@ -35,8 +35,8 @@ def _stage_runs(grid):
         rigid_gap(model.rate, model.cos_x, model.sin_x, z, 0.0, s.H_t)
 
     def coefficients():
-        conductances(s.H, s.HF, g.width_x, g.width_z, g.link_x, g.link_z, 1.0, y.kx, y.kz)
-        couette_fluxes(s.H, s.HF, vx, 0.0, g.width_x, g.width_z, g.link_x, y.fx, y.fz)
+        conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
+        couette_fluxes(s.H, s.HF, None, vx, 0.0, g.mesh, y.fx, y.fz)
         right_hand_side(y.fx, y.fz, y.b)
         add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
 

@@ -44,9 +44,8 @@ EFFECTS = {
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
     "shear law": (("film.lubricant.shear_thinning",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
-    "link flux": (("film.reynolds.flux",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
     "density law": (
-        ("film.lubricant.density", "film.lubricant.density_field", "film.solvers.density_newton", "film.reynolds.density_sweep", "film.solvers.compressible"),
+        ("film.lubricant.density", "film.lubricant.density_field", "film.solvers.density_newton", "film.solvers.compressible"),
         oil(density_law=ehd.DowsonHigginson()),
     ),
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),

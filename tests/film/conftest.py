@@ -11,6 +11,7 @@ import pytest
 from exudyn_ehd.film.banded.ldl import factor_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds import links as reynolds
 
 
@@ -20,10 +21,7 @@ class Film(NamedTuple):
     H: np.ndarray
     HF: np.ndarray
     H_t: np.ndarray
-    width_x: np.ndarray
-    width_z: np.ndarray
-    link_x: np.ndarray
-    link_z: np.ndarray
+    mesh: Mesh
     vx: float
     vz: float
     flow_x: float
@@ -45,13 +43,14 @@ def make_film() -> Callable[..., Film]:
         link_x, link_z = 1.0 + rng.random(n), 1.0 + rng.random(m - 1)
         if cut:
             link_x[-1] = 0.0
+        mesh = Mesh(width_x, width_z, link_x, link_z, np.zeros((n, m), dtype=bool), np.outer(width_x, width_z))
         vx, vz = rng.normal(size=2)
         kx, kz, fx, fz, b = (np.full((n, m), np.nan) for _ in range(5))
-        reynolds.conductances(H, HF, width_x, width_z, link_x, link_z, flow_x, kx, kz)
-        reynolds.couette_fluxes(H, HF, vx, vz, width_x, width_z, link_x, fx, fz)
+        reynolds.conductances(H, HF, None, flow_x, mesh, kx, kz)
+        reynolds.couette_fluxes(H, HF, None, vx, vz, mesh, fx, fz)
         reynolds.right_hand_side(fx, fz, b)
         reynolds.add_squeeze(H_t, width_x, width_z, b)
-        return Film(H, HF, H_t, width_x, width_z, link_x, link_z, vx, vz, flow_x, kx, kz, fx, fz, b)
+        return Film(H, HF, H_t, mesh, vx, vz, flow_x, kx, kz, fx, fz, b)
 
     return make
 

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.status import InputError, require_number
 
 TABLE_INTERVALS = 2048

@@ -1,14 +1,16 @@
-"""From adjoint solutions to the journal's motion in one sweep, without fields in between.
+"""Derivatives of every link's flow with respect to its gap and to the speeds at fixed pressure, and their sums with adjoint solutions.
 
-First the derivatives of every link's flow with respect to its gap and to the speeds, once for all adjoints; then one pass over
-each adjoint that contracts with the pose. It does the same as `solver.FilmSolver.sensitivities` and `gap.contract_pose` one after the
-other, which elastic bores need because they want the fields.
+For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields (`contract_links`, for
+elastic bores and liners) or, with the chain rule to the journal's pose, in one sweep without fields in between (`pose_gradient`).
 
 Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the limiter's
 slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx; all with metric.
+``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b with the density ratio rho: what a link carries of a full film's Couette flow.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -16,95 +18,106 @@ from numba import njit
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-class LinkDerivatives:
-    """Buffers DX, DZ, SX, SZ, SZX (n, m)."""
+class LinkDerivatives(NamedTuple):
+    """(n, m) arrays, see the module's docstring."""
 
-    def __init__(self, shape: tuple[int, int]) -> None:
-        self.DX, self.DZ = np.zeros(shape), np.zeros(shape)
-        self.SX, self.SZ, self.SZX = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    DX: np.ndarray
+    DZ: np.ndarray
+    SX: np.ndarray
+    SZ: np.ndarray
+    SZX: np.ndarray
+
+
+@njit(cache=True)
+def link_factors(fill, rho, fx, fz, sigma_x_out, sigma_z_out):
+    """sigma on the links in theta and z (0 behind the last row)."""
+    n, m = rho.shape
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
+            sigma_x_out[i, j] = 0.5 * up * (rho[i, j] + rho[nxt, j])
+        for j in range(m - 1):
+            up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
+            sigma_z_out[i, j] = 0.5 * up * (rho[i, j] + rho[i, j + 1])
+        sigma_z_out[i, m - 1] = 0.0
 
 
 @njit(cache=True, fastmath=_FAST)
-def plain_link_derivatives(P, H, HF, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ):
-    """Derivatives for conductances H^3 and carriers H."""
+def link_derivatives(P, H, HF, flux, sigma, vx, vz, flow_x, mesh, out):
+    """Derivatives of all links' flows.
+
+    Parameters
+    ----------
+    P, H, HF : (n, m) arrays
+        Pressure, gaps at vertices and on the links i -> i+1.
+    flux : LinkFlux or None
+        None: plain film.
+    sigma : (sigma_x, sigma_z) or None
+        (n, m) arrays; None: a full film of density ratio 1.
+    vx, vz, flow_x : float
+        Scaled mean speeds; 0 drops the circumferential pressure flow.
+    mesh : Mesh
+    out : LinkDerivatives
+    """
     n, m = H.shape
+    width_z = mesh.width_z
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        lx = 3.0 * link_x[i] * flow_x
-        wx = width_x[i]
+        linked = 1.0 if mesh.link_x[i] != 0.0 else 0.0
+        lx = mesh.link_x[i] * flow_x
+        wx = mesh.width_x[i]
         for j in range(m):
-            h = HF[i, j]
-            DX[i, j] = (linked * vx - lx * h * h * (P[nxt, j] - P[i, j])) * width_z[j]
-            SX[i, j] = linked * h * width_z[j]
+            v = linked * vx if sigma is None else linked * vx * sigma[0][i, j]
+            if flux is None:
+                h = HF[i, j]
+                g_h = 3.0 * h * h
+            else:
+                v *= flux.cx_h[i, j]
+                g_h = flux.gx_h[i, j]
+            out.DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
+        for j in range(m):
+            carrier = HF[i, j] if flux is None else flux.cx[i, j]
+            carried = linked * carrier if sigma is None else linked * carrier * sigma[0][i, j]
+            out.SX[i, j] = carried * width_z[j]
         for j in range(m - 1):
-            h = 0.5 * (H[i, j] + H[i, j + 1])
-            DZ[i, j] = (vz - 3.0 * h * h * link_z[j] * (P[i, j + 1] - P[i, j])) * wx
-            SZ[i, j] = h * wx
+            v = vz if sigma is None else vz * sigma[1][i, j]
+            if flux is None:
+                h = 0.5 * (H[i, j] + H[i, j + 1])
+                g_h = 3.0 * h * h
+            else:
+                v *= flux.cz_h[i, j]
+                g_h = flux.gz_h[i, j]
+            out.DZ[i, j] = (v - g_h * (mesh.link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
+        for j in range(m - 1):
+            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flux is None else flux.cz[i, j]
+            carried = carrier if sigma is None else carrier * sigma[1][i, j]
+            out.SZ[i, j] = carried * wx
+        if flux is not None and flux.speeds:
+            for j in range(m):
+                out.SX[i, j] -= flux.gx_v[i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
+            for j in range(m - 1):
+                out.SZX[i, j] = -flux.gz_v[i, j] * (mesh.link_z[j] * (P[i, j + 1] - P[i, j])) * wx
 
 
-@njit(cache=True, fastmath=_FAST)
-def flux_link_derivatives(
-    P, gx_h, gx_v, gz_h, gz_v, cx, cx_h, cz, cz_h, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ, SZX
-):  # fmt: skip
-    """Derivatives for the coefficients of `flux.LinkFlux`, in loops of one result."""
-    n, m = cx.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        lx = link_x[i] * flow_x
-        wx = width_x[i]
-        for j in range(m):
-            drop = lx * (P[nxt, j] - P[i, j])
-            DX[i, j] = (linked * vx * cx_h[i, j] - gx_h[i, j] * drop) * width_z[j]
-        for j in range(m):
-            drop = lx * (P[nxt, j] - P[i, j])
-            SX[i, j] = (linked * cx[i, j] - gx_v[i, j] * drop) * width_z[j]
-        for j in range(m - 1):
-            DZ[i, j] = (vz * cz_h[i, j] - gz_h[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
-        for j in range(m - 1):
-            SZ[i, j] = cz[i, j] * wx
-        for j in range(m - 1):
-            SZX[i, j] = -gz_v[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
+def contract_links(lam: np.ndarray, d: LinkDerivatives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m).
 
-
-@njit(cache=True, fastmath=_FAST)
-def conductance_link_derivatives(
-    P, gx_h, gz_h, gap_x, gap_z, vx, vz, flow_x, width_x, width_z, link_x, link_z, DX, DZ, SX, SZ
-):  # fmt: skip
-    """Derivatives for carriers H and conductances that don't depend on the speed; `flux_link_derivatives` in loops of one result."""
-    n, m = gap_x.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        v = linked * vx
-        lx = link_x[i] * flow_x
-        wx = width_x[i]
-        for j in range(m):
-            DX[i, j] = (v - gx_h[i, j] * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
-        for j in range(m):
-            SX[i, j] = linked * gap_x[i, j] * width_z[j]
-        for j in range(m - 1):
-            DZ[i, j] = (vz - gz_h[i, j] * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
-        for j in range(m - 1):
-            SZ[i, j] = gap_z[i, j] * wx
-
-
-@njit(cache=True, fastmath=_FAST)
-def take_upstream_fill(fill, fx, fz, cx_h, cx, cz_h, cz, vx, vz, width_x, width_z, link_x, DX, DZ, SX, SZ):
-    """Correct the Couette parts of the derivatives for the fill upstream; carriers cx, cz and their slopes as in `LinkFlux`."""
-    n, m = fill.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if link_x[i] != 0.0 else 0.0
-        for j in range(m):
-            missing = linked * width_z[j] * (1.0 - (fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]))
-            DX[i, j] -= missing * vx * cx_h[i, j]
-            SX[i, j] -= missing * cx[i, j]
-        for j in range(m - 1):
-            missing = width_x[i] * (1.0 - (fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]))
-            DZ[i, j] -= missing * vz * cz_h[i, j]
-            SZ[i, j] -= missing * cz[i, j]
+    Returns
+    -------
+    cell, face : (k, n, m) arrays
+        To the gaps at vertices and on the links i -> i+1.
+    speed : (k, 2) array
+        To (vx, vz).
+    """
+    along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
+    half = -0.5 * across * d.DZ[:, :-1]
+    cell = np.zeros_like(lam)
+    cell[:, :, :-1] += half
+    cell[:, :, 1:] += half
+    turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
+    sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
+    return cell, -along * d.DX, -np.stack([turning, sliding], axis=1)
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -1,4 +1,4 @@
-"""Finite-volume Reynolds equation in scaled form: link coefficients, right-hand side, and the adjoint of the residual.
+"""Finite-volume Reynolds equation in scaled form: coefficients of the links, right-hand side, balance of the vertices.
 
 With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of a control volume reads
 
@@ -7,13 +7,16 @@ With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of 
 which is the conservative form of the paper's Eq. (4) (Poiseuille and Couette flux of a thin film, squeeze). Links in theta
 use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted journal.
 
+An effect (flow factors of rough surfaces, shear thinning, a temperature field) changes what a link carries to ``V carrier - conductance
+dP/ds``; a plain film has the carrier H, the conductance H^3 and no `LinkFlux`.
+
 Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx / fz
 Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numba import njit
@@ -29,32 +32,136 @@ class FilmState(NamedTuple):
     full: np.ndarray
 
 
+class LinkFlux(NamedTuple):
+    """Coefficients of all links of a film with flux effects, (n, m) arrays that the effects write.
+
+    Attributes
+    ----------
+    carriers, speeds : bool
+        Whether an effect changes the carriers, or lets conductances depend on the speed. If not, the carriers are the gaps themselves and
+        the derivatives stay what they are here.
+    gap_x, gap_z : arrays
+        Gaps of the links in theta (the film solver's own array) and in z.
+    gx, gx_h, gx_v, gz, gz_h, gz_v : arrays
+        Conductances per unit metric, their derivatives to the link's gap and to the scaled circumferential speed vx.
+    cx, cx_h, cz, cz_h : arrays
+        Carriers and their derivatives to the link's gap.
+    """
+
+    carriers: bool
+    speeds: bool
+    gap_x: np.ndarray
+    gap_z: np.ndarray
+    gx: np.ndarray
+    gx_h: np.ndarray
+    gx_v: np.ndarray
+    gz: np.ndarray
+    gz_h: np.ndarray
+    gz_v: np.ndarray
+    cx: np.ndarray
+    cx_h: np.ndarray
+    cz: np.ndarray
+    cz_h: np.ndarray
+
+    def reset(self) -> None:
+        """Plain carriers, and no dependence on the speed, where effects have left others."""
+        if self.carriers:
+            self.cx[:], self.cz[:] = self.gap_x, self.gap_z
+            self.cx_h[:] = self.cz_h[:] = 1.0
+        self.reset_speeds()
+
+    def reset_speeds(self) -> None:
+        """No dependence on the speed, where effects have left one."""
+        if self.speeds:
+            self.gx_v[:] = self.gz_v[:] = 0.0
+
+
+class FluxEffect(Protocol):
+    """An effect that changes `LinkFlux` in place.
+
+    Attributes
+    ----------
+    changes_carriers, depends_on_speed : bool
+        Whether it changes the carriers, or the conductances by the speed.
+    """
+
+    changes_carriers: bool
+    depends_on_speed: bool
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Change conductances and carriers for the links' gaps (n, m) and scaled speeds, with their derivatives."""
+
+    def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
+        """The same from scratch, as the first effect, for the gaps H (n, m) at the vertices; sets the links' gap in z."""
+        plain_flux(H, flux.gap_x, flux.gap_z, flux.gx, flux.gx_h, flux.gz, flux.gz_h)
+        flux.reset()
+        self.apply(flux, flux.gap_x, flux.gap_z, vx, vz)
+
+
+def link_flux(gap_x: np.ndarray, effects: tuple[FluxEffect, ...]) -> LinkFlux:
+    """Buffers for these effects; ``gap_x`` (n, m) as in `LinkFlux`."""
+    carriers = any(effect.changes_carriers for effect in effects)
+    speeds = any(effect.depends_on_speed for effect in effects)
+    gap_z, gx, gx_h, gx_v, gz, gz_h, gz_v = np.zeros((7, *gap_x.shape))
+    cx, cz = np.zeros((2, *gap_x.shape)) if carriers else (gap_x, gap_z)
+    cx_h, cz_h = np.ones((2, *gap_x.shape))
+    return LinkFlux(carriers, speeds, gap_x, gap_z, gx, gx_h, gx_v, gz, gz_h, gz_v, cx, cx_h, cz, cz_h)
+
+
 @njit(cache=True, fastmath=_FAST)
-def conductances(H, HF, width_x, width_z, link_x, link_z, flow_x, kx_out, kz_out):
-    """Conductances of the links: ``H^3 width / distance``; ``flow_x`` = 0 drops the circumferential pressure flow."""
+def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
+    """The plain film's conductances with their derivatives, and the links' gap in z."""
     n, m = H.shape
     for i in range(n):
-        lx = link_x[i] * flow_x
-        wx = width_x[i]
         for j in range(m):
-            hf = HF[i, j]
-            kx_out[i, j] = hf * hf * hf * lx * width_z[j]
+            h = HF[i, j]
+            gx[i, j] = h * h * h
+            gx_h[i, j] = 3.0 * h * h
+        for j in range(m):
+            h = 0.5 * (H[i, j] + H[i, j + 1]) if j + 1 < m else H[i, j]
+            gap_z_out[i, j] = h
+            gz[i, j] = h * h * h
+            gz_h[i, j] = 3.0 * h * h
+
+
+@njit(cache=True, fastmath=_FAST)
+def conductances(H, HF, flux, flow_x, mesh, kx_out, kz_out):
+    """Conductances of the links with their metric, ``H^3 width / distance``; ``flow_x`` = 0 drops the circumferential pressure flow.
+
+    ``flux``: `LinkFlux`, or None for a plain film.
+    """
+    n, m = H.shape
+    for i in range(n):
+        lx = mesh.link_x[i] * flow_x
+        wx = mesh.width_x[i]
+        for j in range(m):
+            if flux is None:
+                h = HF[i, j]
+                g = h * h * h
+            else:
+                g = flux.gx[i, j]
+            kx_out[i, j] = g * lx * mesh.width_z[j]
         for j in range(m - 1):
-            hz = 0.5 * (H[i, j] + H[i, j + 1])
-            kz_out[i, j] = hz * hz * hz * link_z[j] * wx
+            if flux is None:
+                h = 0.5 * (H[i, j] + H[i, j + 1])
+                g = h * h * h
+            else:
+                g = flux.gz[i, j]
+            kz_out[i, j] = g * mesh.link_z[j] * wx
         kz_out[i, m - 1] = 0.0
 
 
 @njit(cache=True, fastmath=_FAST)
-def couette_fluxes(H, HF, vx, vz, width_x, width_z, link_x, fx_out, fz_out):
-    """Couette fluxes of the links; 0 where there is no link."""
+def couette_fluxes(H, HF, flux, vx, vz, mesh, fx_out, fz_out):
+    """Couette fluxes of the links; 0 where there is no link. ``flux`` as in `conductances`."""
     n, m = H.shape
     for i in range(n):
-        v = vx if link_x[i] != 0.0 else 0.0
+        v = vx if mesh.link_x[i] != 0.0 else 0.0
         for j in range(m):
-            fx_out[i, j] = v * HF[i, j] * width_z[j]
+            fx_out[i, j] = v * (HF[i, j] if flux is None else flux.cx[i, j]) * mesh.width_z[j]
         for j in range(m - 1):
-            fz_out[i, j] = vz * 0.5 * (H[i, j] + H[i, j + 1]) * width_x[i]
+            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flux is None else flux.cz[i, j]
+            fz_out[i, j] = vz * carrier * mesh.width_x[i]
         fz_out[i, m - 1] = 0.0
 
 
@@ -78,85 +185,6 @@ def add_squeeze(H_t, width_x, width_z, b_out):
     for i in range(n):
         for j in range(m):
             b_out[i, j] -= H_t[i, j] * width_x[i] * width_z[j]
-
-
-@njit(cache=True, fastmath=_FAST)
-def link_flow_sensitivity(lam, P, H, HF, vx, vz, flow_x, width_x, width_z, link_x, link_z, cell_out, face_out):
-    """Gradient of ``-lam . r`` with respect to the gaps, r = residual without the storage term.
-
-    Parameters
-    ----------
-    lam : (k, n, m) array
-        Adjoint solutions.
-    P : (n, m) array
-        The pressure that solves the linear problem (before any clipping).
-    cell_out, face_out : (k, n, m) arrays
-        d(-lam . r)/dH and d(-lam . r)/dHF.
-    """
-    count, n, m = lam.shape
-    for k in range(count):
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            v = vx if link_x[i] != 0.0 else 0.0
-            lx = 3.0 * link_x[i] * flow_x
-            wx = width_x[i]
-            for j in range(m):
-                hf = HF[i, j]
-                q = (v - lx * hf * hf * (P[nxt, j] - P[i, j])) * width_z[j]
-                face_out[k, i, j] = -(lam[k, i, j] - lam[k, nxt, j]) * q
-                cell_out[k, i, j] = 0.0
-            for j in range(m - 1):
-                hz = 0.5 * (H[i, j] + H[i, j + 1])
-                q = 0.5 * wx * (vz - 3.0 * hz * hz * link_z[j] * (P[i, j + 1] - P[i, j]))
-                g = -(lam[k, i, j] - lam[k, i, j + 1]) * q
-                cell_out[k, i, j] += g
-                cell_out[k, i, j + 1] += g
-
-
-@njit(cache=True, fastmath=_FAST)
-def couette_sensitivity_fill(lam, fill, fx, fz, H, HF, vx, vz, width_x, width_z, link_x, cell_out, face_out, speed_out):
-    """Correct the sensitivities of a full film for the upstream fill of the Couette fluxes; adds to all outputs.
-
-    ``cell_out``, ``face_out`` (k, n, m) as in `link_flow_sensitivity`, ``speed_out`` (k, 2) as in `speed_sensitivity`.
-    """
-    count, n, m = lam.shape
-    for k in range(count):
-        sx = 0.0
-        sz = 0.0
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            if link_x[i] != 0.0:
-                for j in range(m):
-                    up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
-                    d = (lam[k, i, j] - lam[k, nxt, j]) * (1.0 - up) * width_z[j]
-                    face_out[k, i, j] += d * vx
-                    sx += d * HF[i, j]
-            for j in range(m - 1):
-                up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
-                d = 0.5 * (lam[k, i, j] - lam[k, i, j + 1]) * (1.0 - up) * width_x[i]
-                cell_out[k, i, j] += d * vz
-                cell_out[k, i, j + 1] += d * vz
-                sz += d * (H[i, j] + H[i, j + 1])
-        speed_out[k, 0] += sx
-        speed_out[k, 1] += sz
-
-
-@njit(cache=True, fastmath=_FAST)
-def speed_sensitivity(lam, H, HF, width_x, width_z, link_x, out):
-    """d(-lam . r)/d(vx, vz) for every adjoint: out (k, 2)."""
-    count, n, m = lam.shape
-    for k in range(count):
-        sx = 0.0
-        sz = 0.0
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            if link_x[i] != 0.0:
-                for j in range(m):
-                    sx -= (lam[k, i, j] - lam[k, nxt, j]) * HF[i, j] * width_z[j]
-            for j in range(m - 1):
-                sz -= (lam[k, i, j] - lam[k, i, j + 1]) * 0.5 * (H[i, j] + H[i, j + 1]) * width_x[i]
-        out[k, 0] = sx
-        out[k, 1] = sz
 
 
 @njit(cache=True)

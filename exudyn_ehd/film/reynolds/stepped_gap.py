@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 
 
 class SteppedGap(FluxEffect):

@@ -36,8 +36,7 @@ import numpy as np
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.flux import FluxEffect, link_flux
-from exudyn_ehd.film.reynolds.links import add_squeeze
+from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux
 from exudyn_ehd.film.solvers.compliant_columns import (
     BEND,
     DRIVE,
@@ -459,4 +458,4 @@ class CompliantFilmSolver(FilmSolver):
             lam, self.fields, self.link_flux, self.system.linear_pressure, self.film_fill, by_gap, by_rate, self.vx, self.vz, g.width_x, g.width_z,
             g.link_x, g.link_z, cell, face, rate, speed,
         )  # fmt: skip
-        return Sensitivities(cell, face, rate if self.squeeze else None, speed)
+        return Sensitivities(cell, face, rate if self.squeeze else np.zeros_like(rate), speed)

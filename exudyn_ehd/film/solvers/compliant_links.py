@@ -3,7 +3,7 @@
 A link with the gap h carries ``v f c(h) - g (P_b - P_a) / length``. Between columns that give way by different amounts, by 2 d more at b than
 at a, the conductance is its mean over the linear course of the gap, ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film; flow factors, shear
 thinning and temperature multiply it as they are at the mean gap: ``g = G(h) (1 + (d / h)^2)``, G and the carrier c(h) from
-`exudyn_ehd.film.reynolds.flux`.
+`exudyn_ehd.film.reynolds.links`.
 
 Symbols as in `exudyn_ehd.film.solvers.compliant_columns`; a, b ends of a link.
 """
@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.reynolds.flux import LinkFlux
+from exudyn_ehd.film.reynolds.links import LinkFlux
 from exudyn_ehd.film.solvers.compliant_columns import columns_of, gain_of_columns
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class Links(NamedTuple):
-    """Conductances and carriers of the links at their mean gap, (n, m) arrays as in `exudyn_ehd.film.reynolds.flux.LinkFlux`."""
+    """Conductances and carriers of the links at their mean gap, (n, m) arrays as in `exudyn_ehd.film.reynolds.links.LinkFlux`."""
 
     gx: np.ndarray
     gx_h: np.ndarray

@@ -30,14 +30,8 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
-from exudyn_ehd.film.reynolds.density_sweep import (
-    carry_density,
-    carry_density_plain,
-    dense_link_derivatives,
-    link_factors,
-)
-from exudyn_ehd.film.reynolds.flux import FluxEffect
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, flux_link_derivatives, plain_link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, link_derivatives, link_factors
+from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.density_matrix import Balance, compressible_balance, dense_band
 from exudyn_ehd.film.solvers.density_newton import (
     CLIPPED,
@@ -50,7 +44,7 @@ from exudyn_ehd.film.solvers.density_newton import (
     solve_compressible,
     solve_exact_transposed,
 )
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -328,48 +322,13 @@ class CompressibleFilmSolver(FilmSolver):
     def _unknown_pressure(self) -> np.ndarray:
         return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
 
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m)."""
-        d = self.link_derivatives()
-        by_rate, by_gap = self.storage_weights()
-        along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
-        half = -0.5 * across * d.DZ[:, :-1]
-        cell = -lam * by_gap
-        cell[:, :, :-1] += half
-        cell[:, :, 1:] += half
-        turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
-        sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
-        return Sensitivities(cell, -along * d.DX, -lam * by_rate, -np.stack([turning, sliding], axis=1))
-
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
-        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
-        if f is None and self.kind != FILLED:
-            dense_link_derivatives(
-                s.linear_pressure, self.rho, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x,
-                g.link_z, d.DX, d.DZ, d.SX, d.SZ,
-            )  # fmt: skip
-            return d
-        sigma_x, sigma_z = self._sigma()
-        if f is None:
-            plain_link_derivatives(
-                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
-                d.DX, d.DZ, d.SX, d.SZ,
-            )  # fmt: skip
-            carry_density_plain(
-                sigma_x, sigma_z, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
-                d.DX, d.DZ, d.SX, d.SZ,
-            )  # fmt: skip
-            return d
-        flux_link_derivatives(
-            s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz,
-            self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
+        link_derivatives(
+            self.system.linear_pressure, self.H, self.HF, self.flux, self._sigma(), self.vx, self.vz, self.flow_x, self.grid.mesh,
+            self.link_fields,
         )  # fmt: skip
-        carry_density(
-            sigma_x, sigma_z, f.cx_h, f.cx, f.cz_h, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
-            d.DX, d.DZ, d.SX, d.SZ,
-        )  # fmt: skip
-        return d
+        return self.link_fields
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""

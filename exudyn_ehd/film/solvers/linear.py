@@ -12,29 +12,14 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.flux import (
-    FluxEffect,
-    LinkFlux,
-    conductances_from,
-    couette_fluxes_from,
-    flux_sensitivity,
-    link_flux,
-)
-from exudyn_ehd.film.reynolds.link_derivatives import (
-    LinkDerivatives,
-    conductance_link_derivatives,
-    flux_link_derivatives,
-    plain_link_derivatives,
-    take_upstream_fill,
-)
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, contract_links, link_derivatives, link_factors
 from exudyn_ehd.film.reynolds.links import (
+    FluxEffect,
     add_squeeze,
     conductances,
     couette_fluxes,
-    couette_sensitivity_fill,
-    link_flow_sensitivity,
+    link_flux,
     right_hand_side,
-    speed_sensitivity,
     vertex_balance,
 )
 from exudyn_ehd.status import Status
@@ -75,15 +60,15 @@ class Sensitivities:
     ----------
     cell, face : (k, n, m) arrays
         With respect to the gap at vertices and on the links i -> i+1.
-    rate : (k, n, m) array or None
-        With respect to the gap's rate at vertices; None if the film does not depend on it.
+    rate : (k, n, m) array
+        With respect to the gap's rate at vertices.
     speed : (k, 2) array
         With respect to (vx, vz).
     """
 
     cell: np.ndarray
     face: np.ndarray
-    rate: np.ndarray | None
+    rate: np.ndarray
     speed: np.ndarray
 
 
@@ -127,7 +112,7 @@ class FilmSolver:
         self.closure = closure
         self.squeeze = squeeze
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
-        self.area = np.outer(grid.width_x, grid.width_z)
+        self.area = grid.mesh.area
         self.system = FilmSystem(shape, grid.fixed, self.area, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
@@ -136,7 +121,8 @@ class FilmSolver:
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
         self.ones = np.ones(shape)
         self.nothing = np.zeros(shape)
-        self.link_fields = LinkDerivatives(shape)
+        self.link_fields = LinkDerivatives(*np.zeros((5, *shape)))
+        self.sigma = np.ones(shape), np.ones(shape)
         self.vx = 0.0
         self.vz = 0.0
         self.instant = False
@@ -216,21 +202,14 @@ class FilmSolver:
 
     def _set_links(self) -> None:
         """Conductances and Couette fluxes of the links."""
-        g, s = self.grid, self.system
-        if self.flux is not None:
-            self._apply_flux_effects(self.flux)
-            return
-        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
-
-    def _apply_flux_effects(self, f: LinkFlux) -> None:
-        g, s = self.grid, self.system
-        first, *others = self.flux_effects
-        first.start(f, self.H, self.vx, self.vz)
-        for effect in others:
-            effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        conductances_from(f.gx, f.gz, g.width_x, g.width_z, g.link_x, g.link_z, self.flow_x, s.kx, s.kz)
-        couette_fluxes_from(f.cx, f.cz, self.vx, self.vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        s, f, mesh = self.system, self.flux, self.grid.mesh
+        if f is not None:
+            first, *others = self.flux_effects
+            first.start(f, self.H, self.vx, self.vz)
+            for effect in others:
+                effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
+        conductances(self.H, self.HF, f, self.flow_x, mesh, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, f, self.vx, self.vz, mesh, s.fx, s.fz)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
@@ -279,34 +258,10 @@ class FilmSolver:
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
-        g, s = self.grid, self.system
-        cell, face = np.empty_like(lam), np.empty_like(lam)
-        speed = np.empty((lam.shape[0], 2))
-        fills = self.closure.conserves_mass
-        if self.flux is None:
-            link_flow_sensitivity(
-                lam, s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x,
-                g.width_x, g.width_z, g.link_x, g.link_z, cell, face,
-            )  # fmt: skip
-            speed_sensitivity(lam, self.H, self.HF, g.width_x, g.width_z, g.link_x, speed)
-            if fills:
-                couette_sensitivity_fill(
-                    lam, s.fill, s.fx, s.fz, self.H, self.HF, self.vx, self.vz, g.width_x, g.width_z, g.link_x,
-                    cell, face, speed,
-                )  # fmt: skip
-        else:
-            f = self.flux
-            flux_sensitivity(
-                lam, s.linear_pressure, s.fill if fills else self.ones, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h,
-                f.cz, f.cz_h, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z, cell, face, speed,
-            )  # fmt: skip
-        if not fills:
-            return Sensitivities(cell, face, lam * -self.area if self.squeeze else None, speed)
-        storage = lam * (-self.area * s.fill)
-        if s.inverse_step == 0.0 or self.instant:
-            return Sensitivities(cell, face, storage if self.squeeze else None, speed)
-        cell += storage * s.inverse_step
-        return Sensitivities(cell, face, None, speed)
+        by_rate, by_gap = self.storage_weights()
+        cell, face, speed = contract_links(lam, self.link_derivatives())
+        cell -= lam * by_gap
+        return Sensitivities(cell, face, -lam * by_rate, speed)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
@@ -314,33 +269,23 @@ class FilmSolver:
 
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' flows with respect to their gaps and the speeds, for the last solution."""
-        g, s, d, f = self.grid, self.system, self.link_fields, self.flux
-        if f is None:
-            plain_link_derivatives(
-                s.linear_pressure, self.H, self.HF, self.vx, self.vz, self.flow_x, g.width_x, g.width_z, g.link_x, g.link_z,
-                d.DX, d.DZ, d.SX, d.SZ,
-            )  # fmt: skip
-        elif not (f.carriers or f.speeds):
-            conductance_link_derivatives(
-                s.linear_pressure, f.gx_h, f.gz_h, f.gap_x, f.gap_z, self.vx, self.vz, self.flow_x, g.width_x, g.width_z,
-                g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ,
-            )  # fmt: skip
-        else:
-            flux_link_derivatives(
-                s.linear_pressure, f.gx_h, f.gx_v, f.gz_h, f.gz_v, f.cx, f.cx_h, f.cz, f.cz_h, self.vx, self.vz, self.flow_x,
-                g.width_x, g.width_z, g.link_x, g.link_z, d.DX, d.DZ, d.SX, d.SZ, d.SZX,
-            )  # fmt: skip
+        s, sigma = self.system, None
         if self.closure.conserves_mass:
-            if f is None:
-                mean = self.H.copy()
-                mean[:, :-1] = 0.5 * (self.H[:, :-1] + self.H[:, 1:])
-                carriers = (self.ones, self.HF, self.ones, mean)
-            else:
-                carriers = (f.cx_h, f.cx, f.cz_h, f.cz)
-            take_upstream_fill(
-                s.fill, s.fx, s.fz, *carriers, self.vx, self.vz, g.width_x, g.width_z, g.link_x, d.DX, d.DZ, d.SX, d.SZ
-            )
-        return d
+            sigma = self.sigma
+            link_factors(s.fill, self.ones, s.fx, s.fz, *sigma)
+        link_derivatives(
+            s.linear_pressure,
+            self.H,
+            self.HF,
+            self.flux,
+            sigma,
+            self.vx,
+            self.vz,
+            self.flow_x,
+            self.grid.mesh,
+            self.link_fields,
+        )
+        return self.link_fields
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""

@@ -38,15 +38,13 @@ import numpy as np
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.flux import LinkFlux, plain_flux
 from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.reynolds.links import add_squeeze
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.liner_newton import (
     CLIPPED,
     COMPLEMENTARY,
     FULL,
-    add_bending,
     deformed_film,
     ends_open,
     factor_liner,
@@ -130,7 +128,6 @@ class LinerFilmSolver(FilmSolver):
         self.coarse = None
         coarse = grid.coarser()
         self.coarse_liner = None if coarse is None else LinerFilmSolver(coarse, closure, squeeze=squeeze)
-        self.flux = LinkFlux(self.HF, carriers=False, speeds=False)
         self.beta = 0.0
         self.delta_old: np.ndarray | None = None
         shape = grid.shape
@@ -362,11 +359,3 @@ class LinerFilmSolver(FilmSolver):
             g.link_z, d.DX, d.DZ, d.SX, d.SZ,
         )  # fmt: skip
         return d
-
-    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
-        """Gradients of the adjoint functionals lam (k, n, m)."""
-        f = self.flux
-        assert f is not None
-        plain_flux(self.H, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
-        add_bending(self.system.pressure, self.beta, self.HF, f.gap_z, f.gx, f.gx_h, f.gz, f.gz_h)
-        return super().sensitivities(lam)

@@ -114,22 +114,6 @@ def liner_shear_rhs(order, count, weight, H, active, beta, rhs_out):
         rhs_out[r] = -weight[i, j] * beta / (H[i, j] * H[i, j]) if active[i, j] else 0.0
 
 
-@njit(cache=True)
-def add_bending(P, beta, HF, gap_z, gx, gx_h, gz, gz_h):
-    """Add ``H d^2`` to the links' conductances and ``d^2`` to their derivatives, in place."""
-    n, m = P.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            d = 0.5 * beta * (P[nxt, j] - P[i, j])
-            gx[i, j] += HF[i, j] * d * d
-            gx_h[i, j] += d * d
-            if j + 1 < m:
-                d = 0.5 * beta * (P[i, j + 1] - P[i, j])
-                gz[i, j] += gap_z[i, j] * d * d
-                gz_h[i, j] += d * d
-
-
 @njit(cache=True, fastmath=_FAST)
 def liner_residual(
     rigid, P, vx, vz, width_x, width_z, link_x, link_z, fixed, pc, kind, beta, inverse_step, delta_old, r_out

@@ -121,8 +121,8 @@ class ClassicSolver(FilmSolver):
         g, s, w = self.grid, self.system, self.work
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
-        conductances(self.H, self.HF, g.width_x, g.width_z, g.link_x, g.link_z, 1.0, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, vx, vz, g.width_x, g.width_z, g.link_x, s.fx, s.fz)
+        conductances(self.H, self.HF, None, 1.0, g.mesh, s.kx, s.kz)
+        couette_fluxes(self.H, self.HF, None, vx, vz, g.mesh, s.fx, s.fz)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             s.b -= self.H_t * self.area
@@ -155,7 +155,7 @@ class ClassicSolver(FilmSolver):
         difference_sensitivity(
             lam, self.system.linear_pressure, self.H, self.vx, self.vz, self.step_x, self.step_z, cell, speed
         )
-        return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else None, speed)
+        return Sensitivities(cell, np.zeros_like(lam), lam.copy() if self.squeeze else np.zeros_like(lam), speed)
 
 
 @njit(cache=True)

@@ -45,7 +45,7 @@ import numpy as np
 from numba import njit
 from scipy.interpolate import CubicSpline
 
-from exudyn_ehd.film.reynolds.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
 from exudyn_ehd.status import InputError, require_number
 

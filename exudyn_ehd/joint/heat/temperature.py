@@ -15,7 +15,7 @@ from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.heat.energy import assemble_energy, film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.reynolds.flux import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
 from exudyn_ehd.joint.seams import History
 

@@ -10,7 +10,7 @@ from exudyn_ehd.film.drag import drag_gap_slopes, drag_pose_gradient, drag_rhs, 
 from exudyn_ehd.film.reynolds.gap import contract_pose
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.reynolds.flux import LinkFlux
+    from exudyn_ehd.film.reynolds.links import LinkFlux
     from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
     from exudyn_ehd.joint.model.rigid import BearingModel
 

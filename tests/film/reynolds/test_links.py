@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.reynolds import links as reynolds
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, contract_links, link_derivatives
 
 CASES = [(1, False, 1.0), (2, True, 1.0), (3, False, 0.0)]
 
@@ -25,25 +26,25 @@ def _residual(f, P, H=None, HF=None, H_t=None, vx=None, vz=None):
     HF = f.HF if HF is None else HF
     H_t = f.H_t if H_t is None else H_t
     vx, vz = (f.vx if vx is None else vx), (f.vz if vz is None else vz)
-    linked = (f.link_x != 0.0)[:, None]
-    qx = linked * vx * HF - f.flow_x * HF**3 * f.link_x[:, None] * (np.roll(P, -1, axis=0) - P)
-    qx = qx * f.width_z
+    linked = (f.mesh.link_x != 0.0)[:, None]
+    qx = linked * vx * HF - f.flow_x * HF**3 * f.mesh.link_x[:, None] * (np.roll(P, -1, axis=0) - P)
+    qx = qx * f.mesh.width_z
     hz = _mean_z(H)
-    qz = (vz * hz - hz**3 * f.link_z * np.diff(P, axis=1)) * f.width_x[:, None]
+    qz = (vz * hz - hz**3 * f.mesh.link_z * np.diff(P, axis=1)) * f.mesh.width_x[:, None]
     out = qx - np.roll(qx, 1, axis=0)
     out[:, :-1] += qz
     out[:, 1:] -= qz
-    return out + H_t * np.outer(f.width_x, f.width_z)
+    return out + H_t * f.mesh.area
 
 
 @pytest.mark.parametrize(("seed", "cut", "flow_x"), CASES)
 def test_coefficients(make_film, seed, cut, flow_x):
     f = make_film(seed, cut=cut, flow_x=flow_x)
-    np.testing.assert_allclose(f.kx, flow_x * f.HF**3 * f.link_x[:, None] * f.width_z, rtol=1e-13)
-    np.testing.assert_allclose(f.kz, _pad(_mean_z(f.H) ** 3 * f.link_z * f.width_x[:, None]), rtol=1e-13)
-    linked = (f.link_x != 0.0)[:, None]
-    np.testing.assert_allclose(f.fx, linked * f.vx * f.HF * f.width_z, rtol=1e-13)
-    np.testing.assert_allclose(f.fz, _pad(f.vz * _mean_z(f.H) * f.width_x[:, None]), rtol=1e-13)
+    np.testing.assert_allclose(f.kx, flow_x * f.HF**3 * f.mesh.link_x[:, None] * f.mesh.width_z, rtol=1e-13)
+    np.testing.assert_allclose(f.kz, _pad(_mean_z(f.H) ** 3 * f.mesh.link_z * f.mesh.width_x[:, None]), rtol=1e-13)
+    linked = (f.mesh.link_x != 0.0)[:, None]
+    np.testing.assert_allclose(f.fx, linked * f.vx * f.HF * f.mesh.width_z, rtol=1e-13)
+    np.testing.assert_allclose(f.fz, _pad(f.vz * _mean_z(f.H) * f.mesh.width_x[:, None]), rtol=1e-13)
 
 
 @pytest.mark.parametrize(("seed", "cut", "flow_x"), CASES)
@@ -63,7 +64,7 @@ def test_conservation(make_film, seed, cut, flow_x):
     f = make_film(seed, cut=cut, flow_x=flow_x)
     P, out = np.random.default_rng(seed).normal(size=f.H.shape), np.empty_like(f.H)
     reynolds.vertex_balance(P, f.kx, f.kz, f.b, out)
-    storage = (f.H_t * np.outer(f.width_x, f.width_z)).sum()
+    storage = (f.H_t * f.mesh.area).sum()
     assert out.sum() == pytest.approx(storage, abs=1e-12 * abs(out).sum())
 
 
@@ -72,11 +73,9 @@ def test_adjoint_sensitivities(make_film, seed, cut, flow_x):
     f = make_film(seed, n=7, m=5, cut=cut, flow_x=flow_x)
     rng = np.random.default_rng(seed)
     P, lam = rng.normal(size=f.H.shape), rng.normal(size=(2, *f.H.shape))
-    cell, face, speed = np.full_like(lam, np.nan), np.full_like(lam, np.nan), np.full((2, 2), np.nan)
-    reynolds.link_flow_sensitivity(
-        lam, P, f.H, f.HF, f.vx, f.vz, flow_x, f.width_x, f.width_z, f.link_x, f.link_z, cell, face
-    )
-    reynolds.speed_sensitivity(lam, f.H, f.HF, f.width_x, f.width_z, f.link_x, speed)
+    d = LinkDerivatives(*np.zeros((5, *f.H.shape)))
+    link_derivatives(P, f.H, f.HF, None, None, f.vx, f.vz, flow_x, f.mesh, d)
+    cell, face, speed = contract_links(lam, d)
     step = 1e-5  # the residual is cubic in the gap: central differences leave step^2 = 1e-10 and rounding 1e-10
     for k in range(2):
         for i, j in np.ndindex(f.H.shape):

@@ -4,6 +4,7 @@ import csv
 import math
 from fractions import Fraction
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from scipy.integrate import quad
 from scipy.stats import norm
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.reynolds.flux import LinkFlux
+from exudyn_ehd.film.reynolds.links import link_flux
 from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
 from exudyn_ehd.film.surfaces.flow_factors import (
     PATTERNS,
@@ -27,6 +28,8 @@ from exudyn_ehd.film.surfaces.flow_factors import (
 DATA = Path(__file__).parents[2] / "validation" / "data"
 CLEARANCE = 20e-6
 SIGMA = 0.5e-6
+# An effect on everything.
+ANY = (SimpleNamespace(changes_carriers=True, depends_on_speed=True),)
 
 
 def rough(pattern=1.0, share=0.5, residual=0.02):
@@ -38,7 +41,7 @@ def factors(t, pattern=1.0, share=0.5, residual=0.02):
     """phi_x, phi_z, shear carrier factors, each with its derivative by t, at average gaps t = h_T / sigma (k,)."""
     flow, _ = rough(pattern, share, residual)
     gap = np.atleast_2d(t) * flow.sigma
-    flux = LinkFlux(gap)
+    flux = link_flux(gap, ANY)
     for field in (flux.gx, flux.gz, flux.cx, flux.cz):
         field[:] = 1.0
     flux.cx_h[:] = flux.cz_h[:] = 0.0
@@ -102,7 +105,7 @@ def test_one_pass_is_the_plain_film_times_its_factors(share, slope):
     column = np.linspace(0.05, 1.9, 7)[:, None]
     H, HF = column + slope * np.arange(5.0), 1.1 * column - slope * np.arange(5.0)
     z = np.column_stack((0.5 * (H[:, 1:] + H[:, :-1]), H[:, -1]))
-    flux, expected = LinkFlux(HF), LinkFlux(HF)
+    flux, expected = link_flux(HF, ANY), link_flux(HF, ANY)
     for field in (flux.cx, flux.cz_h, flux.gx_v):
         field[:] = 7.0
     expected.gx[:], expected.gx_h[:], expected.gz[:], expected.gz_h[:] = HF**3, 3 * HF**2, z**3, 3 * z**2
