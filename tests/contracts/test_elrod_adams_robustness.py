@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.solvers.linear import fill_balance
+from exudyn_ehd.film.reynolds.links import fill_balance
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE = 0.01, 2e-5
@@ -125,9 +125,7 @@ def test_short_bearing_keeps_its_oil(n_theta):
         for step in (None, 1e-3, 1e-3):
             evaluation = model.evaluate(motion, None if step is None else history, step or 0.0)
             assert evaluation.status is ehd.Status.CONVERGED
-            fill_balance(
-                s.pressure, s.fill, s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, s.inverse_step, s.mass_old, balance
-            )
+            fill_balance(s.pressure, s.fill, s.coefficients, s.inverse_step, s.mass_old, balance)
             # rounding of the largest flow
             assert np.abs(balance[~model.grid.fixed]).max() < 1e-11 * np.abs(s.fx).max()
             if step is not None:

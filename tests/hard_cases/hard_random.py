@@ -29,9 +29,8 @@ import numpy as np
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
-from exudyn_ehd.film.reynolds.links import vertex_balance
+from exudyn_ehd.film.reynolds.links import fill_balance, vertex_balance
 from exudyn_ehd.film.solvers.compliant_columns import LOAD_P
-from exudyn_ehd.film.solvers.linear import fill_balance
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
@@ -207,7 +206,7 @@ def balance_error(model):
     y = s.system
     out = np.empty(g.shape)
     if closure.conserves_mass:
-        fill_balance(y.pressure, y.fill, y.kx, y.kz, y.fx, y.fz, y.H, y.H_t, y.area, y.inverse_step, y.mass_old, out)
+        fill_balance(y.pressure, y.fill, y.coefficients, y.inverse_step, y.mass_old, out)
     else:
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P = y.linear_pressure

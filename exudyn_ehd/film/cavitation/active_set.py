@@ -15,6 +15,8 @@ from numba import njit
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.grid import Mesh
+from exudyn_ehd.film.reynolds.links import Coefficients
 
 MAX_ACTIVE_SET_STEPS = 200
 # A vertex leaves the film if its pressure is below the cavity's by more than this share of the peak: about 100 roundings.
@@ -38,26 +40,30 @@ class FilmSystem:
         Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure clips.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
+    coefficients : Coefficients
+        These arrays as kernels take them.
     fill, mass_old : (n, m) arrays
         Film fraction, and the old value of fill H; only used by closures that conserve mass.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     """
 
-    def __init__(self, shape: tuple[int, int], fixed: np.ndarray, area: np.ndarray, clips: bool, fills: bool) -> None:
+    def __init__(self, mesh: Mesh, clips: bool, fills: bool) -> None:
+        shape = mesh.fixed.shape
         self.kx = np.zeros(shape)
         self.kz = np.zeros(shape)
         self.b = np.zeros(shape)
-        self.fixed = fixed
+        self.fixed = mesh.fixed
         self.cavity_pressure = 0.0
         self.pressure = np.zeros(shape)
         self.linear_pressure = np.zeros(shape) if clips else self.pressure
         self.fx, self.fz = np.zeros(shape), np.zeros(shape)
         self.H, self.H_t = np.ones(shape), np.zeros(shape)
-        self.area = area
+        self.area = mesh.area
         self.inverse_step = 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
+        self.coefficients = Coefficients(self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed)
 
 
 @njit(cache=True)

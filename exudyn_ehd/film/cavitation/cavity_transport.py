@@ -82,9 +82,10 @@ def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
 
 
 @njit(cache=True)
-def _gather(kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, count, placed, P, t, x_out):
+def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out):
     """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R; returns the number of front vertices, -1 for a singular D."""
-    n, m = H.shape
+    n, m = full.shape
+    kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
     driven = taken = fronts = 0
     for r in range(count + placed):
         i = order[r] // m
@@ -95,10 +96,10 @@ def _gather(kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, ful
         c = r - count
         if inverse_step > 0.0:
             rhs = area[i, j] * mass_old[i, j] * inverse_step
-            store = area[i, j] * H[i, j] * inverse_step
+            store = area[i, j] * film.H[i, j] * inverse_step
         else:
             rhs = 0.0
-            store = area[i, j] * H_t[i, j]
+            store = area[i, j] * film.H_t[i, j]
         along = across = -1
         by_along = by_across = 0.0
         fresh = True
@@ -240,14 +241,12 @@ def _factor_loop(t, placed):
 
 
 @njit(cache=True)
-def factor_transport(
-    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, P, t, x_out
-):  # fmt: skip
+def factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x_out):
     """Factor for the given sets; returns (ok, number of unknowns).
 
     Parameters
     ----------
-    kx, ..., pc, P
+    film, inverse_step, mass_old, pc, P
         As in `exudyn_ehd.film.cavitation.elrod_adams.solve_elrod`.
     full : (n, m) bool array
         Full vertices that are not prescribed.
@@ -261,18 +260,16 @@ def factor_transport(
         Right-hand sides b and c.
     """
     # against the flow
-    count, width = number_along(full, kx, -along, order, t.number)
-    placed = _order_cavity(full, fixed, fx, along, across, count, order, t.place)
+    count, width = number_along(full, film.kx, -along, order, t.number)
+    placed = _order_cavity(full, film.fixed, film.fx, along, across, count, order, t.place)
     if placed < 0:
         return False, 0
-    fronts = _gather(
-        kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, count, placed, P, t, x_out
-    )
+    fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out)
     if fronts < 0 or fronts > t.loop.shape[0]:
         return False, 0
     stride = fronts + -fronts % 4
     t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE], t.shape[WIDTH] = count, fronts, stride, width
-    assemble_band(kx, kz, t.number, order, count, width, 0, t.band)
+    assemble_band(film.kx, film.kz, t.number, order, count, width, 0, t.band)
     if not factor_band(t.band, count, width, 0, t.diagonal):
         return False, 0
     if fronts > 0:

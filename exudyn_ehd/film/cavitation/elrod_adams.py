@@ -102,9 +102,8 @@ class ElrodAdams:
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
         ok, steps, work.count, work.width, work.carried = solve_elrod(
-            s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, inverse_step, mass_old, s.fixed, s.cavity_pressure,
-            work.active, work.order, work.number, work.lower, work.upper, work.inv_diag, work.transport, work.unknowns, s.pressure,
-            s.fill,
+            s.coefficients, inverse_step, mass_old, s.cavity_pressure, work.active, work.order, work.number, work.lower,
+            work.upper, work.inv_diag, work.transport, work.unknowns, s.pressure, s.fill,
         )  # fmt: skip
         return ok, steps
 
@@ -210,11 +209,10 @@ def _add_link(full_a, full_b, fixed_a, fixed_b, Pa, Pb, ra, rb, k, f, pc, lower,
 
 
 @njit(cache=True)
-def assemble_elrod(
-    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, number, count, width, P, lower, upper, rhs
-):  # fmt: skip
+def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width, P, lower, upper, rhs):
     """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones."""
-    n, m = H.shape
+    n, m = number.shape
+    kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
     for r in range(count):
         rhs[r] = 0.0
         for d in range(width + 1 + PAD):
@@ -241,9 +239,9 @@ def assemble_elrod(
                 w = area[i, j]
                 if inverse_step > 0.0:
                     rhs[a] += w * mass_old[i, j] * inverse_step
-                    s = w * H[i, j] * inverse_step
+                    s = w * film.H[i, j] * inverse_step
                 else:
-                    s = w * H_t[i, j]
+                    s = w * film.H_t[i, j]
                 if full[i, j]:
                     rhs[a] -= s
                 else:
@@ -251,24 +249,17 @@ def assemble_elrod(
 
 
 @njit(cache=True)
-def _solve_sets(
-    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower, upper,
-    inv_diag, t, x, P
-):  # fmt: skip
-    """Unknowns x for the given sets; returns (ok, count, width, carried)."""
+def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
+    """Unknowns x for the given sets; returns (ok, count, width, carried). ``directions``: `flow_direction` of fx and fz."""
+    along, across = directions
     if along != 0 and across != 0:
-        ok, count = factor_transport(
-            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, P, t, x
-        )
+        ok, count = factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x)
         if ok:
             solve_transport(t, count, x)
             return True, count, 1, True
     # oil also links columns that exchange no pressure flow (short bearings)
-    count, width = number_cells(np.logical_not(fixed), np.abs(kx) + np.abs(fx), order, number)
-    assemble_elrod(
-        kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full | fixed, number, count, width, P, lower,
-        upper, x,
-    )  # fmt: skip
+    count, width = number_cells(np.logical_not(film.fixed), np.abs(film.kx) + np.abs(film.fx), order, number)
+    assemble_elrod(film, inverse_step, mass_old, pc, full | film.fixed, number, count, width, P, lower, upper, x)
     if not factor_lu(lower, upper, count, width, inv_diag):
         return False, count, width, False
     solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
@@ -276,26 +267,22 @@ def _solve_sets(
 
 
 @njit(cache=True)
-def solve_elrod(
-    kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill
-):  # fmt: skip
+def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill):
     """Newton on the sets; returns (ok, steps, count, width, carried). ``full`` is the start and, on return, the result.
 
-    ``t`` holds the factor if ``carried``, else ``lower``, ``upper`` and ``inv_diag`` do.
+    ``film``: `Coefficients`. ``t`` holds the factor if ``carried``, else ``lower``, ``upper`` and ``inv_diag`` do.
     """
-    n, m = H.shape
+    n, m = full.shape
     for i in range(n):
         for j in range(m):
-            if fixed[i, j]:
+            if film.fixed[i, j]:
                 full[i, j] = False
                 fill[i, j] = 1.0
-    along = flow_direction(fx)
-    across = flow_direction(fz)
+    directions = flow_direction(film.fx), flow_direction(film.fz)
     for step in range(MAX_NEWTON_STEPS):
         ok, count, width, carried = _solve_sets(
-            kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, pc, full, along, across, order, number, lower,
-            upper, inv_diag, t, x, P,
-        )  # fmt: skip
+            film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P
+        )
         if not ok:
             return False, step + 1, count, width, carried
         peak = 0.0

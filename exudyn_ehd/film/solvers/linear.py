@@ -18,6 +18,7 @@ from exudyn_ehd.film.reynolds.links import (
     add_squeeze,
     conductances,
     couette_fluxes,
+    fill_balance,
     link_flux,
     right_hand_side,
     vertex_balance,
@@ -113,7 +114,7 @@ class FilmSolver:
         self.squeeze = squeeze
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
         self.area = grid.mesh.area
-        self.system = FilmSystem(shape, grid.fixed, self.area, clips=closure.clips, fills=closure.conserves_mass)
+        self.system = FilmSystem(grid.mesh, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
         self.work = Workspace(*shape)
@@ -302,33 +303,10 @@ class FilmSolver:
         s = self.system
         balance = np.empty(self.grid.shape)
         if self.closure.conserves_mass:
-            fill_balance(
-                s.pressure, s.fill, s.kx, s.kz, s.fx, s.fz, s.H, s.H_t, s.area, s.inverse_step, s.mass_old, balance
-            )
+            fill_balance(s.pressure, s.fill, s.coefficients, s.inverse_step, s.mass_old, balance)
         else:
             vertex_balance(s.pressure, s.kx, s.kz, s.b, balance)
         return np.where(self.grid.fixed, balance, 0.0)
-
-
-@njit(cache=True)
-def fill_balance(P, fill, kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, out):
-    """Balance of every vertex with the upstream fill in the Couette fluxes; zero at free vertices of a solved film."""
-    n, m = P.shape
-    out[:] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            q = kx[i, j] * (P[i, j] - P[nxt, j]) + fx[i, j] * (fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j])
-            out[i, j] += q
-            out[nxt, j] -= q
-            if j + 1 < m:
-                q = kz[i, j] * (P[i, j] - P[i, j + 1]) + fz[i, j] * (fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1])
-                out[i, j] += q
-                out[i, j + 1] -= q
-            if inverse_step > 0.0:
-                out[i, j] += area[i, j] * (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
-            else:
-                out[i, j] += area[i, j] * fill[i, j] * H_t[i, j]
 
 
 @njit(cache=True)

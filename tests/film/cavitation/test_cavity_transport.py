@@ -16,6 +16,7 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     solve_transport,
 )
 from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod
+from exudyn_ehd.film.reynolds.links import Coefficients
 
 N, M, PC = 14, 6, -0.3
 CASES = {
@@ -60,17 +61,18 @@ def film(columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap
         full ^= rng.uniform(size=(N, M)) < 0.2
     full &= ~fixed
     P = np.where(fixed, 0.2, PC)
-    return (kx, kz, fx, fz, H, H_t, area, inverse_step, mass_old, fixed, PC, full), P
+    return (Coefficients(kx, kz, fx, fz, H, H_t, area, fixed), inverse_step, mass_old, PC, full), P
 
 
 def dense(arguments, P):
     """Matrix, right-hand side and flat vertex of every unknown, from the kernel of the folded ring."""
-    kx, fx, fixed, full = arguments[0], arguments[2], arguments[9], arguments[11]
+    *given, full = arguments
+    kx, fx, fixed = given[0].kx, given[0].fx, given[0].fixed
     order, number = np.zeros(N * M, dtype=np.int64), np.zeros((N, M), dtype=np.int64)
     count, width = number_cells(~fixed, np.abs(kx) + np.abs(fx), order, number)
     lower, upper = (np.zeros((N * M, 2 * M + 2 + PAD)) for _ in range(2))
     rhs = np.zeros(N * M)
-    assemble_elrod(*arguments[:11], full | fixed, number, count, width, P, lower, upper, rhs)
+    assemble_elrod(*given, full | fixed, number, count, width, P, lower, upper, rhs)
     A = np.zeros((count, count))
     for r in range(count):
         for d in range(min(width, count - 1 - r) + 1):
@@ -85,7 +87,8 @@ def test_against_dense(name):
     A, b, places = dense(arguments, P)
     t = transport_buffers(N, M, np.full((N * M, 2 * M + 2 + PAD), np.nan))
     order, x = np.zeros(N * M, dtype=np.int64), np.zeros(N * M)
-    along, across = flow_direction(arguments[2]), flow_direction(arguments[3])
+    fx, fz, full = arguments[0].fx, arguments[0].fz, arguments[-1]
+    along, across = flow_direction(fx), flow_direction(fz)
     ok, count = factor_transport(*arguments, along, across, order, P, t, x)
     assert ok
     assert count == len(b)
@@ -106,12 +109,12 @@ def test_against_dense(name):
     reduce_transposed(t, count, rows)
     solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
     np.testing.assert_allclose(rows.T, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
-    assert (t.shape[FRONT] > 0) == (arguments[11].sum() < count and along * arguments[2].max() != 0.0)
+    assert (t.shape[FRONT] > 0) == (full.sum() < count and along * fx.max() != 0.0)
 
 
 def test_oil_that_goes_round_is_left_to_the_folded_ring():
     arguments, P = film(columns=(3, 9))
-    arguments[11][:, 3] = False
+    arguments[-1][:, 3] = False
     t = transport_buffers(N, M, np.zeros((N * M, 2 * M + 2 + PAD)))
     ok, _ = factor_transport(*arguments, 1, 1, np.zeros(N * M, dtype=np.int64), P, t, np.zeros(N * M))
     assert not ok
