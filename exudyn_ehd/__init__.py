@@ -27,15 +27,15 @@ from typing import Any
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
-from exudyn_ehd.film.grid import FiniteLength, ShortBearing, bearing_grid, slider_grid
+from exudyn_ehd.film.grid import bearing_grid, slider_grid
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.named_oils import oil
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
+from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR

@@ -10,12 +10,10 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
-from exudyn_ehd.film.grid import FiniteLength, ShortBearing
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
-from exudyn_ehd.film.long_bearing import LongBearing
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
-from exudyn_ehd.film.models import Film, check_film
+from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR

@@ -20,8 +20,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import InputError, require_integer, require_number
-
 
 class Mesh(NamedTuple):
     """Metric of a `FilmGrid` as kernels take it: its arrays of the same names, and ``area`` (n, m) of the control volumes."""
@@ -194,6 +192,34 @@ def bearing_grid(
     return _tensor_grid(theta, z, width, 1.0 / width, radius, fixed, width, weight_z)
 
 
+def long_bearing_grid(
+    radius: float, length: float, n_theta: int, n_z: int, *, start_angle: float = 0.0, open_ring: bool = False
+) -> FilmGrid:
+    """Film grid of uncoupled slices at ``n_z`` Gauss-Legendre points; other parameters as for `bearing_grid`.
+
+    The loads of a tilted journal are then integrated exactly for slices that change polynomially with z.
+    """
+    step = 2.0 * math.pi / n_theta
+    theta = start_angle + step * np.arange(n_theta)
+    points, weights = np.polynomial.legendre.leggauss(n_z)
+    half = 0.5 * length / radius
+    width_x, width_z = np.full(n_theta, step), half * weights
+    fixed = np.zeros((n_theta, n_z), dtype=np.bool_)
+    fixed[0, :] = open_ring
+    return FilmGrid(
+        x=theta,
+        z=half * points,
+        x_face=theta + 0.5 * step,
+        width_x=width_x,
+        width_z=width_z,
+        link_x=1.0 / width_x,
+        link_z=np.zeros(n_z - 1),
+        weight=np.outer(width_x, width_z),
+        fixed=fixed,
+        reference_length=float(radius),
+    )
+
+
 def slider_grid(
     length: float,
     width: float,
@@ -235,73 +261,3 @@ def slider_grid(
     if not sealed_sides:
         fixed[:, 0] = fixed[:, -1] = True
     return _tensor_grid(x, z, cell, link, scale, fixed, cell, weight_z)
-
-
-@dataclass(frozen=True, kw_only=True)
-class FiniteLength:
-    """Two-dimensional film: the full Reynolds equation on the (theta, z) grid.
-
-    Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated grids):
-
-    ========  ===========  ============
-    grid      eps <= 0.8   eps = 0.95
-    ========  ===========  ============
-    48 x 6    0.9 %        3.3 %
-    64 x 8    0.5 %        1.7 %
-    96 x 10   0.2 %        0.7 %
-    128 x 12  0.1 %        0.4 %
-    192 x 16  0.05 %       0.15 %
-    ========  ===========  ============
-
-    So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness and damping are more sensitive, because the
-    rupture line snaps to columns: 5 % on the default grid, 1 % on 192 x 16.
-
-    Parameters
-    ----------
-    n_theta : int
-        Vertices around the circumference, at least 16.
-    n_z : int
-        Intervals along the bearing, at least 4.
-    stretch : float
-        Axial stretching of the vertices towards the ends, 0 (uniform) to 0.95.
-    """
-
-    n_theta: int = 96
-    n_z: int = 10
-    stretch: float = 0.75
-
-    circumferential_pressure_flow = True
-
-    def __post_init__(self) -> None:
-        _check_grid(self)
-
-
-@dataclass(frozen=True, kw_only=True)
-class ShortBearing:
-    """Ocvirk's short bearing: pressure flow in theta is dropped, so that every column is solved on its own.
-
-    Load too high by 19 % already at L/D = 0.25 and eccentricity ratio 0.8; meant for L/D below 0.25 and moderate
-    eccentricity, and for comparison with closed forms. Tilt, squeeze and end pressures are included.
-
-    Parameters
-    ----------
-    n_theta, n_z, stretch
-        As for `FiniteLength`.
-    """
-
-    n_theta: int = 128
-    n_z: int = 8
-    stretch: float = 0.75
-
-    circumferential_pressure_flow = False
-
-    def __post_init__(self) -> None:
-        _check_grid(self)
-
-
-def _check_grid(film: FiniteLength | ShortBearing) -> None:
-    name = type(film).__name__
-    require_integer(f"{name}.n_theta", film.n_theta, at_least=16, hint="96 is a good start.")
-    require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
-    if require_number(f"{name}.stretch", film.stretch, at_least=0.0) > 0.95:
-        raise InputError(f"{name}.stretch must be within 0 and 0.95, got {film.stretch!r}; 0.75 suits most bearings.")

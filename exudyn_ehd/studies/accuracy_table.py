@@ -22,8 +22,7 @@ import math
 import pathlib
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.models import Film
+from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.tables import read_rows
 

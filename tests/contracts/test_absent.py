@@ -68,10 +68,6 @@ EFFECTS = {
         },
     ),
     "classic": (("film.solvers.sor",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
-    "long bearing": (
-        ("film.long_bearing",),
-        {"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3),), "end_pressures": (0.0, 0.0)},
-    ),
     "impedance map": (
         ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},

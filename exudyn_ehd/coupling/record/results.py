@@ -11,7 +11,7 @@ import exudyn as exu
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.revolutions import Revolutions
-from exudyn_ehd.film.grid import FiniteLength
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel

@@ -26,7 +26,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, SwiftStieber
-from exudyn_ehd.film.long_bearing import LongBearing
+from exudyn_ehd.film.models import LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.joint.audit.ringing import LIMIT, REMEDY, WINDOW, watched

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.grid import FiniteLength
-from exudyn_ehd.film.models import film_grid
+from exudyn_ehd.film.models import FiniteLength, film_grid
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.surfaces.asperity import AsperityContact
 from exudyn_ehd.film.surfaces.average_gap import AverageGap

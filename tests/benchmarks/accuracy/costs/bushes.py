@@ -26,8 +26,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Held
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
-from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush

@@ -21,8 +21,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
-from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.static_modes import ModalBush

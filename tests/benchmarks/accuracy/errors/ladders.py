@@ -9,8 +9,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
-from exudyn_ehd.film.grid import FiniteLength, ShortBearing
-from exudyn_ehd.film.long_bearing import LongBearing
+from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR

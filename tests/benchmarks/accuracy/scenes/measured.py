@@ -8,12 +8,12 @@ from collections.abc import Callable, Mapping
 from functools import partial
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.grid import FiniteLength
 from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
+from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
 from exudyn_ehd.joint.static.equilibrium import equilibrium
