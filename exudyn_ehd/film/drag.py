@@ -1,19 +1,22 @@
 """Drag of a pressure gradient on unequally rough surfaces.
 
-Between rough surfaces the relative speed V of the journal (1) carries ``V/2 (h_T + sigma phi_s)`` in the bore's (2) frame. Stokes flow is
-reciprocal (H. A. Lorentz): with the wall force as flux of V and the volume flow as flux of the pressure gradient, the cross terms are each
-other's opposite, since together they neither dissipate nor produce anything. So a pressure gradient pulls the surfaces, shear and pressure on
-their slopes together, by
+Between rough surfaces the relative speed V of the journal (1) carries ``V/2 (h_T + sigma phi_s)`` in the bore's (2)
+frame. Stokes flow is reciprocal (H. A. Lorentz): with the wall force as flux of V and the volume flow as flux of the
+pressure gradient, the cross terms are each other's opposite, since together they neither dissipate nor produce
+anything. So a pressure gradient pulls the surfaces, shear and pressure on their slopes together, by
 
     f_1 = -(h_T + sigma phi_s) / 2 dp/dx,        f_2 = -(h_T - sigma phi_s) / 2 dp/dx        per area,
 
-the rougher one more; the sum is what the pressure does on the film's cross section, whatever phi_s. With one surface smooth the force on it
-is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. Here stands what departs from equal shares, ``-+ sigma phi_s / 2 dp/ds``
-in both directions, summed over the links as the carriers' part of the flow is, so that work and heat match link by link.
+the rougher one more; the sum is what the pressure does on the film's cross section, whatever phi_s. With one surface
+smooth the force on it is its shear alone: ``phi_fp h = h_T - sigma Phi_s`` of Patir and Cheng. Here stands what departs
+from equal shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, summed over the links as the carriers' part of the
+flow is, so that work and heat match link by link.
 
-Scaled: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``, its torque on the journal is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
+Scaled: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``, its torque on the journal is 6 mu R^4 / c E_x, its axial
+force 6 mu R^3 / c E_z.
 
-Symbols: cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_z the links' gaps, as in `exudyn_ehd.film.reynolds.links`; P pressure.
+Symbols: cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_z the links' gaps, as in
+`exudyn_ehd.film.reynolds.links`; P pressure.
 """
 
 from __future__ import annotations
@@ -70,7 +73,7 @@ def drag_rhs(order, count, active, cx, HF, cz, gap_z, width_x, width_z, link_x, 
 
 @njit(cache=True, fastmath=_FAST)
 def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, link_z, face_out, cell_out):
-    """Gradients at fixed pressure to the true gap: face_out (n, m) of E_x on the links i -> i+1, cell_out (n, m) of E_z at the vertices."""
+    """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices."""
     n, m = P.shape
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
@@ -89,7 +92,7 @@ def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, 
 @njit(cache=True)
 def drag_pose_gradient(
     P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, link_z, cos_x, sin_x, cos_f, sin_f, z, out
-):  # fmt: skip
+):
     """Add the gradients of `drag_gap_slopes` to the scaled pose to out (2, >= 4): of E_x and of E_z."""
     face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
     drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, width_x, width_z, link_x, link_z, face[0], cell[0])

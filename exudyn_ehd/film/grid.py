@@ -1,14 +1,14 @@
 """The (theta, z) film grid: vertices, control volumes, links and integration weights.
 
-Conventions: arrays are ``[theta, z]``; theta counts from the joint's x about its z axis; z runs from -L/2 to L/2. Lengths
-are divided by the journal radius R (so that x = theta), gaps by the radial clearance c.
+Conventions: arrays are ``[theta, z]``; theta counts from the joint's x about its z axis; z runs from -L/2 to L/2.
+Lengths are divided by the journal radius R (so that x = theta), gaps by the radial clearance c.
 
 * theta: n vertices, one control volume of width 2 pi / n around each, links between neighbours, closed ring.
 * z: n_z intervals, n_z + 1 vertices, the two end vertices on the bearing's ends. The vertices are stretched towards the
-  ends, ``z = L/2 sin(pi a s / 2) / sin(pi a / 2)``, s uniform in [-1, 1], because the axial parabola is resolved exactly by
-  the scheme while the load near the ends is not. Integrals over z use Gregory's end weights 3/8, 7/6, 23/24 in s (fourth
-  order), corrected so that 1, z^2 and z^4 are integrated exactly: areas and the load of an axial parabola, aligned or
-  tilted, then hold to rounding on any grid. Below four intervals: the trapezoidal rule.
+  ends, ``z = L/2 sin(pi a s / 2) / sin(pi a / 2)``, s uniform in [-1, 1], because the axial parabola is resolved
+  exactly by the scheme while the load near the ends is not. Integrals over z use Gregory's end weights 3/8, 7/6, 23/24
+  in s (fourth order), corrected so that 1, z^2 and z^4 are integrated exactly: areas and the load of an axial parabola,
+  aligned or tilted, then hold to rounding on any grid. Below four intervals: the trapezoidal rule.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 
 
 class Mesh(NamedTuple):
-    """Metric of a `FilmGrid` as kernels take it: its arrays of the same names, and ``area`` (n, m) of the control volumes."""
+    """Metric of a `FilmGrid` as kernels take it: arrays of the same names, and the control volumes ``area`` (n, m)."""
 
     width_x: np.ndarray
     width_z: np.ndarray
@@ -232,8 +232,8 @@ def slider_grid(
 ) -> FilmGrid:
     """Film grid of a plane slider, x in [0, length], z in [-width/2, width/2].
 
-    Columns are cell centres between two end columns of zero width, which carry the pressures at x = 0 and x = length, so
-    that a gap may jump at the faces between cells. With ``sealed_sides`` no flow leaves through z = +-width/2 (a
+    Columns are cell centres between two end columns of zero width, which carry the pressures at x = 0 and x = length,
+    so that a gap may jump at the faces between cells. With ``sealed_sides`` no flow leaves through z = +-width/2 (a
     one-dimensional film for n_z = 1).
 
     Parameters

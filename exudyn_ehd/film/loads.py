@@ -8,9 +8,10 @@ With one normal e_r, fixed in the housing, and one point per vertex, the pressur
 
     F = -(12 mu R^4 / c^2) (S_c, S_s),   M = (12 mu R^5 / c^2) (S_zs, -S_zc).
 
-Shear: on the bush acts ``tau = mu U/h - (h/2) dp/dx``, on the journal, at the same point, its opposite. The Poiseuille part,
-summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It splits e x F between the two
-surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half of it.
+Shear: on the bush acts ``tau = mu U/h - (h/2) dp/dx``, on the journal, at the same point, its opposite. The Poiseuille
+part, summed by parts, is ``sum (h/2) dp/dx = -(1/2) sum p dh/dx`` (+ the ends' part in z). It splits e x F between the
+two surfaces: the torque on the journal about its own axis carries +, that on the bush about its own carries - of half
+of it.
 """
 
 from __future__ import annotations
@@ -62,7 +63,10 @@ def unknown_weights(order, count, weight, active, out):
 
 @njit(cache=True)
 def slope_adjoint_rhs(order, count, weight, active, slope_x, slope_z, rhs_out):
-    """Weights of the integrals of `slope_integrals` at the unknowns: rhs_out (2, count); zero where the pressure is clipped."""
+    """Weights of the integrals of `slope_integrals` at the unknowns: rhs_out (2, count).
+
+    Zero where the pressure is clipped.
+    """
     weights, actives = weight.reshape(-1), active.reshape(-1)
     x, z = slope_x.reshape(-1), slope_z.reshape(-1)
     for r in range(count):
@@ -130,7 +134,7 @@ def couette_integral_ratio(H, weight, ratio, share, whole):
 
 @njit(cache=True, error_model="numpy")
 def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
-    """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills: rhs_out (count,).
+    """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills (count,).
 
     ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
     """

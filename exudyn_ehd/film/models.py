@@ -1,8 +1,8 @@
 """Film models that a scene names, and the way from them to grid and solver; the only place that asks which one it is.
 
-Without axial flow (`LongBearing`) a closed ring keeps its oil and has no reference pressure: a complementarity condition can't remove
-any, so that its solution is the full film with its lowest pressure at the cavity's. One line of prescribed pressure is therefore
-required: the line of maximum gap or an axial groove.
+Without axial flow (`LongBearing`) a closed ring keeps its oil and has no reference pressure: a complementarity
+condition can't remove any, so that its solution is the full film with its lowest pressure at the cavity's. One line of
+prescribed pressure is therefore required: the line of maximum gap or an axial groove.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ from exudyn_ehd.status import InputError, Status, require_integer, require_numbe
 class FiniteLength:
     """Two-dimensional film: the full Reynolds equation on the (theta, z) grid.
 
-    Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated grids):
+    Largest error of the load (Swift-Stieber, L/D from 1/8 to 1, any direction of the journal, against extrapolated
+    grids):
 
     ========  ===========  ============
     grid      eps <= 0.8   eps = 0.95
@@ -43,8 +44,8 @@ class FiniteLength:
     192 x 16  0.05 %       0.15 %
     ========  ===========  ============
 
-    So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness and damping are more sensitive, because the
-    rupture line snaps to columns: 5 % on the default grid, 1 % on 192 x 16.
+    So 1 % in the load at eps 0.8 takes 48 x 6, and 0.1 % takes 128 x 12. Stiffness and damping are more sensitive,
+    because the rupture line snaps to columns: 5 % on the default grid, 1 % on 192 x 16.
 
     Parameters
     ----------
@@ -101,8 +102,9 @@ def _check_grid(film: FiniteLength | ShortBearing) -> None:
 class LongBearing:
     """Long bearing (Sommerfeld): axial flow is dropped, every slice across the axis is a ring of its own.
 
-    Load too high (Swift-Stieber, p = 0 at the maximum gap): at eccentricity ratios 0.5 / 0.8 / 0.95 by 262 / 111 / 39 % at
-    L/D = 1, 81 / 41 / 17 % at 2 and 30 / 17 / 8 % at 4; meant for closed forms and for sealed bearings. Needs ``inlet=MaximumGap()`` or axial grooves over the whole length
+    Load too high (Swift-Stieber, p = 0 at the maximum gap): at eccentricity ratios 0.5 / 0.8 / 0.95 by 262 / 111 / 39 %
+    at L/D = 1, 81 / 41 / 17 % at 2 and 30 / 17 / 8 % at 4; meant for closed forms and for sealed bearings. Needs
+    ``inlet=MaximumGap()`` or axial grooves over the whole length
     (``supply=(AxialGroove(angle=..., width_angle=...),)``) and ambient end pressures.
 
     Parameters
@@ -146,27 +148,32 @@ class LongSolver(FilmSolver):
 def check_film(
     film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
 ) -> None:
-    """Raise `InputError` for a film model that does not go with the other choices; ``open_ring``: inlet at the maximum gap."""
+    """Raise `InputError` for a film model that does not go with the other choices.
+
+    ``open_ring``: inlet at the maximum gap.
+    """
     if isinstance(film, ClassicSOR) and not isinstance(closure, Gumbel):
         raise InputError(
-            f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Guembel condition, got cavitation={closure!r}; use "
-            "cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
+            f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Guembel condition, got "
+            f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
         )
     if not isinstance(film, LongBearing):
         return
     if not open_ring and not supply:
         raise InputError(
-            "JournalBearing.film=LongBearing(...) needs a line of prescribed pressure, because without axial flow a closed ring "
-            "neither loses nor gets oil; give inlet=MaximumGap() (prescribed positions) or supply=(AxialGroove(...),)."
+            "JournalBearing.film=LongBearing(...) needs a line of prescribed pressure, because without axial flow a "
+            "closed ring neither loses nor gets oil; give inlet=MaximumGap() (prescribed positions) or "
+            "supply=(AxialGroove(...),)."
         )
     if any(not isinstance(area, AxialGroove) or area.length is not None for area in supply):
         raise InputError(
-            "JournalBearing.film=LongBearing(...) takes axial grooves over the whole length only (AxialGroove without length), got "
-            f"supply={supply!r}; use film=FiniteLength(...) for other areas."
+            f"JournalBearing.film=LongBearing(...) takes axial grooves over the whole length only (AxialGroove "
+            f"without length), got supply={supply!r}; use film=FiniteLength(...) for other areas."
         )
     if any(p != 0.0 for p in end_pressures):
         raise InputError(
-            f"JournalBearing.end_pressures must be (0, 0) with film=LongBearing(...), which has no axial flow, got {end_pressures!r}."
+            f"JournalBearing.end_pressures must be (0, 0) with film=LongBearing(...), which has no axial flow, got "
+            f"{end_pressures!r}."
         )
 
 
@@ -192,22 +199,25 @@ def film_solver(
     if density is not None:
         if not isinstance(film, FiniteLength):
             raise InputError(
-                f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as incompressible; use "
-                "film=FiniteLength(...)."
+                f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as "
+                f"incompressible; use film=FiniteLength(...)."
             )
         return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
         if flux_effects:
             raise InputError(
-                "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, shear thinning or "
-                "temperature field; use film=FiniteLength(...)."
+                "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, shear thinning "
+                "or temperature field; use film=FiniteLength(...)."
             )
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
     solver = LongSolver if isinstance(film, LongBearing) else FilmSolver
     return solver(
-        grid, closure, squeeze=squeeze, flux_effects=flux_effects,
+        grid,
+        closure,
+        squeeze=squeeze,
+        flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
-    )  # fmt: skip
+    )
 
 
 def liner_film_solver(
@@ -222,7 +232,8 @@ def liner_film_solver(
 ) -> LinerFilmSolver | CompliantFilmSolver:
     """Solver of a film on an elastic liner.
 
-    ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open; ``oil``: of a viscosity that follows the pressure.
+    ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open; ``oil``: of a viscosity that
+    follows the pressure.
     """
     if contact is None and limiter is None and oil is None and not flux_effects and not closure.conserves_mass:
         return LinerFilmSolver(grid, closure, squeeze=squeeze)

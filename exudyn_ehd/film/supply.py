@@ -1,16 +1,17 @@
 """Oil supply: grooves, holes and pockets in which the pressure is prescribed.
 
-A supply area is deep against the clearance, so that its pressure is uniform. On the grid, the vertices inside the area (its edges
-included) carry the supply pressure; the area thus reaches from the first to the last vertex inside and may be up to one cell
-narrower per edge than drawn. Choose a grid with vertices on the edges where that matters (edges at multiples of 2 pi / n_theta), or
-refine. The rows at the bearing's ends keep the end pressures: a groove up to the ends leaves one axial interval of land.
+A supply area is deep against the clearance, so that its pressure is uniform. On the grid, the vertices inside the area
+(its edges included) carry the supply pressure; the area thus reaches from the first to the last vertex inside and may
+be up to one cell narrower per edge than drawn. Choose a grid with vertices on the edges where that matters (edges at
+multiples of 2 pi / n_theta), or refine. The rows at the bearing's ends keep the end pressures: a groove up to the ends
+leaves one axial interval of land.
 
-With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its pressure acts on
-the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams` supply, leakage and the
-film's change of content balance to rounding, the other closures lose oil at the film's rupture.
+With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
+pressure acts on the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams`
+supply, leakage and the film's change of content balance to rounding, the other closures lose oil at the film's rupture.
 
-Areas lie in the housing, or with ``rotating=True`` in the journal; those need the spin angle of the journal, and the force then
-steps when the area's edge passes a vertex.
+Areas lie in the housing, or with ``rotating=True`` in the journal; those need the spin angle of the journal, and the
+force then steps when the area's edge passes a vertex.
 """
 
 from __future__ import annotations
@@ -184,8 +185,8 @@ def _check_width(area: AxialGroove | Pocket) -> None:
     width = require_number(f"{name}.width_angle", area.width_angle, "rad", above=0.0)
     if width >= 2.0 * math.pi:
         raise InputError(
-            f"{name}.width_angle must be below 2 pi rad, got {width:g}; if yours is in degrees, use math.radians; a groove all "
-            "around is a CircumferentialGroove."
+            f"{name}.width_angle must be below 2 pi rad, got {width:g}; if yours is in degrees, use math.radians; a "
+            f"groove all around is a CircumferentialGroove."
         )
 
 
@@ -217,28 +218,28 @@ def require_areas(supply: object) -> None:
     """Raise `InputError` for anything but a tuple of supply areas."""
     if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
         raise InputError(
-            "JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or Pocket(...), got "
-            f"{supply!r}; for a single one write supply=(AxialGroove(...),)."
+            f"JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or "
+            f"Pocket(...), got {supply!r}; for a single one write supply=(AxialGroove(...),)."
         )
 
 
 def check_supply(supply: Sequence[SupplyArea], radius: float, length: float, film: _FilmSize) -> None:
-    """Raise `InputError` for areas without a vertex of the film grid inside, or areas that overlap at different pressures."""
+    """Raise `InputError` for areas without a vertex of the film grid, or that overlap at different pressures."""
     masks = []
     for k, area in enumerate(supply):
         mask = _covered(area, radius, length, film.n_theta, film.n_z, film.stretch)
         if not mask.any():
             raise InputError(
-                f"JournalBearing.supply[{k}]: no vertex of the {film.n_theta} x {film.n_z} film grid lies inside {area!r}; "
-                f"{_grid_needed(area, radius, length, film)}"
+                f"JournalBearing.supply[{k}]: no vertex of the {film.n_theta} x {film.n_z} film grid lies inside "
+                f"{area!r}; {_grid_needed(area, radius, length, film)}"
             )
         masks.append(mask)
     for k, area in enumerate(supply):
         for i in range(k):
             if area.pressure != supply[i].pressure and np.any(masks[k] & masks[i]):
                 raise InputError(
-                    f"JournalBearing.supply[{i}] and [{k}] overlap with different pressures, {supply[i].pressure:g} and "
-                    f"{area.pressure:g} Pa; give overlapping areas one pressure or move them apart."
+                    f"JournalBearing.supply[{i}] and [{k}] overlap with different pressures, {supply[i].pressure:g} "
+                    f"and {area.pressure:g} Pa; give overlapping areas one pressure or move them apart."
                 )
 
 
@@ -331,7 +332,10 @@ class SupplyMap:
             P[mask] = value
 
     def flows(self, inflow: np.ndarray) -> np.ndarray:
-        """What every area feeds into the film, in the unit of ``inflow`` (n, m); a shared vertex counts for the first area."""
+        """What every area feeds into the film, in the unit of ``inflow`` (n, m).
+
+        A shared vertex counts for the first area.
+        """
         left = np.ones(inflow.shape, dtype=np.bool_)
         out = np.empty(len(self.masks))
         for k, mask in enumerate(self.masks):

@@ -3,7 +3,8 @@
 Storage: ``band[r, d] = A[r, r + d]`` with zeros behind the bandwidth, so that blocks of four pivots may read past it.
 Factor: ``A = U^T D^-1 U`` with ``U = D L^T`` stored in place of ``band`` and ``inv_diag = 1 / diag(U)``.
 
-Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances of the links (i, j)-(i+1, j) and (i, j)-(i, j+1).
+Symbols: n columns (theta), m rows (z), w half-bandwidth, kx / kz conductances of the links (i, j)-(i+1, j) and
+(i, j)-(i, j+1).
 """
 
 from __future__ import annotations
@@ -52,8 +53,8 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
 def factor_band(band, count, width, first, inv_diag_out):
     """Factor in place, four pivots at a time; returns False if a pivot is not positive.
 
-    Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The operations on
-    every row, and so its bits, are the same as for ``first = 0``.
+    Rows below ``first`` (a multiple of 4) are factored already and stay; those from it on hold the matrix. The
+    operations on every row, and so its bits, are the same as for ``first = 0``.
     """
     k = max(0, first - width - 4)
     k -= k % 4

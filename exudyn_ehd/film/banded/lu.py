@@ -1,8 +1,9 @@
 """Banded L U without pivoting for the film's non-symmetric systems (mass-conserving cavitation, elastic liner).
 
-The matrices are column diagonally dominant with non-positive off-diagonals, or close to it, so that no pivoting is needed.
-Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``, d = 0 .. w, zeros behind; ``lower[:, 0]`` is not used.
-After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``upper`` U's rows, ``inv_diag = 1 / diag(U)``.
+The matrices are column diagonally dominant with non-positive off-diagonals, or close to it, so that no pivoting is
+needed. Storage: ``lower[r, d] = A[r + d, r]`` and ``upper[r, d] = A[r, r + d]``, d = 0 .. w, zeros behind;
+``lower[:, 0]`` is not used. After the factorisation ``A = L U`` with unit L: ``lower`` holds L's columns, ``upper`` U's
+rows, ``inv_diag = 1 / diag(U)``.
 """
 
 from __future__ import annotations
@@ -23,7 +24,10 @@ _0, _1, _2, _3 = (_unsigned(k) for k in range(4))
 
 @njit(cache=True)
 def add_flux(a, b, out_a, out_b, lower, upper):
-    """Add a flux a -> b to the balances of its ends: ``out_a``, ``out_b`` are its derivatives; a, b are unknowns or -1."""
+    """Add a flux a -> b to the balances of its ends: ``out_a``, ``out_b`` are its derivatives.
+
+    A, b are unknowns or -1.
+    """
     if a >= 0:
         upper[a, 0] += out_a
         if b > a:
@@ -70,8 +74,8 @@ def _subtract_dots(a, b, at, far, along, reach, x00, x01, x02, x10, x11, x12, x2
 def _factor_by_panels(lower, upper, count, width, inv_diag_out):
     """Three rows of U and columns of L at a time, in tiles of 3 x 3 whose nine dot products stay in registers.
 
-    Flat unsigned indices spare the slices and sign checks that would outweigh the arithmetic of short rows. The next panel needs what
-    the last one has just stored, so that larger panels wait less; beyond nine sums registers run out.
+    Flat unsigned indices spare the slices and sign checks that would outweigh the arithmetic of short rows. The next
+    panel needs what the last one has just stored, so that larger panels wait less; beyond nine sums registers run out.
     """
     up = upper.reshape(-1)
     low = lower.reshape(-1)
@@ -88,9 +92,22 @@ def _factor_by_panels(lower, upper, count, width, inv_diag_out):
         reach = min(w, r)
         at = row0 - reach * along
         a00, a01, a02, a10, a11, a12, a20, a21, a22 = _subtract_dots(
-            low, up, at, at, along, reach, up[row0], up[row0 + _1], up[row0 + _2], low[row0 + _1], up[row1], up[row1 + _1],
-            low[row0 + _2], low[row1 + _1], up[row2],
-        )  # fmt: skip
+            low,
+            up,
+            at,
+            at,
+            along,
+            reach,
+            up[row0],
+            up[row0 + _1],
+            up[row0 + _2],
+            low[row0 + _1],
+            up[row1],
+            up[row1 + _1],
+            low[row0 + _2],
+            low[row1 + _1],
+            up[row2],
+        )
         if not abs(a00) > 1e-300:
             return False
         i0 = 1.0 / a00
@@ -115,9 +132,22 @@ def _factor_by_panels(lower, upper, count, width, inv_diag_out):
             at = row0 - reach * along
             c0, c1, c2 = row0 + c, row1 + c - _1, row2 + c - _2
             u00, u01, u02, u10, u11, u12, u20, u21, u22 = _subtract_dots(
-                low, up, at, at + c, along, reach, up[c0], up[c0 + _1], up[c0 + _2], up[c1], up[c1 + _1], up[c1 + _2],
-                up[c2], up[c2 + _1], up[c2 + _2],
-            )  # fmt: skip
+                low,
+                up,
+                at,
+                at + c,
+                along,
+                reach,
+                up[c0],
+                up[c0 + _1],
+                up[c0 + _2],
+                up[c1],
+                up[c1 + _1],
+                up[c1 + _2],
+                up[c2],
+                up[c2 + _1],
+                up[c2 + _2],
+            )
             up[c0], up[c0 + _1], up[c0 + _2] = u00, u01, u02
             u10 -= a10 * u00
             u11 -= a10 * u01
@@ -126,9 +156,22 @@ def _factor_by_panels(lower, upper, count, width, inv_diag_out):
             up[c2], up[c2 + _1] = u20 - a20 * u00 - a21 * u10, u21 - a20 * u01 - a21 * u11
             up[c2 + _2] = u22 - a20 * u02 - a21 * u12
             l00, l01, l02, l10, l11, l12, l20, l21, l22 = _subtract_dots(
-                up, low, at, at + c, along, reach, low[c0], low[c0 + _1], low[c0 + _2], low[c1], low[c1 + _1], low[c1 + _2],
-                low[c2], low[c2 + _1], low[c2 + _2],
-            )  # fmt: skip
+                up,
+                low,
+                at,
+                at + c,
+                along,
+                reach,
+                low[c0],
+                low[c0 + _1],
+                low[c0 + _2],
+                low[c1],
+                low[c1 + _1],
+                low[c1 + _2],
+                low[c2],
+                low[c2 + _1],
+                low[c2 + _2],
+            )
             l00 *= i0
             l01 *= i0
             l02 *= i0

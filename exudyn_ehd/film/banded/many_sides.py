@@ -1,9 +1,10 @@
 """Dozens of right-hand sides at once with a stored band factor, as columns of a matrix or of tiles.
 
-Columns make every inner loop long and contiguous: faster than rows (`substitution`) from some ten right-hand sides on. A tile holds TILE of
-them; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor times four known rows from four
-others, 16 products for 8 rows read and 4 written, in loops of constant length. Coefficients are packed by such blocks first. The loads
-of an elastic bore need dozens of right-hand sides: full tiles are faster still.
+Columns make every inner loop long and contiguous: faster than rows (`substitution`) from some ten right-hand sides on.
+A tile holds TILE of them; its rows are taken by fours, so that a step of a solve subtracts a 4 x 4 block of the factor
+times four known rows from four others, 16 products for 8 rows read and 4 written, in loops of constant length.
+Coefficients are packed by such blocks first. The loads of an elastic bore need dozens of right-hand sides: full tiles
+are faster still.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ def solve_columns_from(first, forward, backward, inverse, symmetric, count, widt
 
 @njit(cache=True)
 def make_tiles(rows, sides):
-    """Tiles (tiles, >= count, TILE) for ``sides`` right-hand sides (count,), the s-th in column s % TILE of tile s // TILE.
+    """Tiles (tiles, >= count, TILE) for ``sides`` right-hand sides: the s-th in column s % TILE of tile s // TILE.
 
     The first ones are the given rows (r, count); those behind them are undefined, and zero where there is none.
     """

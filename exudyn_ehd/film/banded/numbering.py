@@ -1,10 +1,11 @@
 """Numbering of a film's unknowns on a ring of columns.
 
-The matrix of the finite-volume Reynolds equation couples a cell with its two neighbours in theta and its two neighbours in z. Active
-cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of unknown rows. The ring of columns is
-cut
+The matrix of the finite-volume Reynolds equation couples a cell with its two neighbours in theta and its two neighbours
+in z. Active cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of
+unknown rows. The ring of columns is cut
 
-* at a column without active cells or at a missing link (then one column couples only with the next one), or, if there is none,
+* at a column without active cells or at a missing link (then one column couples only with the next one), or, if there
+  is none,
 * nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
 
 The numbering, and with it every bit of the solution, depends on the active set alone and not on how it was found.

@@ -1,14 +1,16 @@
-"""Forward and back substitution with a stored band factor, for a handful of right-hand sides as rows; for dozens see `many_sides`.
+"""Forward and back substitution with a stored band factor, for a handful of right-hand sides as rows.
 
-``A = F^T G`` with F's rows in ``forward`` and G's in ``backward``, stored as in `ldl` and `lu`. One of the two triangles, or both, come
-with the diagonal ``1 / inverse``, else with ones:
+For dozens see `many_sides`.
+
+``A = F^T G`` with F's rows in ``forward`` and G's in ``backward``, stored as in `ldl` and `lu`. One of the two
+triangles, or both, come with the diagonal ``1 / inverse``, else with ones:
 
 * `solve_lu`: F^T = L with ones, G = U;
 * `solve_lu_transposed`: F^T = U^T, G = L^T with ones;
 * `solve_ldl`: ``A = U^T D^-1 U``, both U, so that the back substitution starts from D times what came forward.
 
-Three rows of the factor meet four right-hand sides at a time: twelve dot products that stay in registers, with flat unsigned indices,
-which spare the slices and sign checks that would outweigh the arithmetic of short rows.
+Three rows of the factor meet four right-hand sides at a time: twelve dot products that stay in registers, with flat
+unsigned indices, which spare the slices and sign checks that would outweigh the arithmetic of short rows.
 """
 
 from __future__ import annotations
@@ -127,7 +129,7 @@ def _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size,
 
 @njit(cache=True, inline="always")
 def _subtract(a, at, between, step, x, k, forth, reach, s0, s1, s2):
-    """A tile of three rows s (4,) less ``reach`` threes of ``a``, ``between`` apart and ``step`` further, times x at k, k + forth, ..."""
+    """Three rows s (4,) less ``reach`` threes of ``a``, ``between`` apart, ``step`` on, times x at k, k + forth ..."""
     x0, x1, x2, x3 = x
     s00, s01, s02, s03 = s0
     s10, s11, s12, s13 = s1
@@ -192,9 +194,18 @@ def _solve_four(forward, backward, scale_forth, scale_back, inverse, count, widt
         reach = min(w, r)
         own = r * stride
         s0, s1, s2 = _subtract(
-            col, own - reach * along, _1, along, x, r - reach, _1, reach, _at(x, r, 1.0), _at(x, r + _1, 1.0),
+            col,
+            own - reach * along,
+            _1,
+            along,
+            x,
+            r - reach,
+            _1,
+            reach,
+            _at(x, r, 1.0),
+            _at(x, r + _1, 1.0),
             _at(x, r + _2, 1.0),
-        )  # fmt: skip
+        )
         if scale_forth:
             i0, i1, i2 = inverse[r], inverse[r + _1], inverse[r + _2]
         s0 = _times(s0, i0)

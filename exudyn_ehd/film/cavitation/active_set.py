@@ -1,7 +1,8 @@
 """The film on a set of active vertices, and Swift-Stieber's iteration over such sets.
 
-The primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after finitely many steps (Hintermueller,
-Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47 (2009) 3001).
+The primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after finitely many steps
+(Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47 (2009)
+3001).
 
 Symbols: kx, kz conductances of the links, b right-hand side, P pressure, pc cavity pressure, all scaled (see
 `exudyn_ehd.film.reynolds.links`); active: P is unknown.
@@ -19,7 +20,8 @@ from exudyn_ehd.film.grid import Mesh
 from exudyn_ehd.film.reynolds.links import Coefficients
 
 MAX_ACTIVE_SET_STEPS = 200
-# A vertex leaves the film if its pressure is below the cavity's by more than this share of the peak: about 100 roundings.
+# A vertex leaves the film if its pressure is below the cavity's by more than this share of the peak: about 100
+# roundings.
 ACTIVE_SET_TOLERANCE = 1e-13
 
 
@@ -37,7 +39,8 @@ class FilmSystem:
     pressure : (n, m) array
         In: prescribed values at fixed vertices. Out: the film's pressure.
     linear_pressure : (n, m) array
-        Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure clips.
+        Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure
+        clips.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
     coefficients : Coefficients
@@ -94,8 +97,8 @@ def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
 def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P):
     """Factor and solve on the active vertices; P holds the known pressures elsewhere. Returns (ok, count, width).
 
-    ``old_order``, ``old_count`` and ``old_width`` describe the factor in ``band`` if it belongs to the same coefficients; only the
-    rows behind the first change are then factored again. ``old_count`` = 0: there is none.
+    ``old_order``, ``old_count`` and ``old_width`` describe the factor in ``band`` if it belongs to the same
+    coefficients; only the rows behind the first change are then factored again. ``old_count`` = 0: there is none.
     """
     count, width = number_cells(active, kx, order, number)
     # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
@@ -115,8 +118,8 @@ def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, n
 def update_active_set(kx, kz, b, fixed, pc, active, P):
     """One policy step from the pressures of the last one: who leaves, who joins; returns the number of changes.
 
-    An active vertex leaves if its pressure is below pc; another one joins if its residual at pc is not positive. Inactive
-    pressures are then set to pc.
+    An active vertex leaves if its pressure is below pc; another one joins if its residual at pc is not positive.
+    Inactive pressures are then set to pc.
     """
     n, m = b.shape
     peak = 0.0

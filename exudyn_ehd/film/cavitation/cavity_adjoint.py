@@ -1,6 +1,7 @@
-"""The transposed system of `exudyn_ehd.film.cavitation.cavity_transport`, solved with the same factor and backwards, against the flow.
+"""The transposed system of `cavity_transport`, solved with the same factor and backwards, against the flow.
 
-The unknowns lam of the full vertices and nu of the cavitated ones follow from the right-hand sides g and mu by way of ``z = E^T lam``:
+The unknowns lam of the full vertices and nu of the cavitated ones follow from the right-hand sides g and mu by way of
+``z = E^T lam``:
 
     z = (I - G)^-T V^T (g + K^T T^T mu),    nu = T^T (mu + R^T z),    A lam = g + K^T nu.
 """
@@ -104,7 +105,7 @@ def _carry_back_one(t, placed, mu):
 
 @njit(cache=True, fastmath=_FAST)
 def reduce_transposed(t, unknowns, x):
-    """As `solve_transport_transposed` for every row of x (k, unknowns), but for the last step: its full vertices are left to A."""
+    """As `solve_transport_transposed` for every row of x (k, unknowns), without its last step, by A."""
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
     placed = unknowns - count
     V = t.spread[: count * stride].reshape(count, stride)

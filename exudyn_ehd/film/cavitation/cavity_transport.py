@@ -1,23 +1,27 @@
-"""Solver for the mass-conserving film that takes the cavity as what it is: oil carried along, by the film's own motion, on one way.
+"""The mass-conserving film with its cavity as what it is: oil carried along one way, by the film's own motion.
 
-With the pressures P of the full vertices and the fills of the cavitated ones the balance of `exudyn_ehd.film.cavitation.elrod_adams` reads
+With the pressures P of the full vertices and the fills of the cavitated ones the balance of
+`exudyn_ehd.film.cavitation.elrod_adams` reads
 
     A P - E w = b,    D fill = U fill + K (P - Pc) + c,    w = R fill.
 
-A is the symmetric matrix of the Poiseuille conductances between full vertices; they end at the cavity, where the ring is cut. D
-(diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K what the pressure drives in from full
-neighbours, and w, one number per vertex of the reformation front, what the front takes over from the cavity. As the carriers in theta and
-in z have one sign each, the fills follow from each other along the flow, ``fill = T (K (P - Pc) + c)`` with ``T = (D - U)^-1``, and
+A is the symmetric matrix of the Poiseuille conductances between full vertices; they end at the cavity, where the ring
+is cut. D (diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K what the pressure
+drives in from full neighbours, and w, one number per vertex of the reformation front, what the front takes over from
+the cavity. As the carriers in theta and in z have one sign each, the fills follow from each other along the flow,
+``fill = T (K (P - Pc) + c)`` with ``T = (D - U)^-1``, and
 
     (I - G) w = R T (K (y - Pc) + c),    G = R T K V,    A y = b,    A V = E,    P = y + V w,
 
-is left: as many unknowns as the front has vertices, column diagonally dominant and non-negative in G (no pivoting), because no more oil
-comes round than the front has taken in. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same way backwards.
+is left: as many unknowns as the front has vertices, column diagonally dominant and non-negative in G (no pivoting),
+because no more oil comes round than the front has taken in. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same
+way backwards.
 
-Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs half a
-solution; then the cavitated ones along the flow, row by row. All of it depends on the sets alone.
+Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs
+half a solution; then the cavitated ones along the flow, row by row. All of it depends on the sets alone.
 
-Not every film is of that kind: where a row is cavitated all around, or the front is long, the caller takes a band factor of the whole.
+Not every film is of that kind: where a row is cavitated all around, or the front is long, the caller takes a band
+factor of the whole.
 """
 
 from __future__ import annotations
@@ -50,7 +54,10 @@ def flow_direction(f):
 
 @njit(cache=True)
 def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
-    """Append the cavitated vertices to ``order`` along the flow; returns their number, -1 if oil goes round in one of the rows."""
+    """Append the cavitated vertices to ``order`` along the flow.
+
+    Returns their number, -1 if oil goes round in one of the rows.
+    """
     n, m = full.shape
     placed = 0
     for row in range(m):
@@ -83,7 +90,10 @@ def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
 
 @njit(cache=True)
 def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out):
-    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R; returns the number of front vertices, -1 for a singular D."""
+    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R.
+
+    Returns the number of front vertices, -1 for a singular D.
+    """
     n, m = full.shape
     kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
     driven = taken = fronts = 0

@@ -1,15 +1,17 @@
 """Cavitation closures: what the film does where the linear Reynolds equation would go below the cavity pressure.
 
-Each closure is a small frozen object, which a scene names: what a film needs of it stands in `exudyn_ehd.film.solvers.linear.Closure`. All pressures here are scaled
-(see `exudyn_ehd.film.reynolds.links`); ``cavity_pressure`` of the specs is a gauge pressure in Pa.
+Each closure is a small frozen object, which a scene names: what a film needs of it stands in
+`exudyn_ehd.film.solvers.linear.Closure`. All pressures here are scaled (see `exudyn_ehd.film.reynolds.links`);
+``cavity_pressure`` of the specs is a gauge pressure in Pa.
 
 * `FullSommerfeld`: nothing; negative pressures stay.
 * `Gumbel` (half Sommerfeld): the linear problem is solved, then pressures below the cavity pressure are cut off.
-* `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``, solved by
-  the primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after finitely many
-  steps (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J. Numer. Anal. 47
-  (2009) 3001). Vertices with neither pressure nor source (a film at rest) count as active, so that a film at rest has
-  the tangent of the whole film: the sum of what a motion and its opposite meet (a concentric journal meets half of it).
+* `SwiftStieber` (Reynolds condition): the complementarity problem ``P >= Pc, A P - b >= 0, (P - Pc)(A P - b) = 0``,
+  solved by the primal-dual active set method, which for an M-matrix is Howard's policy iteration and ends after
+  finitely many steps (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2003) 865; Bokanowski, Maroso, Zidani, SIAM J.
+  Numer. Anal. 47 (2009) 3001). Vertices with neither pressure nor source (a film at rest) count as active, so that a
+  film at rest has the tangent of the whole film: the sum of what a motion and its opposite meet (a concentric journal
+  meets half of it).
 """
 
 from __future__ import annotations
@@ -43,7 +45,10 @@ class SymmetricClosure:
 
 @dataclass(frozen=True, kw_only=True)
 class FullSommerfeld(SymmetricClosure):
-    """No cavitation: the film carries tension. For comparison with closed forms and for fully flooded, pressurised films."""
+    """No cavitation: the film carries tension.
+
+    For comparison with closed forms and for fully flooded, pressurised films.
+    """
 
     cavity_pressure = -np.inf
     cavity_shear = 1.0
@@ -60,8 +65,8 @@ class FullSommerfeld(SymmetricClosure):
 class Gumbel(SymmetricClosure):
     """Half-Sommerfeld (Guembel) condition: solve the linear film, then cut off what lies below the cavity pressure.
 
-    Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It is the
-    paper's condition.
+    Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
+    is the paper's condition.
 
     Parameters
     ----------
@@ -117,9 +122,20 @@ class SwiftStieber(SymmetricClosure):
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
         ok, steps, count, width = solve_active_set(
-            system.kx, system.kz, system.b, system.fixed, system.cavity_pressure, work.active, work.order,
-            work.old_order, work.number, work.band, work.inv_diag, work.unknowns, system.pressure,
-        )  # fmt: skip
+            system.kx,
+            system.kz,
+            system.b,
+            system.fixed,
+            system.cavity_pressure,
+            work.active,
+            work.order,
+            work.old_order,
+            work.number,
+            work.band,
+            work.inv_diag,
+            work.unknowns,
+            system.pressure,
+        )
         work.count, work.width, work.warm = count, width, ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
 
@@ -127,9 +143,20 @@ class SwiftStieber(SymmetricClosure):
 def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     """Solve on ``work.active`` into ``system.linear_pressure``."""
     ok, count, width = solve_on_active(
-        system.kx, system.kz, system.b, work.active, work.order, work.old_order, 0, 0, work.number, work.band,
-        work.inv_diag, work.unknowns, system.linear_pressure,
-    )  # fmt: skip
+        system.kx,
+        system.kz,
+        system.b,
+        work.active,
+        work.order,
+        work.old_order,
+        0,
+        0,
+        work.number,
+        work.band,
+        work.inv_diag,
+        work.unknowns,
+        system.linear_pressure,
+    )
     work.count, work.width = count, width
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
 

@@ -1,23 +1,24 @@
 """Mass-conserving cavitation (Jakobsson-Floberg-Olsson condition in the form of Elrod and Adams).
 
-Every vertex is either full (``P >= Pc``, fill = 1, unknown P) or cavitated (``P = Pc``, 0 <= fill <= 1, unknown fill). Its
-balance is
+Every vertex is either full (``P >= Pc``, fill = 1, unknown P) or cavitated (``P = Pc``, 0 <= fill <= 1, unknown fill).
+Its balance is
 
     sum over links of [k (P - P_neighbour) + f fill_upstream] + area (fill H - (fill H)_old) / dt = 0,
 
-with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), backward Euler in the
-mass (fill H), whose old value is the film's history. Without a history the film is steady and the last term is
-``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth Newton method in
-one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so that the film exists
-and is unique. Should the sets not settle, the steady film is approached through growing pseudo time steps, whose storage
-makes the matrices dominant enough.
+with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), backward
+Euler in the mass (fill H), whose old value is the film's history. Without a history the film is steady and the last
+term is ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth
+Newton method in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so
+that the film exists and is unique. Should the sets not settle, the steady film is approached through growing pseudo
+time steps, whose storage makes the matrices dominant enough.
 
-Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows the oil through the cavity and is left
-with a symmetric film, and for the rest (oil that goes round in a cavity, fronts longer than a few columns) a band of the folded ring.
-The sets alone decide which.
+Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
+the oil through the cavity and is left with a symmetric film, and for the rest (oil that goes round in a cavity, fronts
+longer than a few columns) a band of the folded ring. The sets alone decide which.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
-Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58 (2015) 18.
+Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58
+(2015) 18.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ from exudyn_ehd.status import Status, require_number
 MAX_NEWTON_STEPS = 60
 MAX_PSEUDO_STEPS = 60
 SET_TOLERANCE = 1e-12
-# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no such film exists.
+# Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
+# such film exists.
 LARGEST_DEFICIT = 1e-6
 
 
@@ -55,8 +57,9 @@ LARGEST_DEFICIT = 1e-6
 class ElrodAdams:
     """Mass-conserving cavitation: rupture and reformation, with the oil content of the cavity as history.
 
-    For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a joint it
-    needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity pressure.
+    For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
+    joint it needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity
+    pressure.
 
     Parameters
     ----------
@@ -102,13 +105,28 @@ class ElrodAdams:
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
         ok, steps, work.count, work.width, work.carried = solve_elrod(
-            s.coefficients, inverse_step, mass_old, s.cavity_pressure, work.active, work.order, work.number, work.lower,
-            work.upper, work.inv_diag, work.transport, work.unknowns, s.pressure, s.fill,
-        )  # fmt: skip
+            s.coefficients,
+            inverse_step,
+            mass_old,
+            s.cavity_pressure,
+            work.active,
+            work.order,
+            work.number,
+            work.lower,
+            work.upper,
+            work.inv_diag,
+            work.transport,
+            work.unknowns,
+            s.pressure,
+            s.fill,
+        )
         return ok, steps
 
     def _pseudo_transient(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
-        """Implicit steps towards the target, from short to long and from a full film; the last one is the target itself."""
+        """Implicit steps towards the target, from short to long and from a full film.
+
+        The last one is the target itself.
+        """
         largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
         rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
@@ -225,16 +243,40 @@ def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width,
             b = number[nxt, j]
             if (a >= 0 or b >= 0) and (kx[i, j] != 0.0 or fx[i, j] != 0.0):
                 _add_link(
-                    full[i, j], full[nxt, j], fixed[i, j], fixed[nxt, j], P[i, j], P[nxt, j], a, b,
-                    kx[i, j], fx[i, j], pc, lower, upper, rhs,
-                )  # fmt: skip
+                    full[i, j],
+                    full[nxt, j],
+                    fixed[i, j],
+                    fixed[nxt, j],
+                    P[i, j],
+                    P[nxt, j],
+                    a,
+                    b,
+                    kx[i, j],
+                    fx[i, j],
+                    pc,
+                    lower,
+                    upper,
+                    rhs,
+                )
             if j + 1 < m:
                 b = number[i, j + 1]
                 if a >= 0 or b >= 0:
                     _add_link(
-                        full[i, j], full[i, j + 1], fixed[i, j], fixed[i, j + 1], P[i, j], P[i, j + 1], a, b,
-                        kz[i, j], fz[i, j], pc, lower, upper, rhs,
-                    )  # fmt: skip
+                        full[i, j],
+                        full[i, j + 1],
+                        fixed[i, j],
+                        fixed[i, j + 1],
+                        P[i, j],
+                        P[i, j + 1],
+                        a,
+                        b,
+                        kz[i, j],
+                        fz[i, j],
+                        pc,
+                        lower,
+                        upper,
+                        rhs,
+                    )
             if a >= 0:
                 w = area[i, j]
                 if inverse_step > 0.0:
@@ -250,7 +292,10 @@ def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width,
 
 @njit(cache=True)
 def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
-    """Unknowns x for the given sets; returns (ok, count, width, carried). ``directions``: `flow_direction` of fx and fz."""
+    """Unknowns x for the given sets; returns (ok, count, width, carried).
+
+    ``directions``: `flow_direction` of fx and fz.
+    """
     along, across = directions
     if along != 0 and across != 0:
         ok, count = factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x)

@@ -2,14 +2,16 @@
 
 Scaled: flows in units of c R^2 (1/s), heat in kelvin per second of such a flow, that is divided by rho c_p c R^2. The
 content m = fill H of a control volume changes by its flows and by what enters from outside, ``S = out - in + A dm/dt``
-(ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times mass:
+(ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times
+mass:
 
     A m* (T - T_old)/dt + sum over inflows F (T - T_upstream) + S+ (T - T_source) + A walls (T - T_wall) = heat,
 
-an M-matrix, so that the temperature has no wiggles and stays above its sources'. m* is the old content, or the present one where
-the old one is not kept.
+an M-matrix, so that the temperature has no wiggles and stays above its sources'. m* is the old content, or the present
+one where the old one is not kept.
 
-Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A areas.
+Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
+areas.
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from exudyn_ehd.film.banded.workspace import PAD
 
 @njit(cache=True)
 def film_heat(P, q, kx, kz, couette, heat_out):
-    """Heat of the film at the vertices: ``couette`` (n, m) plus the pressure flow's, halved between a link's vertices."""
+    """Heat of the film: ``couette`` (n, m) plus the pressure flow's, half of it at either vertex of a link."""
     n, m = P.shape
     for i in range(n):
         for j in range(m):
@@ -64,7 +66,7 @@ def film_flows(q, fill, kx, kz, fx, fz, area, rate, qx_out, qz_out, source_out):
 
 @njit(cache=True)
 def content_rate(H, H_t, fill, mass_old, inverse_step, squeeze, rate_out):
-    """Rate of the content fill H: from the old content if ``inverse_step`` > 0, else from the gap's rate if ``squeeze``."""
+    """Rate of the content fill H: by the old content if ``inverse_step`` > 0, else by the gap's rate if ``squeeze``."""
     n, m = H.shape
     for i in range(n):
         for j in range(m):
@@ -119,8 +121,8 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
 def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity):
     """Sums over what `outside_flows` gives for cavitation models that do not conserve mass, without fields in between.
 
-    ``b`` (n, m) is the right-hand side of the film's equation, Couette inflow less squeeze, ``active`` (n, m) the unbroken film,
-    ``cavity`` the scaled cavity pressure.
+    ``b`` (n, m) is the right-hand side of the film's equation, Couette inflow less squeeze, ``active`` (n, m) the
+    unbroken film, ``cavity`` the scaled cavity pressure.
 
     Returns
     -------
@@ -156,9 +158,7 @@ def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity
 
 
 @njit(cache=True)
-def exchange_sums_fill(
-    P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, cavity
-):  # fmt: skip
+def exchange_sums_fill(P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, cavity):
     """As `exchange_sums`, for cavitation models that conserve mass, with the rates of `content_rate`."""
     n, m = H.shape
     leaving = 0.0

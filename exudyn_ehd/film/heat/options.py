@@ -1,10 +1,11 @@
 """Thermal effects that a scene names: one film temperature, or a temperature field. Isothermal is None.
 
-With a lubricant's ``density_law`` (compressible film), flows and contents are masses over the density at ambient pressure rho, so that
-c_p belongs to the mass. What heats the film is the dissipated power ``Phi``: shear, and the mass flow under pressure times the drop of
-``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt`` (alpha_T thermal expansion) is left out, of compressible films as
-of others: it is reversible, oil that passes through a pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by
-1.3 K per 10 MPa, and cools down as it leaves. Nor does the density follow the temperature.
+With a lubricant's ``density_law`` (compressible film), flows and contents are masses over the density at ambient
+pressure rho, so that c_p belongs to the mass. What heats the film is the dissipated power ``Phi``: shear, and the mass
+flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt``
+(alpha_T thermal expansion) is left out, of compressible films as of others: it is reversible, oil that passes through a
+pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by 1.3 K per 10 MPa, and cools down
+as it leaves. Nor does the density follow the temperature.
 """
 
 from __future__ import annotations
@@ -16,12 +17,14 @@ from exudyn_ehd.status import require_number
 
 @dataclass(frozen=True, kw_only=True)
 class LumpedThermal:
-    """One temperature T for the whole film; for warm-up and a first idea of the viscosity. Costs 5 % of a step at most, a sixth with a density law.
+    """One temperature T for the whole film; for warm-up and a first idea of the viscosity.
 
-    ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film dissipates,
-    Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing, ``C = rho c_p 2 pi R L c + capacity``
-    (with a density law, too: the mass in it at ambient pressure).
-    Backward Euler at every accepted step, first order; the force of a step sees the temperature at its start. `steady` and
+    Costs 5 % of a step at most, a sixth with a density law.
+
+    ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film
+    dissipates, Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing,
+    ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Backward Euler
+    at every accepted step, first order; the force of a step sees the temperature at its start. `steady` and
     `equilibrium` take the settled temperature; a static solution of a multibody model takes the initial one.
 
     Parameters
@@ -54,19 +57,22 @@ class LumpedThermal:
 class FilmEnergy:
     """Temperature field T(theta, z), averaged across the film; where heating decides load or peak temperature.
 
-    One factorisation per accepted step: a third of a step's time with `ElrodAdams`, as much as the step with `SwiftStieber` (half more with a density law).
+    One factorisation per accepted step: a third of a step's time with `ElrodAdams`, as much as the step with
+    `SwiftStieber` (half more with a density law).
 
-    ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure and
-    Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, fully upwind (first order), backward Euler.
-    Oil enters through the ends and supplies with the supply temperature. Cavitation models that do not conserve mass lose oil
-    at the end of the film and find it again at its beginning: it returns fully mixed, the leakage replaced by supply oil.
-    The viscosity of a step follows from the temperatures at its start: the coupling is explicit, of first order. `steady` and
-    `equilibrium` take the settled field; a static solution of a multibody model takes the initial temperature.
+    ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure
+    and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, fully upwind (first order),
+    backward Euler. Oil enters through the ends and supplies with the supply temperature. Cavitation models that do not
+    conserve mass lose oil at the end of the film and find it again at its beginning: it returns fully mixed, the
+    leakage replaced by supply oil. The viscosity of a step follows from the temperatures at its start: the coupling is
+    explicit, of first order. `steady` and `equilibrium` take the settled field; a static solution of a multibody model
+    takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
-    (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4 %, rise at the bush to 7 %;
-    with walls at given temperatures and a ``conductivity`` load to 4 % (both walls) and 9 % (one), mean temperature to 1.5 and 6 K, while an
-    adiabatic bush beside a cooled journal is up to 8 K hotter than the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
+    (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4
+    %, rise at the bush to 7 %; with walls at given temperatures and a ``conductivity`` load to 4 % (both walls) and 9 %
+    (one), mean temperature to 1.5 and 6 K, while an adiabatic bush beside a cooled journal is up to 8 K hotter than the
+    mean. A constant 3 k/c instead of the conductivity: load to 14 %.
 
     Parameters
     ----------
@@ -79,8 +85,8 @@ class FilmEnergy:
     initial_temperature : float or None
         Of the film at the start of a motion, K; None: the supply temperature.
     conductivity : float or None
-        Of the oil, W/(m K), 0.13 for mineral oils: U_b and U_j then act on the film's surfaces, with the oil between them and the mean
-        temperature, 3 to 6 k/h; None: U_b and U_j from the mean temperature.
+        Of the oil, W/(m K), 0.13 for mineral oils: U_b and U_j then act on the film's surfaces, with the oil between
+        them and the mean temperature, 3 to 6 k/h; None: U_b and U_j from the mean temperature.
     """
 
     supply_temperature: float

@@ -4,9 +4,9 @@ Dowson and Higginson (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubricatio
 
     rho / rho_0 = 1 + a p / (1 + b p);      below, where oil cavitates, continued with the same slope by exp(a p).
 
-The mass flow under pressure ``rho / mu grad p = grad q / mu_0`` is linear in ``q = integral of (rho / rho_0) / (mu / mu_0) dp``, which
-grows with p, so that conditions on the cavity hold in q as in p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with
-the viscosity's coefficient alpha.
+The mass flow under pressure ``rho / mu grad p = grad q / mu_0`` is linear in
+``q = integral of (rho / rho_0) / (mu / mu_0) dp``, which grows with p, so that conditions on the cavity hold in q as in
+p. Below ambient pressure ``q = (1 - exp(-k p)) / k``, k = alpha - a with the viscosity's coefficient alpha.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ class DensityTable(NamedTuple):
 class DowsonHigginson:
     """Density ``rho_0 (1 + a p / (1 + b p))`` of mineral oils: at most a third denser, 10 % at some 230 MPa.
 
-    When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose history
-    is the oil's mass).
+    When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose
+    history is the oil's mass).
 
     Parameters
     ----------
@@ -84,7 +84,8 @@ class DowsonHigginson:
     def flow_work(self, p: np.ndarray) -> np.ndarray:
         """Integral of dp / (rho / rho_0) from ambient pressure, Pa.
 
-        The work on oil that enters at p, per volume at ambient density: p dV that pushes it in and the elastic energy that it holds.
+        The work on oil that enters at p, per volume at ambient density: p dV that pushes it in and the elastic energy
+        that it holds.
         """
         p, a, b = np.asarray(p, dtype=float), self.coefficient, self.saturation
         above, g = np.maximum(p, 0.0), a + b
@@ -115,9 +116,16 @@ class CompressibleLaw(HermiteTable):
         # Below, q has no p; at its upper end the spline has none either.
         lowest = -np.inf if exponent >= 0.0 else 0.999 / exponent
         self.kernel_table = DensityTable(
-            self.alpha, self.q, self.table, self.bucket, self.bucket_scale, lowest, self.q[-1] * (1.0 - 1e-12),
-            density.coefficient, density.saturation,
-        )  # fmt: skip
+            self.alpha,
+            self.q,
+            self.table,
+            self.bucket,
+            self.bucket_scale,
+            lowest,
+            self.q[-1] * (1.0 - 1e-12),
+            density.coefficient,
+            density.saturation,
+        )
 
     def _viscosity(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         if self.viscosity is None:

@@ -21,22 +21,24 @@ DENSITY_LAWS = (DowsonHigginson,)
 class Lubricant:
     """Lubricant: Newtonian and of constant viscosity unless laws are named.
 
-    When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear law for
-    multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a fifth to the time of a film evaluation; a
-    density law a quarter with `ElrodAdams`, and more than the whole again with the other closures, whose matrix it makes non-symmetric.
+    When: a pressure law above some 50 MPa, a temperature law where the film warms up by more than a few kelvin, a shear
+    law for multigrade oils above 1e5 to 1e6 per second. A law adds a tenth to a fifth to the time of a film evaluation;
+    a density law a quarter with `ElrodAdams`, and more than the whole again with the other closures, whose matrix it
+    makes non-symmetric.
 
-    Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at ``temperature``, at
-    rest.
+    Laws multiply: ``mu = viscosity * r_p(p) * r_T(T) * r_G(shear rate)``, each ratio 1 at ambient pressure, at
+    ``temperature``, at rest.
 
     Parameters
     ----------
     viscosity : float
-        Dynamic viscosity at ``temperature``, ambient pressure and low shear, Pa s. Left out, it comes from ``temperature_law``.
+        Dynamic viscosity at ``temperature``, ambient pressure and low shear, Pa s. Left out, it comes from
+        ``temperature_law``.
     density : float
         kg/m3; used where a mass, a Reynolds number, a heat capacity or a kinematic viscosity enters.
     temperature : float
-        K, at which ``viscosity`` holds; without a thermal effect the whole film has it. To change it, use `at`, which changes
-        the viscosity along.
+        K, at which ``viscosity`` holds; without a thermal effect the whole film has it. To change it, use `at`, which
+        changes the viscosity along.
     specific_heat : float
         J/(kg K); only used by thermal effects.
     pressure_law : BarusPressure, RoelandsPressure or None
@@ -79,7 +81,8 @@ class Lubricant:
     def _viscosity_from_law(self) -> float:
         if self.temperature_law is None:
             raise InputError(
-                "Lubricant.viscosity must be > 0 Pa s, got None; give viscosity=..., a temperature_law=..., or take a named "
+                "Lubricant.viscosity must be > 0 Pa s, got None; give viscosity=..., a temperature_law=..., or take a "
+                "named "
                 'oil, oil("ISO VG 46").'
             )
         return float(self.temperature_law.viscosity(self.temperature, self.density))

@@ -1,20 +1,23 @@
 """Named oils: ISO viscosity grades, SAE single grades and multigrades from two viscosity points.
 
-ISO VG: mid-point kinematic viscosity at 40 degrees Celsius by definition (ISO 3448); at 100 degrees Celsius, and the density at
-15, typical figures of paraffinic mineral oils with a viscosity index (ASTM D2270) of 95 to 102, as hydraulic and gear oils have; VG 220 is
-Shell's Omala S2 G 220. Other makers' oils of these grades lie within 6 % at 100 degrees and 2.5 % in density.
+ISO VG: mid-point kinematic viscosity at 40 degrees Celsius by definition (ISO 3448); at 100 degrees Celsius, and the
+density at 15, typical figures of paraffinic mineral oils with a viscosity index (ASTM D2270) of 95 to 102, as hydraulic
+and gear oils have; VG 220 is Shell's Omala S2 G 220. Other makers' oils of these grades lie within 6 % at 100 degrees
+and 2.5 % in density.
 
-SAE: single grades after A. S. Seireg and S. Dandage, J. Lubrication Technology 104 (1982) 135, ``mu = mu_0 exp(b / (T + 95))``
-with T in degrees Fahrenheit and mu_0 in reyn, which is Vogel's law with its pole at -95 degrees Fahrenheit.
+SAE: single grades after A. S. Seireg and S. Dandage, J. Lubrication Technology 104 (1982) 135,
+``mu = mu_0 exp(b / (T + 95))`` with T in degrees Fahrenheit and mu_0 in reyn, which is Vogel's law with its pole at -95
+degrees Fahrenheit.
 
-Multigrade: typical figures of one mineral or synthetic oil per grade from its maker's product data sheet (ASTM D445 and D4052): Mobil Super
-3000 0W-20, 2000 5W-30, 2000 X2 10W-40, 1000 X2 15W-40 and 1000 20W-50 (ExxonMobil, Mobil Oil Australia, 2015). Their viscosity improvers
-thin under shear, which these figures at low shear do not show: at 150 degrees Celsius and 1e6 1/s (ASTM D4683) the same sheets give 7 to
-17 % less than the law; add a `CarreauShear` where it counts.
+Multigrade: typical figures of one mineral or synthetic oil per grade from its maker's product data sheet
+(ASTM D445 and D4052): Mobil Super 3000 0W-20, 2000 5W-30, 2000 X2 10W-40, 1000 X2 15W-40 and 1000 20W-50 (ExxonMobil,
+Mobil Oil Australia, 2015). Their viscosity improvers thin under shear, which these figures at low shear do not show: at
+150 degrees Celsius and 1e6 1/s (ASTM D4683) the same sheets give 7 to 17 % less than the law; add a `CarreauShear`
+where it counts.
 
-Oils of one grade differ, by some 10 % in the viscosity at 40 and at 100 degrees Celsius: take the two points of the data sheet where it is known.
-Their density at 15 degrees falls with temperature as that of all lubricating oils, by 0.63 kg/m3 per kelvin (ASTM D1250, table 54D), which the dynamic
-viscosity takes into account.
+Oils of one grade differ, by some 10 % in the viscosity at 40 and at 100 degrees Celsius: take the two points of the
+data sheet where it is known. Their density at 15 degrees falls with temperature as that of all lubricating oils, by
+0.63 kg/m3 per kelvin (ASTM D1250, table 54D), which the dynamic viscosity takes into account.
 """
 
 from __future__ import annotations
@@ -72,8 +75,8 @@ def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
     Parameters
     ----------
     name : str
-        ``"ISO VG 22"`` to ``"ISO VG 460"``, ``"SAE 10"`` to ``"SAE 60"``, or ``"SAE 0W-20"``, ``"SAE 5W-30"``, ``"SAE 10W-40"``,
-        ``"SAE 15W-40"``, ``"SAE 20W-50"``; spaces and case do not matter.
+        ``"ISO VG 22"`` to ``"ISO VG 460"``, ``"SAE 10"`` to ``"SAE 60"``, or ``"SAE 0W-20"``, ``"SAE 5W-30"``,
+        ``"SAE 10W-40"``, ``"SAE 15W-40"``, ``"SAE 20W-50"``; spaces and case do not matter.
     temperature : float
         At which its viscosity is taken, K.
 

@@ -1,13 +1,13 @@
-"""Viscosity that depends on pressure, through the Kirchhoff transform ``q = integral of dp / r(p)``, ``r = mu(p) / mu(0)``.
+"""Viscosity ``mu = mu(0) r(p)`` that depends on pressure, by the Kirchhoff transform ``q = integral of dp / r(p)``.
 
 ``r(p)^-1 grad p = grad q``: in q the pressure flow is that of a film of constant viscosity. Pressures are gauge, in Pa.
 
-Barus (C. Barus 1893): ``r = exp(alpha p)``, ``q = (1 - exp(-alpha p)) / alpha``, ``p = -ln(1 - alpha q) / alpha``; no pressure
-carries a film with ``q >= 1 / alpha``.
+Barus (C. Barus 1893): ``r = exp(alpha p)``, ``q = (1 - exp(-alpha p)) / alpha``, ``p = -ln(1 - alpha q) / alpha``; no
+pressure carries a film with ``q >= 1 / alpha``.
 
-Roelands (C. J. A. Roelands, Correlational aspects of the viscosity-temperature-pressure relationship of lubricating oils, 1966):
-``ln r = a ((1 + p / p_0)^Z - 1)``, ``a = ln(mu_0) + 9.67``, ``Z = alpha p_0 / a``, for p >= 0; below, where oil cavitates,
-it is continued by Barus' law with the same slope.
+Roelands (C. J. A. Roelands, Correlational aspects of the viscosity-temperature-pressure relationship of lubricating
+oils, 1966): ``ln r = a ((1 + p / p_0)^Z - 1)``, ``a = ln(mu_0) + 9.67``, ``Z = alpha p_0 / a``, for p >= 0; below,
+where oil cavitates, it is continued by Barus' law with the same slope.
 """
 
 from __future__ import annotations
@@ -144,9 +144,10 @@ class RoelandsPressure:
 class HermiteTable(abc.ABC):
     """A transform whose inverse p(q) is a quintic Hermite spline; Barus' law for p <= 0.
 
-    q comes from Gauss quadrature of ``dq/dp`` over each of 4096 intervals of p; p, ``s = dp/dq`` and ``s ds/dp = d2p/dq2`` are exact at the
-    nodes. The spline's error in p is about (alpha dp)^6 / (400 alpha), below 1e-13 of p, and its derivatives are those of the
-    pressures that it gives, so that a tangent built with them is exact.
+    q comes from Gauss quadrature of ``dq/dp`` over each of 4096 intervals of p; p, ``s = dp/dq`` and
+    ``s ds/dp = d2p/dq2`` are exact at the nodes. The spline's error in p is about (alpha dp)^6 / (400 alpha), below
+    1e-13 of p, and its derivatives are those of the pressures that it gives, so that a tangent built with them is
+    exact.
 
     Parameters
     ----------
@@ -266,8 +267,8 @@ def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
 def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
     """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table.
 
-    ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval at the
-    start of each of b equal parts of q.
+    ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval
+    at the start of each of b equal parts of q.
     """
     x, p, r, r_q = q.reshape(-1), p_out.reshape(-1), ratio_out.reshape(-1), ratio_q_out.reshape(-1)
     c = table.reshape(-1)

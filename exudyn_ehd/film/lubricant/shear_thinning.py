@@ -1,15 +1,17 @@
 """Viscosity that depends on the shear rate: Carreau's law, on the rate ``G = |U| / h`` of the Couette flow.
 
-``mu / mu_0 = r(G) = r_inf + (1 - r_inf) (1 + (lambda G)^2)^((n - 1) / 2)``   (P. J. Carreau, Trans. Soc. Rheology 16 (1972) 99).
+``mu / mu_0 = r(G) = r_inf + (1 - r_inf) (1 + (lambda G)^2)^((n - 1) / 2)``   (P. J. Carreau, Trans. Soc. Rheology 16
+(1972) 99).
 
-The pressure flow disturbs the Couette flow only slightly in a bearing. Linearised about it, ``tau = mu(|G|) G`` gives a disturbance
-along the sliding direction the tangent viscosity ``mu + G dmu/dG`` and one across it ``mu`` itself (F. K. Dien and H. G. Elrod,
-J. Lubrication Technology 105 (1983) 385). Hence, with s = (lambda U / h)^2 and b = 1 + s:
+The pressure flow disturbs the Couette flow only slightly in a bearing. Linearised about it, ``tau = mu(|G|) G`` gives a
+disturbance along the sliding direction the tangent viscosity ``mu + G dmu/dG`` and one across it ``mu`` itself (F. K.
+Dien and H. G. Elrod, J. Lubrication Technology 105 (1983) 385). Hence, with s = (lambda U / h)^2 and b = 1 + s:
 
     r   = r_inf + (1 - r_inf) b^e,   e = (n - 1) / 2,           conductance across the sliding H^3 / r,
     r_t = r_inf + (1 - r_inf) b^(e-1) (1 + n s),                conductance along the sliding  H^3 / r_t,
 
-Couette flux H unchanged, wall shear r U / h. Only the circumferential sliding speed enters; axial sliding is slow beside it.
+Couette flux H unchanged, wall shear r U / h. Only the circumferential sliding speed enters; axial sliding is slow
+beside it.
 
 Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to the gap, _v to vx = U / (2 R).
 """
@@ -96,9 +98,21 @@ class ShearThinning(FluxEffect):
             return
         law = self.law
         thin_flux(
-            H, flux.gap_x, vx, self.per_speed, law.exponent, law.residual, self.table, flux.gap_z, flux.gx, flux.gx_h, flux.gx_v,
-            flux.gz, flux.gz_h, flux.gz_v,
-        )  # fmt: skip
+            H,
+            flux.gap_x,
+            vx,
+            self.per_speed,
+            law.exponent,
+            law.residual,
+            self.table,
+            flux.gap_z,
+            flux.gx,
+            flux.gx_h,
+            flux.gx_v,
+            flux.gz,
+            flux.gz_h,
+            flux.gz_v,
+        )
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
@@ -127,10 +141,14 @@ def power_table(exponent: float) -> np.ndarray:
     return np.ascontiguousarray(np.array([f[:-1], d[:-1], e[:-1], c3, c4, c5]).T)
 
 
-# Checks for a division by zero would keep the compiler from vectorising the loops below; the table's gather stands apart for the same reason.
+# Checks for a division by zero would keep the compiler from vectorising the loops below; the table's gather stands
+# apart for the same reason.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def powers(gap, speed, e, table, out):
-    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end; gap, of either sign, and out (n, m)."""
+    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end.
+
+    Gap, of either sign, and out (n, m).
+    """
     h, p = gap.reshape(-1), out.reshape(-1)
     coefficients = table.reshape(-1)
     size = abs(speed)
@@ -172,7 +190,10 @@ def thin_viscosity(H, vx, per_speed, n, r_inf, table, ratio_out, ratio_h_out, ra
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
 def _fluidity(h, power, speed, s, n, r_inf, tangent):
-    """1 / r, or 1 / r_t with ``tangent``, at a gap h with ``power`` = b^e and s = speed^2, and D with d/dh = D speed / h, d/dvx = -D per_speed."""
+    """1 / r, or 1 / r_t with ``tangent``, at a gap h, and D with d/dh = D speed / h, d/dvx = -D per_speed.
+
+    ``power`` = b^e, ``s`` = speed^2.
+    """
     per_b = 1.0 / (h * h + s)  # over h^2
     r = (1.0 - r_inf) * power
     if tangent:
@@ -187,7 +208,7 @@ def _fluidity(h, power, speed, s, n, r_inf, tangent):
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io, g_v_io):
-    """Divide conductances by the (tangent) viscosity ratio at the links' gaps, derivatives to the gap and vx included."""
+    """Divide conductances by the (tangent) viscosity ratio at the links' gaps; also their derivatives to gap and vx."""
     speed = per_speed * vx
     power = np.empty(gap.size)
     powers(gap, speed, 0.5 * (n - 1.0), table, power)
@@ -201,9 +222,7 @@ def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io,
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def thin_flux(
-    H, HF, vx, per_speed, n, r_inf, table, gap_z_out, gx_out, gx_h_out, gx_v_out, gz_out, gz_h_out, gz_v_out
-):  # fmt: skip
+def thin_flux(H, HF, vx, per_speed, n, r_inf, table, gap_z_out, gx_out, gx_h_out, gx_v_out, gz_out, gz_h_out, gz_v_out):
     """`flux.plain_flux` over the viscosity ratios, with the derivatives of `thin_conductance`."""
     rows, cols = H.shape
     for i in range(rows):

@@ -1,6 +1,7 @@
-"""Viscosity that depends on temperature: Reynolds, Vogel and Walther laws, each through published points in closed form.
+"""Viscosity that depends on temperature: Reynolds, Vogel and Walther laws, in closed form through published points.
 
-A law returns the dynamic viscosity at ambient pressure. Temperatures in kelvin. Laws are monotone: hotter oil is thinner.
+A law returns the dynamic viscosity at ambient pressure. Temperatures in kelvin. Laws are monotone: hotter oil is
+thinner.
 """
 
 from __future__ import annotations
@@ -73,8 +74,8 @@ class VogelTemperature:
         pole = require_number("VogelTemperature.pole", self.pole, "K", at_least=0.0)
         if not pole < self.first[0]:
             raise InputError(
-                f"VogelTemperature.pole must be below both temperatures ({self.first[0]:g} K), got {pole:g} K; the law has no "
-                "viscosity at its pole."
+                f"VogelTemperature.pole must be below both temperatures ({self.first[0]:g} K), got {pole:g} K; the "
+                f"law has no viscosity at its pole."
             )
 
     @cached_property
@@ -94,16 +95,16 @@ class VogelTemperature:
 class WaltherTemperature:
     """Walther's law ``log10 log10(nu + 0.7) = a - b log10 T``, nu in mm2/s (ASTM D341), through two points.
 
-    The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)`` of the density at 15
-    degrees Celsius (ISO 91, ASTM D1250).
+    The dynamic viscosity is ``nu rho(T)``, with ``rho = rho_15 exp(-x (1 + 0.8 x))``, ``x = expansion (T - 288.15)`` of
+    the density at 15 degrees Celsius (ISO 91, ASTM D1250).
 
     Parameters
     ----------
     first, second : (float, float)
         Temperature, K, and kinematic viscosity, m2/s, above 2 mm2/s; the second one hotter and thinner.
     expansion : float
-        1/K; 0.6278 kg/m3 over the density at 15 degrees for lubricating oils, 7e-4; 0: the density is the same at all temperatures, which
-        makes mineral oils 2 % thicker at 40 and 7 % thicker at 100 degrees.
+        1/K; 0.6278 kg/m3 over the density at 15 degrees for lubricating oils, 7e-4; 0: the density is the same at all
+        temperatures, which makes mineral oils 2 % thicker at 40 and 7 % thicker at 100 degrees.
     """
 
     first: tuple[float, float]
@@ -114,12 +115,13 @@ class WaltherTemperature:
         _check_points("WaltherTemperature", self.first, self.second, "m2/s")
         if not 1e6 * self.second[1] + WALTHER_SHIFT > 1.0 or not 1e6 * self.first[1] < 1e7:
             raise InputError(
-                f"WaltherTemperature takes kinematic viscosities in m2/s (46 mm2/s is 46e-6), got {self.first[1]!r} and "
-                f"{self.second[1]!r}."
+                f"WaltherTemperature takes kinematic viscosities in m2/s (46 mm2/s is 46e-6), got {self.first[1]!r} "
+                f"and {self.second[1]!r}."
             )
         if require_number("WaltherTemperature.expansion", self.expansion, "1/K", at_least=0.0) > 0.01:
             raise InputError(
-                f"WaltherTemperature.expansion must be below 0.01 1/K, got {self.expansion!r}; oils have 7e-4 1/K, 0.6278 / density."
+                f"WaltherTemperature.expansion must be below 0.01 1/K, got {self.expansion!r}; oils have 7e-4 1/K, "
+                f"0.6278 / density."
             )
 
     @cached_property
@@ -142,7 +144,10 @@ class WaltherTemperature:
 
 
 def _kelvin(temperature: float | np.ndarray) -> float | np.ndarray:
-    """A float as it is, since one temperature of the whole film takes the law once a step; anything else as an array."""
+    """A float as it is, since one temperature of the whole film takes the law once a step.
+
+    Anything else as an array.
+    """
     return temperature if isinstance(temperature, float) else np.asarray(temperature)
 
 
@@ -157,6 +162,6 @@ def _check_points(name: str, first: tuple[float, float], second: tuple[float, fl
     _check_point(f"{name}.second", second, unit)
     if not (first[0] < second[0] and first[1] > second[1]):
         raise InputError(
-            f"{name}: the second point must be hotter and thinner than the first, got {first!r} and {second!r}; temperatures "
-            "are in kelvin."
+            f"{name}: the second point must be hotter and thinner than the first, got {first!r} and {second!r}; "
+            f"temperatures are in kelvin."
         )

@@ -80,7 +80,7 @@ def contract_pose(field, cos_x, sin_x, z, out):
 
 @njit(cache=True, fastmath=_FAST)
 def contract_ends(slope, lower, upper, cos_x, sin_x, z):
-    """`contract_pose` (4,) of a field (n, m) that is ``lower`` and ``upper`` times the slope (n, m) in the first and last column, else zero."""
+    """`contract_pose` (4,) of a field that is ``lower`` and ``upper`` times the slope (n, m) on the ends, else zero."""
     last = z.size - 1
     out = np.zeros(4)
     for i in range(cos_x.size):

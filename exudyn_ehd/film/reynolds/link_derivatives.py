@@ -1,11 +1,13 @@
-"""Derivatives of every link's flow with respect to its gap and to the speeds at fixed pressure, and their sums with adjoint solutions.
+"""Derivatives of the links' flows to gap and speeds at fixed pressure, and their sums with adjoint solutions.
 
-For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields (`contract_links`, for
-elastic bores and liners) or, with the chain rule to the journal's pose, in one sweep without fields in between (`pose_gradient`).
+For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields
+(`contract_links`, for elastic bores and liners) or, with the chain rule to the journal's pose, in one sweep without
+fields in between (`pose_gradient`).
 
-Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the limiter's
-slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx; all with metric.
-``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b with the density ratio rho: what a link carries of a full film's Couette flow.
+Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the
+limiter's slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx;
+all with metric. ``sigma = fill_upstream (rho_a + rho_b) / 2`` on the link a -> b with the density ratio rho: what a
+link carries of a full film's Couette flow.
 """
 
 from __future__ import annotations
@@ -192,8 +194,8 @@ def wrench_gradient(ds, dc, extra, ends, pose, sums, pose_scale, R, force, shear
     Parameters
     ----------
     ds, dc, extra : (4, 10), (10,), (2, 10) arrays
-        Gradients of (S_c, S_s, S_zc, S_zs), of C, and of the integrals over the slopes of gap terms, to (scaled pose, scaled rates, vx,
-        vz).
+        Gradients of (S_c, S_s, S_zc, S_zs), of C, and of the integrals over the slopes of gap terms, to (scaled pose,
+        scaled rates, vx, vz).
     ends : (4,) array
         Gradient of the ends' pressure force to the scaled pose.
     pose, sums, pose_scale : (4,) arrays

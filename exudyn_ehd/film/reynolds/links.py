@@ -4,14 +4,14 @@ With H = h/c, lengths over R and P = p c^2 / (12 mu R^2) in 1/s, the balance of 
 
     sum over its links of (V H - H^3 dP/ds) + d(H)/dt area = 0,      V = (U_x, U_z) / (2 R) in 1/s,
 
-which is the conservative form of the paper's Eq. (4) (Poiseuille and Couette flux of a thin film, squeeze). Links in theta
-use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted journal.
+which is the conservative form of the paper's Eq. (4) (Poiseuille and Couette flux of a thin film, squeeze). Links in
+theta use the gap on the link itself, ``HF``; links in z the mean of both vertices, which is exact for a tilted journal.
 
-An effect (flow factors of rough surfaces, shear thinning, a temperature field) changes what a link carries to ``V carrier - conductance
-dP/ds``; a plain film has the carrier H, the conductance H^3 and no `LinkFlux`.
+An effect (flow factors of rough surfaces, shear thinning, a temperature field) changes what a link carries to
+``V carrier - conductance dP/ds``; a plain film has the carrier H, the conductance H^3 and no `LinkFlux`.
 
-Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx / fz
-Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
+Symbols: H (n, m) gap at vertices, HF (n, m) gap on the link i -> i+1, kx / kz link conductances with their metric, fx /
+fz Couette fluxes with their metric, b right-hand side of ``A P = b``, P scaled pressure.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class FilmState(NamedTuple):
-    """A film as unknowns, (n, m) each: scaled pressure, film fraction, and whether the pressure is a vertex's unknown, else its fill."""
+    """A film as unknowns, (n, m) each: scaled pressure, film fraction, and where the pressure is the unknown."""
 
     P: np.ndarray
     fill: np.ndarray
@@ -33,7 +33,7 @@ class FilmState(NamedTuple):
 
 
 class Coefficients(NamedTuple):
-    """What the balance of a film's vertices is made of, (n, m) arrays: symbols of this module, control volumes, prescribed vertices."""
+    """What the balance of the vertices is made of, (n, m) each: symbols of this module, areas, prescribed vertices."""
 
     kx: np.ndarray
     kz: np.ndarray
@@ -51,8 +51,8 @@ class LinkFlux(NamedTuple):
     Attributes
     ----------
     carriers, speeds : bool
-        Whether an effect changes the carriers, or lets conductances depend on the speed. If not, the carriers are the gaps themselves and
-        the derivatives stay what they are here.
+        Whether an effect changes the carriers, or lets conductances depend on the speed. If not, the carriers are the
+        gaps themselves and the derivatives stay what they are here.
     gap_x, gap_z : arrays
         Gaps of the links in theta (the film solver's own array) and in z.
     gx, gx_h, gx_v, gz, gz_h, gz_v : arrays
@@ -105,7 +105,10 @@ class FluxEffect(Protocol):
         """Change conductances and carriers for the links' gaps (n, m) and scaled speeds, with their derivatives."""
 
     def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
-        """The same from scratch, as the first effect, for the gaps H (n, m) at the vertices; sets the links' gap in z."""
+        """The same from scratch, as the first effect, for the gaps H (n, m) at the vertices.
+
+        Sets the links' gap in z.
+        """
         plain_flux(H, flux.gap_x, flux.gap_z, flux.gx, flux.gx_h, flux.gz, flux.gz_h)
         flux.reset()
         self.apply(flux, flux.gap_x, flux.gap_z, vx, vz)
@@ -139,7 +142,9 @@ def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
 
 @njit(cache=True, fastmath=_FAST)
 def conductances(H, HF, flux, flow_x, mesh, kx_out, kz_out):
-    """Conductances of the links with their metric, ``H^3 width / distance``; ``flow_x`` = 0 drops the circumferential pressure flow.
+    """Conductances of the links with their metric, ``H^3 width / distance``.
+
+    ``flow_x`` = 0 drops the circumferential pressure flow.
 
     ``flux``: `LinkFlux`, or None for a plain film.
     """

@@ -8,8 +8,8 @@ which without the pressure pf on the face is
 
     q = V c - g (p2 - p1) / ds,   g = 2 / (1/h1^3 + 1/h2^3),   c = (1/h1^2 + 1/h2^2) / (1/h1^3 + 1/h2^3).
 
-The flow over a step is then exact for a gap that is constant on both sides; a smooth gap stays of second order. Without it the
-mean gap of both vertices is used, which is of first order at a step.
+The flow over a step is then exact for a gap that is constant on both sides; a smooth gap stays of second order. Without
+it the mean gap of both vertices is used, which is of first order at a step.
 """
 
 from __future__ import annotations

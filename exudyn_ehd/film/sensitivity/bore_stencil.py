@@ -1,8 +1,10 @@
 """Derivatives of the film's balances at its unknowns, as a stencil for gaps whose links are the mean of their columns.
 
-With the derivatives of every link's flow to its gap (symbols as in `sweep`) the balance of vertex (i, j) changes with the true gap by
+With the derivatives of every link's flow to its gap (symbols as in `sweep`) the balance of vertex (i, j) changes with
+the true gap by
 
-    dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF, HZ means over the two ends of a link.
+    dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF, HZ means over the two ends
+    of a link.
 
 An adjoint functional's gradient is ``-lam . dr``.
 """
@@ -68,7 +70,10 @@ def sparse_product(indptr, indices, data, x, out):
 
 @njit(cache=True, fastmath=_FAST)
 def put_rows(shapes, place, weight, first, out):
-    """Rows ``place`` (count,) of shapes (., k) times ``weight`` (count,) into the columns from ``first`` on of tiles out (tiles, >= count, width)."""
+    """Rows ``place`` of shapes (., k) times ``weight``, both (count,), to the columns from ``first`` on.
+
+    ``out``: tiles (tiles, >= count, width).
+    """
     k, wide, done = shapes.shape[1], out.shape[2], 0
     while done < k:
         tile = (first + done) // wide
@@ -201,7 +206,10 @@ def transposed_slopes(field, width, z, along_x_out, along_z_out):
 
 @njit(cache=True, fastmath=_FAST)
 def add_gap(field, rate, width, z, H, HF, H_t, slope_x_out, slope_z_out):
-    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as of `gap_slopes`. Returns the smallest gap."""
+    """Add an elastic gap (n, m) and its rate to the gaps and their rate; its slopes as in `gap_slopes`.
+
+    Returns the smallest gap.
+    """
     n, m = field.shape
     link = np.empty((n, m))
     gap_slopes(field, width, z, link, slope_x_out, slope_z_out)
@@ -277,7 +285,10 @@ def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motio
 
 @njit(cache=True)
 def integral_weights(pose, R, force, shear, omega, w, out):
-    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench; symbols as in `sweep.wrench_gradient`."""
+    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench.
+
+    Symbols as in `wrench_gradient`.
+    """
     x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
     out[:] = 0.0
     out[0, 0] = out[1, 1] = -force

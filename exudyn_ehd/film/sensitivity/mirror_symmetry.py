@@ -1,14 +1,17 @@
 """Fields of a bore that is symmetric about its mid-plane, folded into even and odd halves.
 
-With z -> -z the rows of a grid with m vertices along z mirror each other: row j and row m - 1 - j for j < mirrored = m // 2; a middle row
-(m odd) is its own mirror. Shapes that are even or odd in z are known by their rows j < m - mirrored (even) and j < mirrored (odd), and
+With z -> -z the rows of a grid with m vertices along z mirror each other: row j and row m - 1 - j for j < mirrored = m
+// 2; a middle row (m odd) is its own mirror. Shapes that are even or odd in z are known by their rows j < m - mirrored
+(even) and j < mirrored (odd), and
 
     S^T f = S_even^T (f_j + f_mirror) + S_odd^T (f_j - f_mirror),
 
-half the work and half the memory of the whole. ``mirrored = 0`` folds nothing: every shape counts as even and has all m rows.
+half the work and half the memory of the whole. ``mirrored = 0`` folds nothing: every shape counts as even and has all m
+rows.
 
-Along z a bush moves as its mesh does, by a few polynomials (nine with four quadratic elements, five of them even). With a basis N of these courses
-every shape is N C at each column in theta, and fields that meet N first meet C in place of S in the large products.
+Along z a bush moves as its mesh does, by a few polynomials (nine with four quadratic elements, five of them even). With
+a basis N of these courses every shape is N C at each column in theta, and fields that meet N first meet C in place of S
+in the large products.
 """
 
 from __future__ import annotations
@@ -194,7 +197,7 @@ def _fold_column(weight, row, column, m, mirrored, fields, sums_out, differences
 
 @njit(cache=True, fastmath=_FAST)
 def _combine(basis, rows, known, first, out):
-    """``basis rows`` for a basis (u, >= BLOCK) of ``known`` rows among (>= BLOCK, TILE) into out from row ``first`` on."""
+    """``basis rows`` for a basis (u, >= BLOCK) of ``known`` rows among (>= BLOCK, TILE), to row ``first`` on of out."""
     if len(basis) == known:  # the identity
         for s in range(known):
             for q in range(TILE):
@@ -214,7 +217,7 @@ def _combine(basis, rows, known, first, out):
 
 @njit(cache=True)
 def stencil_by_vertices(weight, places, shape):
-    """`transpose_stencil` where it is not empty, on a grid of this shape: first column in theta, weights and unknowns (columns m, 5)."""
+    """`transpose_stencil` where it is not empty: first column in theta, weights and unknowns (columns m, 5)."""
     m = shape[1]
     numbers = np.empty(shape, dtype=np.int64)
     number_vertices(places, numbers)
@@ -282,9 +285,9 @@ def folded_displacements(even, odd, order, q, q_t, place_out, rate_out):
 
 @njit(cache=True, fastmath=_FAST)
 def folded_rows(even, odd, n, m, places, weight, first, out):
-    """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), even shapes first, into tiles ``out`` from column ``first`` on.
+    """Rows of S at flat vertices ``places``, times ``weight``, (count,) each, to the tiles' columns from ``first`` on.
 
-    Shapes as in `folded_loads` on an (n, m) grid.
+    Even shapes first; shapes as in `folded_loads` on an (n, m) grid.
     """
     mirrored = odd.shape[0] // n
     upper = m - mirrored

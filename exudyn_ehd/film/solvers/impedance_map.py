@@ -2,21 +2,23 @@
 
 For an aligned journal at e = (x, y) with the spin omega, the right side of the Reynolds equation is
 
-    omega / 2 dh/dtheta + dh/dt = -V . n,   V = (dx/dt + omega y / 2, dy/dt - omega x / 2),   n = (cos theta, sin theta):
+    omega / 2 dh/dtheta + dh/dt = -V . n,   V = (dx/dt + omega y / 2, dy/dt - omega x / 2),   n =
+    (cos theta, sin theta):
 
-seen from a frame that turns with half the spin every motion is a pure squeeze with the velocity V (J. F. Booker, J. Basic
-Engineering 87 (1965) 537; D. Childs, H. Moes, H. van Leeuwen, J. Lubrication Technology 99 (1977) 198). With p = 0 at the ends
-and in the cavity the pressure is homogeneous of first degree in V and does not know the housing's orientation, so that
+seen from a frame that turns with half the spin every motion is a pure squeeze with the velocity V (J. F. Booker, J.
+Basic Engineering 87 (1965) 537; D. Childs, H. Moes, H. van Leeuwen, J. Lubrication Technology 99 (1977) 198). With p =
+0 at the ends and in the cavity the pressure is homogeneous of first degree in V and does not know the housing's
+orientation, so that
 
     F = -(L D mu / psi^2) |V| / c  exp(m) (cos(phi_V + sign g), sin(phi_V + sign g)),   phi_V = angle of V,
 
-with two functions m, g of the eccentricity ratio eps and of the angle alpha in 0 .. pi between e and V; sign is that of the turn
-from e to V. They are smooth where the force itself changes by four orders of magnitude: the logarithm of the size and the
-deviation from the direction of V, over s = -ln(1 - eps), in which the size grows like a power of the gap. The error is thus
-relative to the force at that very state, also where the film nearly unloads (alpha above 90 degrees).
+with two functions m, g of the eccentricity ratio eps and of the angle alpha in 0 .. pi between e and V; sign is that of
+the turn from e to V. They are smooth where the force itself changes by four orders of magnitude: the logarithm of the
+size and the deviation from the direction of V, over s = -ln(1 - eps), in which the size grows like a power of the gap.
+The error is thus relative to the force at that very state, also where the film nearly unloads (alpha above 90 degrees).
 
-m and g are bicubic Hermite functions on a uniform (s, alpha) grid with spline slopes (C1; the symmetries at alpha = 0, pi and at
-eps = 0 hold exactly), so that their derivatives are exact.
+m and g are bicubic Hermite functions on a uniform (s, alpha) grid with spline slopes (C1; the symmetries at alpha = 0,
+pi and at eps = 0 hold exactly), so that their derivatives are exact.
 """
 
 from __future__ import annotations
@@ -45,16 +47,16 @@ SMALLEST_ECCENTRICITY = 1e-9
 class ImpedanceMap:
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
-    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states beyond
-    ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum gap, but no pressure. `steady` and
-    `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the cavity, the squeeze term, a closed
-    ring and no further effect.
+    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
+    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum gap, but no pressure. `steady`
+    and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the cavity, the squeeze
+    term, a closed ring and no further effect.
 
     Parameters
     ----------
     n_theta, n_z, stretch
-        Grid of the film behind the map, as for `FiniteLength`. The force's ripple with the snapping of the rupture line is the
-        map's largest error, so that n_theta is large.
+        Grid of the film behind the map, as for `FiniteLength`. The force's ripple with the snapping of the rupture line
+        is the map's largest error, so that n_theta is large.
     largest_eccentricity_ratio : float
         End of the table, 0.5 to 0.995.
     n_eccentricity, n_direction : int
@@ -84,8 +86,8 @@ class ImpedanceMap:
         )
         if largest > 0.995:
             raise InputError(
-                f"ImpedanceMap.largest_eccentricity_ratio must be within 0.5 and 0.995, got {largest:g}; closer to the wall use "
-                "film=FiniteLength(...) with a contact."
+                f"ImpedanceMap.largest_eccentricity_ratio must be within 0.5 and 0.995, got {largest:g}; closer to "
+                f"the wall use film=FiniteLength(...) with a contact."
             )
 
 
@@ -287,8 +289,8 @@ def impedance_force(nodes, step_s, step_alpha, x, y, x_t, y_t, omega, force_out,
 def impedance_wrench(nodes, p, motion, wrench_out, tangent_out):
     """Wrench (6,) on the journal and its derivatives (6, 10) to the motion, SI units; tilts have none.
 
-    p = (step_s, step_alpha, largest eps, clearance, radius, half length, force scale, Couette scale, tilt share); returns 0, or
-    1 not finite, 2 outside the map, 3 no film, 4 tilted.
+    p = (step_s, step_alpha, largest eps, clearance, radius, half length, force scale, Couette scale, tilt share);
+    returns 0, or 1 not finite, 2 outside the map, 3 no film, 4 tilted.
     """
     c, R = p[3], p[4]
     x, y, omega, w = motion[0], motion[1], motion[8], motion[9]

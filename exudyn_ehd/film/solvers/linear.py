@@ -1,4 +1,7 @@
-"""One film on one grid: coefficients, closure, adjoint. The straight line gap -> coefficients -> pressure -> sensitivities."""
+"""One film on one grid: coefficients, closure, adjoint.
+
+The straight line gap -> coefficients -> pressure -> sensitivities.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,10 @@ INSTANT = 1e-9
 
 
 class Closure(Protocol):
-    """What a cavitation model offers; see `exudyn_ehd.film.cavitation.closures` and `exudyn_ehd.film.cavitation.elrod_adams`."""
+    """What a cavitation model offers.
+
+    See `exudyn_ehd.film.cavitation.closures` and `exudyn_ehd.film.cavitation.elrod_adams`.
+    """
 
     @property
     def cavity_pressure(self) -> float: ...

@@ -1,23 +1,25 @@
-"""The finite differences and the SOR iteration of Flores' EHD joint paper, Eqs. (8)-(11), as a reference to compare with.
+"""Finite differences and SOR iteration of Flores' EHD joint paper, Eqs. (8)-(11), as a reference to compare with.
 
 In scaled form (lengths over R, H = h/c, P = p c^2 / (12 mu R^2)) Eq. (8) reads
 
     H^3 (P_xx + P_zz) + 3 H^2 (H_x P_x + H_z P_z) = vx H_x + vz H_z + H_t,   vx = omega / 2,
 
-with central differences on a uniform grid (second order, not conservative), solved by successive over-relaxation in place until
-sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Guembel).
+with central differences on a uniform grid (second order, not conservative), solved by successive over-relaxation in
+place until sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Guembel).
 
 Misprints of the paper, mended here:
 
-* (9), (10): the coefficient of p(i+1, j) carries + 3 h^2 (h(i+1, j) - h(i-1, j)); printed with a minus, as that of p(i-1, j);
+* (9), (10): the coefficient of p(i+1, j) carries + 3 h^2 (h(i+1, j) - h(i-1, j)); printed with a minus, as that of
+  p(i-1, j);
 * (10): dh/dt in a_0 is not squared;
-* (10): p is relaxed towards the solution of its own equation, p + lambda [(a_0 - sum a_k p_k) / a_5 - p]; printed without - p;
+* (10): p is relaxed towards the solution of its own equation, p + lambda [(a_0 - sum a_k p_k) / a_5 - p]; printed
+  without - p;
 * (11): the denominator is the sum of |p|; the sum of p of an unclipped periodic film vanishes;
-* (5): the middle form needs phi = theta - beta + pi; (6): the angle needs both signs (atan2). Both are avoided here by using
-  the last form of (5).
+* (5): the middle form needs phi = theta - beta + pi; (6): the angle needs both signs (atan2). Both are avoided here by
+  using the last form of (5).
 
-The paper does not print its relaxation factor. Rule (11) stops while the true error is still larger than the tolerance by the
-number of sweeps it takes to reduce it; it can be measured against `FiniteLength` or a smaller tolerance.
+The paper does not print its relaxation factor. Rule (11) stops while the true error is still larger than the tolerance
+by the number of sweeps it takes to reduce it; it can be measured against `FiniteLength` or a smaller tolerance.
 """
 
 from __future__ import annotations
@@ -44,12 +46,14 @@ LARGEST_SUM = 1e100
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicSOR:
-    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Guembel; see the module's docstring.
+    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Guembel.
 
-    A reference, not a recommendation: `FiniteLength` is faster at the same error. Every solution starts from zero pressure, so that
-    it depends on the state alone; it still jumps by about the tolerance where the number of sweeps changes, so that an
-    implicit joint wants a tolerance of 1e-9. The tangent is that of the converged difference operator (one banded LU
-    factorisation), exact as the tolerance goes to zero. Needs ``cavitation=Gumbel()``.
+    See the module's docstring.
+
+    A reference, not a recommendation: `FiniteLength` is faster at the same error. Every solution starts from zero
+    pressure, so that it depends on the state alone; it still jumps by about the tolerance where the number of sweeps
+    changes, so that an implicit joint wants a tolerance of 1e-9. The tangent is that of the converged difference
+    operator (one banded LU factorisation), exact as the tolerance goes to zero. Needs ``cavitation=Gumbel()``.
 
     Parameters
     ----------
@@ -60,7 +64,8 @@ class ClassicSOR:
     tolerance : float
         Of rule (11); the paper's is 1e-5.
     relaxation : float or None
-        lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a constant gap.
+        lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a
+        constant gap.
     """
 
     n_theta: int = 96
@@ -82,9 +87,9 @@ class ClassicSOR:
 
 
 def best_relaxation(n_z: int, step_x: float, step_z: float) -> float:
-    """SOR factor for a constant gap: Young's 2 / (1 + sqrt(1 - rho^2)), rho of Jacobi on a ring with p = 0 at both ends.
+    """SOR factor for a constant gap: Young's 2 / (1 + sqrt(1 - rho^2)), p = 0 at both ends of a ring.
 
-    Source: D. M. Young, Trans. AMS 76 (1954) 92; rho = (1/dx^2 + cos(pi / n_z) / dz^2) / (1/dx^2 + 1/dz^2).
+    Source: D. M. Young, Trans. AMS 76 (1954) 92; Jacobi's rho = (1/dx^2 + cos(pi / n_z) / dz^2) / (1/dx^2 + 1/dz^2).
     """
     x, z = 1.0 / step_x**2, 1.0 / step_z**2
     rho = (x + z * math.cos(math.pi / n_z)) / (x + z)
@@ -128,9 +133,19 @@ class ClassicSolver(FilmSolver):
             s.b -= self.H_t * self.area
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
         sweeps = sor_solve(
-            self.H, self.H_t, self.squeeze, vx, vz, self.step_x, self.step_z, g.fixed, self.relaxation,
-            self.film.tolerance, LARGEST_SWEEPS, s.linear_pressure,
-        )  # fmt: skip
+            self.H,
+            self.H_t,
+            self.squeeze,
+            vx,
+            vz,
+            self.step_x,
+            self.step_z,
+            g.fixed,
+            self.relaxation,
+            self.film.tolerance,
+            LARGEST_SWEEPS,
+            s.linear_pressure,
+        )
         np.logical_not(g.fixed, out=w.active)
         w.count, w.width = number_cells(w.active, s.kx, w.order, w.number)
         clip_pressure(s.linear_pressure, g.fixed, cavity_pressure, s.pressure, w.active)
@@ -160,7 +175,10 @@ class ClassicSolver(FilmSolver):
 
 @njit(cache=True)
 def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, largest_sweeps, P):
-    """SOR in place; P (n, m) holds the prescribed values at fixed vertices. Returns the sweeps, negative if not converged."""
+    """SOR in place; P (n, m) holds the prescribed values at fixed vertices.
+
+    Returns the sweeps, negative if not converged.
+    """
     n, m = H.shape
     ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
     a = np.zeros((n, m, 5))

@@ -4,8 +4,8 @@
     F_n(u) = 1 / sqrt(2 pi) int_u^inf (s - u)^n exp(-s^2 / 2) ds = Gamma(n + 1) / sqrt(2 pi) exp(-u^2 / 4) D_{-n-1}(u)
 
 with the asperity density eta, tip radius beta, combined roughness sigma, composite modulus 1/E' = (1 - nu_1^2)/E_1 +
-(1 - nu_2^2)/E_2, and the parabolic cylinder function D. Source: J. A. Greenwood, J. H. Tripp, Proc. Instn Mech. Engrs 185
-(1970) 625; the second form of F_n is the integral representation of D (Abramowitz and Stegun 19.5.3). The power fit
+(1 - nu_2^2)/E_2, and the parabolic cylinder function D. Source: J. A. Greenwood, J. H. Tripp, Proc. Instn Mech. Engrs
+185 (1970) 625; the second form of F_n is the integral representation of D (Abramowitz and Stegun 19.5.3). The power fit
 4.4086e-5 (4 - u)^6.804 that is often used instead is 10.7 % low at u = 0 and is not used here.
 
 F_5/2 comes from cubic Hermite interpolation on 1/64 sigma with the exact values and derivatives ``F_5/2' = -5/2 F_3/2``
@@ -67,9 +67,13 @@ class GreenwoodTripp:
 
     def __post_init__(self) -> None:
         require_number(
-            "GreenwoodTripp.composite_roughness", self.composite_roughness, "m", above=0.0,
-            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with asperity=None.",
-        )  # fmt: skip
+            "GreenwoodTripp.composite_roughness",
+            self.composite_roughness,
+            "m",
+            above=0.0,
+            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
+            "asperity=None.",
+        )
         require_number("GreenwoodTripp.composite_modulus", self.composite_modulus, "Pa", above=0.0)
         require_number("GreenwoodTripp.density_radius_roughness", self.density_radius_roughness, above=0.0)
         require_number("GreenwoodTripp.roughness_radius_ratio", self.roughness_radius_ratio, above=0.0)
@@ -198,8 +202,8 @@ def asperity_pressure(H, sigma, level, table, P_out, slope_out):
 def settle_asperities(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
     """Gap on a column of liner that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
 
-    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it. With the pressure there,
-    and its derivative to G over ``scale``.
+    p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.
+    With the pressure there, and its derivative to G over ``scale``.
     """
     n, m = X.shape
     inverse = 1.0 / sigma

@@ -1,7 +1,8 @@
 """Average gap of rough surfaces: what a film sees between asperities, positive and smooth wherever surfaces touch.
 
-Two rough surfaces with a nominal gap h and Gaussian combined roughness s of standard deviation sigma leave, where peaks that
-would overlap are flattened, the average gap (Patir and Cheng, J. Lubrication Technology 100 (1978) 12, with a Gaussian)
+Two rough surfaces with a nominal gap h and Gaussian combined roughness s of standard deviation sigma leave, where peaks
+that would overlap are flattened, the average gap (Patir and Cheng, J. Lubrication Technology 100 (1978) 12, with a
+Gaussian)
 
     h_T = E[max(h + s, 0)] = h Phi(h / sigma) + sigma phi(h / sigma),      dh_T/dh = Phi(h / sigma).
 
@@ -11,7 +12,8 @@ Here touching spots keep a residual film a sigma, so that pockets that close do 
 
 The two agree for a = 0; at h = 0 the film is 0.399 sigma, and 0.409 sigma with a = 0.02.
 
-Symbols: H gap over the clearance, sigma roughness over the clearance, Phi and phi the normal distribution and its density.
+Symbols: H gap over the clearance, sigma roughness over the clearance, Phi and phi the normal distribution and its
+density.
 """
 
 from __future__ import annotations
@@ -45,9 +47,14 @@ class AverageGap:
         self.limits_below = SMOOTH_BEYOND * sigma
 
     def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None:  # fmt: skip
+        self,
+        H: np.ndarray,
+        HF: np.ndarray,
+        H_t: np.ndarray,
+        slope_out: np.ndarray,
+        bend_out: np.ndarray,
+        face_slope_out: np.ndarray,
+    ) -> None:
         """Replace scaled gaps and the rate (n, m) by those of the average gap; as `joint.effects.GapLimiter`."""
         average_gap(H, HF, H_t, self.sigma, self.residual, slope_out, bend_out, face_slope_out)
 

@@ -1,37 +1,42 @@
 """Flow factors of rough surfaces after Patir and Cheng.
 
-Mean flow between rough surfaces with nominal gap h, average gap h_T, combined roughness sigma, pattern gamma (ratio of the
-correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, surface 2 = bore, in the bore's frame::
+Mean flow between rough surfaces with nominal gap h, average gap h_T, combined roughness sigma, pattern gamma (ratio of
+the correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, surface 2 = bore, in the bore's
+frame::
 
     q_x = U/2 (h_T + sigma phi_s) - phi_x h^3 / (12 mu) dp/dx,        q_z likewise with 1/gamma,
     phi_x = 1 - C exp(-r H) for gamma <= 1,    1 + C H^-r for gamma > 1,     H = h / sigma,
     phi_s = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_s,
     Phi_s = A1 H^a1 exp(-a2 H + a3 H^2) for H <= 5,    A2 exp(-H / 4) for H > 5.
 
-Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the friction factors). All
-constants agree with those that foam-extend 4.0 uses in its lubricated contact, those of Phi_fs for gamma = 1 also with R. Boman's EHD program
-(University of Liege); the smallest H is 1 there for all gamma < 1.
+Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the
+friction factors). All constants agree with those that foam-extend 4.0 uses in its lubricated contact, those of Phi_fs
+for gamma = 1 also with R. Boman's EHD program (University of Liege); the smallest H is 1 there for all gamma < 1.
 
-Friction. The second paper gives the mean shear stress of the two surfaces in pure sliding as ``mu U / h (phi_f +- phi_fs)`` with
-``phi_f = h E[1 / local gap]`` (here for Gaussian heights, with their cut-off at sigma / 100) and
+Friction. The second paper gives the mean shear stress of the two surfaces in pure sliding as
+``mu U / h (phi_f +- phi_fs)`` with ``phi_f = h E[1 / local gap]`` (here for Gaussian heights, with their cut-off at
+sigma / 100) and
 
     phi_fs = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_fs,    Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2) for H <= 7,
 
-the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher one, which makes up for the difference: momentum
-of the film. Where one surface is smooth its shear is all there is, so that the tangential force on either is
+the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher one, which makes up for
+the difference: momentum of the film. Where one surface is smooth its shear is all there is, so that the tangential
+force on either is
 
     mu U / h (phi_f + Phi_fs),
 
-and as both factors are linear in the variances (heights of the two surfaces are independent) that holds for every share of the two.
-For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small roughness). Beyond H = 7 Phi_fs
-falls on by the power that it has there. Under a pressure gradient the tangential forces, shear and ripples together, are
-``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with ``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.drag`.
-Where peaks touch (h below 2 sigma) the pressure is taken to act on the whole area, the flow to have the open part of it: power and heat
-then differ, by 0.6 % at h = 0.8 sigma.
+and as both factors are linear in the variances (heights of the two surfaces are independent) that holds for every share
+of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
+roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
+forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
+``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.drag`. Where peaks touch (h below 2 sigma)
+the pressure is taken to act on the whole area, the flow to have the open part of it: power and heat then differ, by 0.6
+% at h = 0.8 sigma.
 
-The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as phi = phi_x h^3 /
-h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as ``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are
-meant for (0.5 to 1) their logarithms run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
+The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as
+phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as
+``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are meant for (0.5 to 1) their logarithms
+run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
 """
 
 from __future__ import annotations
@@ -91,11 +96,11 @@ class PatirCheng:
     composite_roughness : float
         sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
     pattern : float
-        gamma, correlation length in theta over that in z: 1/9, 1/6, 1/3 (lay across the motion), 1 (isotropic), 3, 6 or 9
-        (lay along the motion), the patterns that Patir and Cheng computed.
+        gamma, correlation length in theta over that in z: 1/9, 1/6, 1/3 (lay across the motion), 1 (isotropic), 3, 6 or
+        9 (lay along the motion), the patterns that Patir and Cheng computed.
     journal_share : float
-        sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher surface drags more oil
-        along and is pulled more by a pressure gradient.
+        sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher
+        surface drags more oil along and is pulled more by a pressure gradient.
     """
 
     composite_roughness: float
@@ -104,14 +109,18 @@ class PatirCheng:
 
     def __post_init__(self) -> None:
         require_number(
-            "PatirCheng.composite_roughness", self.composite_roughness, "m", above=0.0,
-            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with roughness=None.",
-        )  # fmt: skip
+            "PatirCheng.composite_roughness",
+            self.composite_roughness,
+            "m",
+            above=0.0,
+            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
+            "roughness=None.",
+        )
         pattern = require_number("PatirCheng.pattern", self.pattern, above=0.0)
         if not any(math.isclose(pattern, known, rel_tol=1e-3) for known in PATTERNS):
             raise InputError(
-                f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got {self.pattern!r}; "
-                "take the nearest one."
+                f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got "
+                f"{self.pattern!r}; take the nearest one."
             )
         if require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0) > 1.0:
             raise InputError(
@@ -143,7 +152,10 @@ def shear_stress_factor(H: np.ndarray, pattern: float) -> np.ndarray:
 
 
 def friction_factor(H: np.ndarray) -> np.ndarray:
-    """``h E[1 / local gap]`` over the open film with local gaps above sigma / 100, in sigma units; the sum runs in ln(gap)."""
+    """``h E[1 / local gap]`` over the open film with local gaps above sigma / 100, in sigma units.
+
+    The sum runs in ln(gap).
+    """
     H = np.atleast_1d(np.asarray(H, dtype=float))
     return H * mean_inverse_gap(H)
 
@@ -151,7 +163,8 @@ def friction_factor(H: np.ndarray) -> np.ndarray:
 def mean_inverse_gap(H: np.ndarray) -> np.ndarray:
     """``E[1 / local gap]`` over the open film with local gaps above sigma / 100; H (k,) and result in sigma units.
 
-    The integral runs in ln(gap) by the trapezoidal rule; from H = 15 on it is ``1/H + 1/H^3 + 3/H^5 + 15/H^7`` (error 4e-8).
+    The integral runs in ln(gap) by the trapezoidal rule; from H = 15 on it is ``1/H + 1/H^3 + 3/H^5 + 15/H^7``
+    (error 4e-8).
     """
     v = np.linspace(math.log(SHEAR_CUTOFF), math.log(40.0), 4001)
     gap = np.exp(v)
@@ -270,7 +283,10 @@ class RoughFlow(FluxEffect):
 
 
 class RoughShear:
-    """Couette friction factor phi_f + Phi_fs of rough surfaces as a shear factor of one bearing model; arguments as `RoughFlow`."""
+    """Couette friction factor phi_f + Phi_fs of rough surfaces as a shear factor of one bearing model.
+
+    Arguments as `RoughFlow`.
+    """
 
     def __init__(self, roughness: PatirCheng, clearance: float, residual: float) -> None:
         self.sigma = roughness.composite_roughness / clearance
@@ -283,10 +299,14 @@ class RoughShear:
         rough_friction(H, 1.0 / self.sigma, self.table, ratio_out, ratio_h_out, ratio_v_out)
 
 
-# Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand apart for the same reason.
+# Checks for a division by zero would keep the compiler from vectorising the loops below; the tables' gathers stand
+# apart for the same reason.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
-    """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)); in place."""
+    """value *= f, with its derivative by the gap, f = base + share table(y), y = 1 / (1 + gap / (8 sigma)).
+
+    In place.
+    """
     n, m = gap.shape
     scale = inverse_sigma / TABLE_MIDDLE
     flat = table.reshape(-1)

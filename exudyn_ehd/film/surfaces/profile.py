@@ -1,10 +1,11 @@
 """Surfaces that are not circular cylinders: what their shape adds to the gap.
 
-A profile is a depth d(theta, z) in m that adds to the gap of the circular cylinders: ``h = c - e . n + d``; d > 0 opens the gap, theta
-counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round bore, or a bore or
-journal whose radius varies along z. (An out-of-round journal carries its shape around with it and is not described here.)
-Several profiles add up. The pressure on their slopes acts on the bore; where a crown is on the journal instead, film, radial force
-and moments are the same and the axial force differs by the pressure on that slope, a share depth / length of the load.
+A profile is a depth d(theta, z) in m that adds to the gap of the circular cylinders: ``h = c - e . n + d``; d > 0 opens
+the gap, theta counts from x about z, z from the bearing's mid-plane. Profiles are fixed in the housing: an out-of-round
+bore, or a bore or journal whose radius varies along z. (An out-of-round journal carries its shape around with it and is
+not described here.) Several profiles add up. The pressure on their slopes acts on the bore; where a crown is on the
+journal instead, film, radial force and moments are the same and the axial force differs by the pressure on that slope,
+a share depth / length of the load.
 """
 
 from __future__ import annotations
@@ -46,7 +47,10 @@ class OutOfRound:
         require_number("OutOfRound.phase", self.phase, "rad")
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
-        """Addition to the gap (n, m) in m at the angles theta (n,) and the positions z (m,); ``length`` is the bearing's."""
+        """Addition to the gap (n, m) in m at the angles theta (n,) and the positions z (m,).
+
+        ``length`` is the bearing's.
+        """
         return np.outer(self.amplitude * np.cos(self.order * (theta - self.phase)), np.ones(z.size))
 
 
@@ -119,7 +123,8 @@ class AxialProfile:
         d = _finite("AxialProfile.depths", self.depths)
         if d.shape != z.shape:
             raise InputError(
-                f"AxialProfile.depths must hold one depth per position ({z.size}), got {d.size}; check the lengths of both lists."
+                f"AxialProfile.depths must hold one depth per position ({z.size}), got {d.size}; check the lengths of "
+                f"both lists."
             )
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
@@ -131,7 +136,7 @@ class AxialProfile:
 
 @dataclass(frozen=True, kw_only=True)
 class ProfileTable:
-    """Any profile of the bore over (theta, z), for instance measured: cubic (bilinear below four points) splines, periodic in theta.
+    """Any profile of the bore over (theta, z), periodic in theta: cubic splines, linear below four points.
 
     Parameters
     ----------
@@ -153,13 +158,13 @@ class ProfileTable:
         d = _finite("ProfileTable.depths", self.depths)
         if theta[-1] - theta[0] >= 2.0 * math.pi:
             raise InputError(
-                f"ProfileTable.angles must span less than 2 pi rad, got {theta[-1] - theta[0]:g}; leave out the repeated first "
-                "angle, and give radians."
+                f"ProfileTable.angles must span less than 2 pi rad, got {theta[-1] - theta[0]:g}; leave out the "
+                f"repeated first angle, and give radians."
             )
         if d.shape != (theta.size, z.size):
             raise InputError(
-                f"ProfileTable.depths must have the shape (angles, positions) = ({theta.size}, {z.size}), got {d.shape}; "
-                "transpose it if the axes are swapped."
+                f"ProfileTable.depths must have the shape (angles, positions) = ({theta.size}, {z.size}), got "
+                f"{d.shape}; transpose it if the axes are swapped."
             )
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
@@ -196,8 +201,8 @@ class ProfileTerm:
         if not self.values.min() > -1.0:
             raise InputError(
                 f"JournalBearing.profile closes the gap of a concentric journal: its depth goes down to "
-                f"{self.values.min() * clearance:.3g} m at a radial clearance of {clearance:g} m; a depth is in metres and "
-                "positive where it opens the gap."
+                f"{self.values.min() * clearance:.3g} m at a radial clearance of {clearance:g} m; a depth is in "
+                f"metres and positive where it opens the gap."
             )
 
     def field(self, history: object) -> np.ndarray:
@@ -221,7 +226,7 @@ def _increasing(where: str, values: object, at_least: int, unit: str) -> np.ndar
     array = _finite(where, values)
     if array.ndim != 1 or array.size < at_least or not np.all(np.diff(array) >= SMALLEST_STEP):
         raise InputError(
-            f"{where} must be at least {at_least} increasing numbers in {unit}, at least {SMALLEST_STEP:g} {unit} apart, got "
-            f"{values!r}; sort the points."
+            f"{where} must be at least {at_least} increasing numbers in {unit}, at least {SMALLEST_STEP:g} {unit} "
+            f"apart, got {values!r}; sort the points."
         )
     return array

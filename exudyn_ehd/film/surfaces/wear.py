@@ -1,10 +1,12 @@
 """Wear of the bore after Archard: what asperities rub off deepens the gap.
 
-``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k = K / H with
-Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24 (1953) 981.
+``dh/dt = k p v`` with the asperity contact's pressure p, the sliding speed v and the specific wear rate k in m2/N (k =
+K / H with Archard's dimensionless K and the softer surface's hardness H). Source: J. F. Archard, J. Applied Physics 24
+(1953) 981.
 
-The depth belongs to the accepted history: a step sees the depth at its start, and its own wear is added at its end with the
-pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the roughness).
+The depth belongs to the accepted history: a step sees the depth at its start, and its own wear is added at its end with
+the pressure and speed found there (explicit in the gap, first order in the step; wear per step is a tiny share of the
+roughness).
 """
 
 from __future__ import annotations
@@ -25,8 +27,8 @@ class ArchardWear:
     wear_rate : float
         Specific wear rate k, m2/N; 1e-18 to 1e-14 from well lubricated to dry.
     acceleration : float
-        Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an estimate as long
-        as it changes by much less than the roughness per period of the load.
+        Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an
+        estimate as long as it changes by much less than the roughness per period of the load.
     """
 
     wear_rate: float
