@@ -41,7 +41,7 @@ from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp, composite_modulus
-from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from exudyn_ehd.film.surfaces.flow_factors import (
+from exudyn_ehd.film.surfaces.patir_cheng import (
     FRICTION_PATTERNS,
     PATTERNS,
     pressure_flow_factor,

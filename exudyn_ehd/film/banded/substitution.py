@@ -15,14 +15,12 @@ unsigned indices, which spare the slices and sign checks that would outweigh the
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numba import njit
 
 # Without leave to reassociate short dot products are not turned into gathers, which are slower.
 _KEEP_ORDER = {"contract", "nsz", "arcp"}
-_unsigned: Any = np.uint64
+_unsigned = np.uint64
 _1, _2, _3 = (_unsigned(k) for k in (1, 2, 3))
 # A step back, as unsigned indices wrap.
 _back = _unsigned(2**64 - 1)

@@ -186,44 +186,45 @@ def _add_entry(lower, upper, row, col, value):
 
 
 @njit(cache=True)
-def _add_link(full_a, full_b, fixed_a, fixed_b, Pa, Pb, ra, rb, k, f, pc, lower, upper, rhs):
-    """One link a -> b: Poiseuille k (Pa - Pb) and Couette f fill_up; ra, rb are unknowns or -1."""
+def _add_link(i, j, p, q, k, f, full, fixed, number, P, pc, lower, upper, rhs):
+    """One link from vertex a = (i, j) to b = (p, q): Poiseuille k (P_a - P_b) and Couette f fill_upstream.
+
+    Prescribed vertices count as full.
+    """
+    a, b = number[i, j], number[p, q]
     # Poiseuille part: pressure is an unknown at full vertices, known (prescribed or pc) elsewhere.
-    if ra >= 0 and full_a:
-        upper[ra, 0] += k
-        if rb >= 0:
-            _add_entry(lower, upper, rb, ra, -k)
+    if a >= 0 and full[i, j]:
+        upper[a, 0] += k
+        if b >= 0:
+            _add_entry(lower, upper, b, a, -k)
     else:
-        known = Pa if fixed_a else pc
-        if ra >= 0:
-            rhs[ra] -= k * known
-        if rb >= 0:
-            rhs[rb] += k * known
-    if rb >= 0 and full_b:
-        upper[rb, 0] += k
-        if ra >= 0:
-            _add_entry(lower, upper, ra, rb, -k)
+        known = P[i, j] if fixed[i, j] else pc
+        if a >= 0:
+            rhs[a] -= k * known
+        if b >= 0:
+            rhs[b] += k * known
+    if b >= 0 and full[p, q]:
+        upper[b, 0] += k
+        if a >= 0:
+            _add_entry(lower, upper, a, b, -k)
     else:
-        known = Pb if fixed_b else pc
-        if rb >= 0:
-            rhs[rb] -= k * known
-        if ra >= 0:
-            rhs[ra] += k * known
+        known = P[p, q] if fixed[p, q] else pc
+        if b >= 0:
+            rhs[b] -= k * known
+        if a >= 0:
+            rhs[a] += k * known
     # Couette part: fill of the upstream vertex, an unknown if that one is cavitated.
-    if f >= 0.0:
-        up, up_full = ra, full_a
-    else:
-        up, up_full = rb, full_b
+    up, up_full = (a, full[i, j]) if f >= 0.0 else (b, full[p, q])
     if up >= 0 and not up_full:
-        if ra >= 0:
-            _add_entry(lower, upper, ra, up, f)
-        if rb >= 0:
-            _add_entry(lower, upper, rb, up, -f)
+        if a >= 0:
+            _add_entry(lower, upper, a, up, f)
+        if b >= 0:
+            _add_entry(lower, upper, b, up, -f)
     else:
-        if ra >= 0:
-            rhs[ra] -= f
-        if rb >= 0:
-            rhs[rb] += f
+        if a >= 0:
+            rhs[a] -= f
+        if b >= 0:
+            rhs[b] += f
 
 
 @njit(cache=True)
@@ -240,43 +241,10 @@ def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width,
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
             a = number[i, j]
-            b = number[nxt, j]
-            if (a >= 0 or b >= 0) and (kx[i, j] != 0.0 or fx[i, j] != 0.0):
-                _add_link(
-                    full[i, j],
-                    full[nxt, j],
-                    fixed[i, j],
-                    fixed[nxt, j],
-                    P[i, j],
-                    P[nxt, j],
-                    a,
-                    b,
-                    kx[i, j],
-                    fx[i, j],
-                    pc,
-                    lower,
-                    upper,
-                    rhs,
-                )
-            if j + 1 < m:
-                b = number[i, j + 1]
-                if a >= 0 or b >= 0:
-                    _add_link(
-                        full[i, j],
-                        full[i, j + 1],
-                        fixed[i, j],
-                        fixed[i, j + 1],
-                        P[i, j],
-                        P[i, j + 1],
-                        a,
-                        b,
-                        kz[i, j],
-                        fz[i, j],
-                        pc,
-                        lower,
-                        upper,
-                        rhs,
-                    )
+            if (a >= 0 or number[nxt, j] >= 0) and (kx[i, j] != 0.0 or fx[i, j] != 0.0):
+                _add_link(i, j, nxt, j, kx[i, j], fx[i, j], full, fixed, number, P, pc, lower, upper, rhs)
+            if j + 1 < m and (a >= 0 or number[i, j + 1] >= 0):
+                _add_link(i, j, i, j + 1, kz[i, j], fz[i, j], full, fixed, number, P, pc, lower, upper, rhs)
             if a >= 0:
                 w = area[i, j]
                 if inverse_step > 0.0:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import abc
 import math
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -27,7 +27,7 @@ TABLE_INTERVALS = 4096
 # The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
 LARGEST_RATIO = 1e7
 LARGEST_PRESSURE = 5e9
-_unsigned: Any = np.uint64
+_unsigned = np.uint64
 _ONE, _ROW = _unsigned(1), _unsigned(7)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 

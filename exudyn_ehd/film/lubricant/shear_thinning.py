@@ -19,7 +19,6 @@ Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numba import njit
@@ -30,7 +29,7 @@ from exudyn_ehd.status import InputError, require_number
 TABLE_INTERVALS = 2048
 TABLE_RATE = 50.0
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-_unsigned: Any = np.uint64
+_unsigned = np.uint64
 _ONE, _TWO, _THREE, _FOUR, _FIVE, _SIX = (_unsigned(k) for k in range(1, 7))
 
 

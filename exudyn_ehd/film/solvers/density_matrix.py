@@ -7,7 +7,7 @@ full: P is the unknown of a vertex, else its fill.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,7 +15,7 @@ from numba import njit
 from exudyn_ehd.film.banded.workspace import PAD
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-_unsigned: Any = np.uint64
+_unsigned = np.uint64
 _0, _1 = _unsigned(0), _unsigned(1)
 
 

@@ -3,7 +3,8 @@
 Module map
 ----------
 profile         shape of the surfaces
-flow_factors    Patir-Cheng
+patir_cheng     PatirCheng, its fits as tables
+flow_factors    the same as effects on flow and friction
 average_gap     mean gap of rough surfaces
 asperity        Greenwood-Tripp
 wall            RegularisedWall

@@ -15,7 +15,8 @@ from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner import LinerFilmSolver
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
-from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, pressure_flow_factor, shear_flow_factor
+from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
+from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
 from exudyn_ehd.film.surfaces.wall import WallContact
 from exudyn_ehd.joint.heat.temperature import ViscosityField
 

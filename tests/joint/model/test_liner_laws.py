@@ -10,7 +10,7 @@ from scipy.integrate import quad
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
-from exudyn_ehd.film.surfaces.flow_factors import pressure_flow_factor
+from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor
 from exudyn_ehd.joint.model.build import build_model
 
 R, L, C, MU, SPEED = 0.02, 0.03, 20e-6, 0.02, 200.0

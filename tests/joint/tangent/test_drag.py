@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.surfaces.flow_factors import nominal_gap, shear_flow_factor
+from exudyn_ehd.film.surfaces.patir_cheng import nominal_gap, shear_flow_factor
 from exudyn_ehd.joint.heat.oil_flows import heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.tangent import drag

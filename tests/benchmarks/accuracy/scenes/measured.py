@@ -15,7 +15,7 @@ from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
-from exudyn_ehd.film.surfaces.flow_factors import PatirCheng
+from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from tests.benchmarks.accuracy.scenes import mechanisms

@@ -1,0 +1,222 @@
+"""Flow factors of rough surfaces after Patir and Cheng.
+
+Mean flow between rough surfaces with nominal gap h, average gap h_T, combined roughness sigma, pattern gamma (ratio of
+the correlation lengths in theta and z; > 1: lay along theta), surface 1 = journal, surface 2 = bore, in the bore's
+frame::
+
+    q_x = U/2 (h_T + sigma phi_s) - phi_x h^3 / (12 mu) dp/dx,        q_z likewise with 1/gamma,
+    phi_x = 1 - C exp(-r H) for gamma <= 1,    1 + C H^-r for gamma > 1,     H = h / sigma,
+    phi_s = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_s,
+    Phi_s = A1 H^a1 exp(-a2 H + a3 H^2) for H <= 5,    A2 exp(-H / 4) for H > 5.
+
+Sources: N. Patir, H. S. Cheng, J. Lubrication Technology 100 (1978) 12 (phi_x) and 101 (1979) 220 (phi_s and the
+friction factors). All constants agree with those that foam-extend 4.0 uses in its lubricated contact, those of Phi_fs
+for gamma = 1 also with R. Boman's EHD program (University of Liege); the smallest H is 1 there for all gamma < 1.
+
+Friction. The second paper gives the mean shear stress of the two surfaces in pure sliding as
+``mu U / h (phi_f +- phi_fs)`` with ``phi_f = h E[1 / local gap]`` (here for Gaussian heights, with their cut-off at
+sigma / 100) and
+
+    phi_fs = (sigma_1^2 - sigma_2^2) / sigma^2 Phi_fs,    Phi_fs = A3 H^a4 exp(-a5 H + a6 H^2) for H <= 7,
+
+the larger stress on the smoother surface. Pressure ripples push on the slopes of the rougher one, which makes up for
+the difference: momentum of the film. Where one surface is smooth its shear is all there is, so that the tangential
+force on either is
+
+    mu U / h (phi_f + Phi_fs),
+
+and as both factors are linear in the variances (heights of the two surfaces are independent) that holds for every share
+of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
+roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
+forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
+``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.drag`. Where peaks touch (h below 2 sigma)
+the pressure is taken to act on the whole area, the flow to have the open part of it: power and heat then differ, by 0.6
+% at h = 0.8 sigma.
+
+The film is computed in h_T, so all factors are tabulated over ``y = 1 / (1 + h_T / (8 sigma))``: the pressure flow as
+phi = phi_x h^3 / h_T^3, the shear flow as psi = sigma Phi_s / h_T, the friction as
+``h_T E[1 / local gap] + Phi_fs h_T / h``. Below the smallest H that the fits are meant for (0.5 to 1) their logarithms
+run on smoothly, in ``L tanh(s / L)`` of s = ln(h_T), to a constant: an extrapolation.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from exudyn_ehd.film.surfaces.average_gap import average_gap_ratio
+from exudyn_ehd.status import InputError, require_number
+
+# gamma: C, r, smallest H, A1, a1, a2, a3, A2
+PATTERNS = {
+    1 / 9: (1.48, 0.42, 1.0, 2.046, 1.12, 0.78, 0.03, 1.856),
+    1 / 6: (1.38, 0.42, 1.0, 1.962, 1.08, 0.77, 0.03, 1.754),
+    1 / 3: (1.18, 0.42, 0.75, 1.858, 1.01, 0.76, 0.03, 1.561),
+    1.0: (0.9, 0.56, 0.5, 1.899, 0.98, 0.92, 0.05, 1.126),
+    3.0: (0.225, 1.5, 0.5, 1.56, 0.85, 1.13, 0.08, 0.556),
+    6.0: (0.52, 1.5, 0.5, 1.29, 0.62, 1.09, 0.08, 0.388),
+    9.0: (0.87, 1.5, 0.5, 1.011, 0.54, 1.07, 0.08, 0.295),
+}
+# gamma: A3, a4, a5, a6
+FRICTION_PATTERNS = {
+    1 / 9: (14.1, 2.45, 2.30, 0.10),
+    1 / 6: (13.4, 2.42, 2.30, 0.10),
+    1 / 3: (12.3, 2.32, 2.30, 0.10),
+    1.0: (11.1, 2.31, 2.38, 0.11),
+    3.0: (9.8, 2.25, 2.80, 0.18),
+    6.0: (10.1, 2.25, 2.90, 0.18),
+    9.0: (8.7, 2.15, 2.97, 0.18),
+}
+FRICTION_REACH = 7.0
+SHEAR_CUTOFF = 0.01
+FLOW_BLEND = 0.5
+SHEAR_BLEND = 0.15
+TABLE_STEPS = 2048
+# The gap, in sigma, at the middle of the tables: half of the knots lie above, where factors fall off slowly.
+TABLE_MIDDLE = 8.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PatirCheng:
+    """Flow and friction factors of rough surfaces; for films below about five times the roughness.
+
+    Without an asperity contact the film ends where the nominal gap does; with one, both must name the same roughness.
+
+    Parameters
+    ----------
+    composite_roughness : float
+        sigma = sqrt(sigma_journal^2 + sigma_bore^2), m.
+    pattern : float
+        gamma, correlation length in theta over that in z: 1/9, 1/6, 1/3 (lay across the motion), 1 (isotropic), 3, 6 or
+        9 (lay along the motion), the patterns that Patir and Cheng computed.
+    journal_share : float
+        sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher
+        surface drags more oil along and is pulled more by a pressure gradient.
+    """
+
+    composite_roughness: float
+    pattern: float = 1.0
+    journal_share: float = 0.5
+
+    def __post_init__(self) -> None:
+        require_number(
+            "PatirCheng.composite_roughness",
+            self.composite_roughness,
+            "m",
+            above=0.0,
+            hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
+            "roughness=None.",
+        )
+        pattern = require_number("PatirCheng.pattern", self.pattern, above=0.0)
+        if not any(math.isclose(pattern, known, rel_tol=1e-3) for known in PATTERNS):
+            raise InputError(
+                f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got "
+                f"{self.pattern!r}; take the nearest one."
+            )
+        if require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0) > 1.0:
+            raise InputError(
+                f"PatirCheng.journal_share must be within 0 and 1, got {self.journal_share!r}; it is a share."
+            )
+
+
+def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
+    """phi_x(H, gamma); phi_z is the one of 1/gamma."""
+    C, r = _constants(pattern)[:2]
+    H = np.asarray(H, dtype=float)
+    return 1.0 - C * np.exp(-r * H) if pattern <= 1.0 + 1e-9 else 1.0 + C * H**-r
+
+
+def shear_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
+    """Phi_s(H, gamma) of one rough surface."""
+    _, _, _, A1, a1, a2, a3, A2 = _constants(pattern)
+    H = np.asarray(H, dtype=float)
+    return np.where(H <= 5.0, A1 * H**a1 * np.exp(-a2 * H + a3 * np.minimum(H, 5.0) ** 2), A2 * np.exp(-0.25 * H))
+
+
+def shear_stress_factor(H: np.ndarray, pattern: float) -> np.ndarray:
+    """Phi_fs(H, gamma) of one rough surface; beyond H = 7 a power of H that continues the fit with its slope."""
+    A3, a4, a5, a6 = next(v for known, v in FRICTION_PATTERNS.items() if math.isclose(pattern, known, rel_tol=1e-3))
+    H, end = np.asarray(H, dtype=float), FRICTION_REACH
+    power = a4 - a5 * end + 2.0 * a6 * end**2
+    near = np.minimum(H, end)
+    return A3 * near**a4 * np.exp(-a5 * near + a6 * near**2) * (np.maximum(H, end) / end) ** power
+
+
+def friction_factor(H: np.ndarray) -> np.ndarray:
+    """``h E[1 / local gap]`` over the open film with local gaps above sigma / 100, in sigma units.
+
+    The sum runs in ln(gap).
+    """
+    H = np.atleast_1d(np.asarray(H, dtype=float))
+    return H * mean_inverse_gap(H)
+
+
+def mean_inverse_gap(H: np.ndarray) -> np.ndarray:
+    """``E[1 / local gap]`` over the open film with local gaps above sigma / 100; H (k,) and result in sigma units.
+
+    The integral runs in ln(gap) by the trapezoidal rule; from H = 15 on it is ``1/H + 1/H^3 + 3/H^5 + 15/H^7``
+    (error 4e-8).
+    """
+    v = np.linspace(math.log(SHEAR_CUTOFF), math.log(40.0), 4001)
+    gap = np.exp(v)
+    weight = np.full(v.size, v[1] - v[0]) / math.sqrt(2.0 * math.pi)
+    weight[0] *= 0.5
+    near = np.minimum(H, 15.0)
+    integral = np.array([float(np.exp(-0.5 * (gap - x) ** 2) @ weight) for x in near])
+    far = 1.0 / np.maximum(H, 15.0)
+    q = far * far
+    return np.where(H > 15.0, far * (1.0 + q * (1.0 + q * (3.0 + q * 15.0))), integral)
+
+
+def _constants(pattern: float) -> tuple[float, ...]:
+    return next(v for known, v in PATTERNS.items() if math.isclose(pattern, known, rel_tol=1e-3))
+
+
+def _continued(log_value: np.ndarray, s: np.ndarray, start: int, blend: float) -> np.ndarray:
+    """Replace ``log_value`` before index ``start`` by its tangent in s, bent to a constant over ``blend``."""
+    slope = (log_value[start + 1] - log_value[start]) / (s[start + 1] - s[start])
+    d = s[:start] - s[start]
+    return np.concatenate((log_value[start] + slope * blend * np.tanh(d / blend), log_value[start:]))
+
+
+def _table(y: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Cubic spline through values(y) as (k, 4) coefficients of the powers of u = (y - y_k) / step."""
+    step = y[1] - y[0]
+    return np.ascontiguousarray(CubicSpline(y, values).c[::-1].T * step ** np.arange(4))
+
+
+@functools.cache
+def flow_tables(pattern: float, residual: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Tables (k, 4) of phi, psi and the friction factor over y = 1 / (1 + h_T / (8 sigma)) in [0, 1]."""
+    y = np.linspace(0.0, 1.0, TABLE_STEPS + 1)
+    y_safe = np.clip(y, 1e-6, 1.0 - 1e-9)
+    t = TABLE_MIDDLE * (1.0 - y_safe) / y_safe
+    x = nominal_gap(t, residual)
+    order = np.argsort(t)
+    ts, xs = t[order], x[order]
+    start = int(np.searchsorted(xs, _constants(pattern)[2]))
+    positive = np.maximum(xs, 1e-3)
+    s = np.log(ts)
+    flow = np.log(np.maximum(pressure_flow_factor(positive, pattern), 1e-12) * (positive / ts) ** 3)
+    shear = np.log(np.maximum(shear_flow_factor(positive, pattern) / ts, 1e-300))
+    phi = np.exp(_continued(flow, s, start, FLOW_BLEND))[::-1]
+    psi = np.exp(_continued(shear, s, start, SHEAR_BLEND))[::-1]
+    drag = np.log(np.maximum(shear_stress_factor(positive, pattern) * ts / positive, 1e-300))
+    friction = (ts * mean_inverse_gap(xs) + np.exp(_continued(drag, s, start, SHEAR_BLEND)))[::-1].copy()
+    phi[0] = friction[0] = 1.0
+    return _table(y, phi), _table(y, psi), _table(y, friction)
+
+
+def nominal_gap(t: np.ndarray, residual: float) -> np.ndarray:
+    """h / sigma for average gaps t = h_T / sigma, by bisection; -38 for all that is closed."""
+    t = np.asarray(t, dtype=float)
+    low, high = np.full(t.shape, -38.0), t + 1.0
+    for _ in range(80):
+        middle = 0.5 * (low + high)
+        below = average_gap_ratio(middle, residual) < t
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return 0.5 * (low + high)
