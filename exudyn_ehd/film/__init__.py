@@ -3,7 +3,7 @@
 Module map
 ----------
 grid         vertices (theta, z), control volumes, weights
-models       from the film model that a scene names to its grid and solver
+models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets
 loads        integrals of pressure, shear and drag; flows through the edges
 reynolds     gap and flow through the links between vertices

@@ -29,7 +29,7 @@ and as both factors are linear in the variances (heights of the two surfaces are
 of the two. For parallel ridges across the motion it is 1 + 4 (sigma/h)^2, and 1 + (sigma/h)^2 along it (exact for small
 roughness). Beyond H = 7 Phi_fs falls on by the power that it has there. Under a pressure gradient the tangential
 forces, shear and ripples together, are ``-(h_T +- sigma phi_s) / 2 dp/dx`` by reciprocity, with
-``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.drag`. Where peaks touch (h below 2 sigma)
+``phi_fp h = h_T - sigma Phi_s`` of the second paper; see `exudyn_ehd.film.loads`. Where peaks touch (h below 2 sigma)
 the pressure is taken to act on the whole area, the flow to have the open part of it: power and heat then differ, by 0.6
 % at h = 0.8 sigma.
 

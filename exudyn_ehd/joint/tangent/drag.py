@@ -1,4 +1,4 @@
-"""Drag of a pressure gradient on unequally rough surfaces, of a bearing model; see `exudyn_ehd.film.drag`."""
+"""Drag of a pressure gradient on unequally rough surfaces, of a bearing model; see `exudyn_ehd.film.loads`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from exudyn_ehd.film.drag import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
+from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
 
 if TYPE_CHECKING:
