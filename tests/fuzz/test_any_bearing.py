@@ -1,4 +1,5 @@
-"""Any valid bearing evaluates to finite numbers in balance; any argument of the studies and of the joint is taken or refused by name."""
+"""Any valid bearing evaluates to finite numbers in balance; any argument of the
+studies and of the joint is taken or refused by name."""
 
 from __future__ import annotations
 
@@ -63,9 +64,14 @@ def bearings(draw):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         return ehd.JournalBearing(
-            journal_radius=radius, length=2.0 * radius * ratio, radial_clearance=clearance, film=film, cavitation=closure,
-            lubricant=ehd.Lubricant(viscosity=draw(powers(-5.0, 1.0))), **options,
-        )  # fmt: skip
+            journal_radius=radius,
+            length=2.0 * radius * ratio,
+            radial_clearance=clearance,
+            film=film,
+            cavitation=closure,
+            lubricant=ehd.Lubricant(viscosity=draw(powers(-5.0, 1.0))),
+            **options,
+        )
 
 
 def check_film(bearing, eps, speed, tilt, direction):
@@ -81,8 +87,8 @@ def check_film(bearing, eps, speed, tilt, direction):
             assert np.all(np.isfinite(value)), field.name
     p, p_c = film.pressure, bearing.cavitation.cavity_pressure
     assert p.min() >= p_c - 1e-9 * np.abs(p).max()
-    # force of the pressures by quadrature of our own, trapezoidal in z: the film's own weights are of higher order, so that a parabola
-    # on four intervals differs by several per cent; far below a lost sign, factor or row
+    # force of the pressures by quadrature of our own, trapezoidal in z: the film's own weights are of higher
+    # order, so that a parabola on four intervals differs by several per cent; far below a lost sign, factor or row
     R = bearing.journal_radius
     dz = (
         np.trapezoid(p * np.cos(film.theta)[:, None], film.z, axis=1),

@@ -138,8 +138,12 @@ OF_A_MESH = {"DeadPressure", "FollowerPressure", "LineLoad", "SurfaceLoad", "Sup
 def test_every_public_description_takes_part():
     public = {getattr(ehd, name) for name in ehd.__all__}
     specs = {
-        c for c in public
-        if inspect.isclass(c) and dataclasses.is_dataclass(c) and c.__dataclass_params__.frozen and hasattr(c, "__post_init__")
-    }  # fmt: skip
+        c
+        for c in public
+        if inspect.isclass(c)
+        and dataclasses.is_dataclass(c)
+        and c.__dataclass_params__.frozen
+        and hasattr(c, "__post_init__")
+    }
     missing = specs - {type(good) for good in GOOD}
     assert {c.__name__ for c in missing} <= OF_A_MESH

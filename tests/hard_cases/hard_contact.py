@@ -50,7 +50,8 @@ def eps_999():
 
 @hard_case("sinking at zero speed", rejected=0)
 def drop_from_rest():
-    """A journal is let go in a bearing that does not turn: squeeze alone, algebraic decay towards the wall, never an equilibrium."""
+    """A journal is let go in a bearing that does not turn: squeeze alone,
+    algebraic decay towards the wall, never an equilibrium."""
     made = bearing(film=ehd.ShortBearing(n_theta=384), length=0.4 * RADIUS)
     mass, weight = 2.0, 500.0
     run = Rotor(made, mass=mass, load=(0.0, -weight), speed=0.0).run(0.05, 1e-4)
@@ -94,8 +95,14 @@ def pressed_on_the_wall():
 def edge_tilt(contact):
     made = bearing(length=0.05, contact=contact)
     rotor = Rotor(
-        made, mass=1.0, spatial=True, inertia=1e-3, speed=SPEED, load=lambda t: (0.0, -6000.0 * min(t / 2e-3, 1.0)), load_z=0.02
-    )  # fmt: skip
+        made,
+        mass=1.0,
+        spatial=True,
+        inertia=1e-3,
+        speed=SPEED,
+        load=lambda t: (0.0, -6000.0 * min(t / 2e-3, 1.0)),
+        load_z=0.02,
+    )
     return rotor
 
 
@@ -236,7 +243,8 @@ def impact():
 
 @hard_case("bouncing to rest", rejected=80)
 def bouncing():
-    """Impacts follow each other ever faster until the journal lies still: the contact's time scale is far below the step."""
+    """Impacts follow each other ever faster until the journal lies still: the
+    contact's time scale is far below the step."""
     load = 200.0
     run = thrown(0.02, 2e-5, load=load)
     h = run.history

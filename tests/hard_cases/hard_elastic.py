@@ -46,7 +46,8 @@ def very_stiff():
     return run
 
 
-# 4.9 iterations in 244 steps or 5.01 in 234: rounding, which differs between processors, decides which steps are refused
+# 4.9 iterations in 244 steps or 5.01 in 234: rounding, which differs between
+# processors, decides which steps are refused
 @hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.2)
 def very_soft():
     """Softer than rubber: the bore gives way by more than the clearance, and no mass is stable on it at this speed."""
@@ -72,7 +73,8 @@ def very_soft():
 
 @hard_case("soft bush under a step load", rejected=20, newton=6.0)
 def soft_step():
-    """E = 1e7 Pa and 150 N at once: the journal runs ahead of its film into a wall that yields; eccentricity above the clearance."""
+    """E = 1e7 Pa and 150 N at once: the journal runs ahead of its film into a
+    wall that yields; eccentricity above the clearance."""
     made = bearing(bush=ring(1e7))
     rotor = Rotor(made, load=(0.0, -150.0), speed=0.2 * SPEED)
     run = rotor.run(0.04, 1e-4)
@@ -85,7 +87,8 @@ def soft_step():
 
 @hard_case("thin shell", rejected=20, newton=5.0)
 def thin_shell():
-    """A bush of 0.5 mm: bent rather than compressed if it were free, here laid into the housing, where only its thickness gives way."""
+    """A bush of 0.5 mm: bent rather than compressed if it were free, here laid
+    into the housing, where only its thickness gives way."""
     thickness = 5e-4
     made = bearing(bush=ring(2e9, thickness=thickness, radial=1))
     run, eq = settle(made, load=3000.0)
@@ -114,7 +117,8 @@ def soft_liner():
     rotor, period = swinging_liner(100.0)
     run = rotor.run(6 * period, period / 60)
     h = run.history
-    # columns open under a pressure: nowhere is the gap smaller than the rigid surfaces', whose smallest is at the unloaded ends
+    # columns open under a pressure: nowhere is the gap smaller than the rigid
+    # surfaces', whose smallest is at the unloaded ends
     assert np.all(h.minimum_gap >= CLEARANCE * (1.0 - h.largest_eccentricity_ratio) * (1.0 - 1e-9))
     # by t K p / E, K = (1 + nu)(1 - 2 nu) / (1 - nu)
     depth = 2e-3 * 1.4 * 0.2 / 0.6 * h.peak_pressure / 5e7
@@ -126,7 +130,8 @@ def soft_liner():
 
 @hard_case("soft liner pressed through its film", rejected=40, newton=10.0)
 def liner_touches():
-    """At its ends a liner carries no pressure and does not give way: there the gap closes first, for want of a contact."""
+    """At its ends a liner carries no pressure and does not give way: there the
+    gap closes first, for want of a contact."""
     rotor, period = swinging_liner(1500.0)
     run = rotor.run(6 * period, period / 60, fails=True)
     text = str(run.error)
@@ -152,7 +157,8 @@ def liner_on_its_edges():
 
 @hard_case("starved soft liner under oscillating rotation", newton=5.0)
 def starved_liner():
-    """Mass-conserving: the swinging journal's cavities drain and fill on a liner that gives way by the size of its film."""
+    """Mass-conserving: the swinging journal's cavities drain and fill on a
+    liner that gives way by the size of its film."""
     rotor, period = swinging_liner(100.0, cavitation=ehd.ElrodAdams(cavity_pressure=-2e4))
     run = rotor.run(6 * period, period / 60)
     h = run.history
@@ -164,7 +170,8 @@ def starved_liner():
 
 @hard_case("stiff liner is none")
 def stiff_liner():
-    """A liner a thousand times stiffer than steel: its equations must turn into those of the rigid bore, not into noise."""
+    """A liner a thousand times stiffer than steel: its equations must turn into
+    those of the rigid bore, not into noise."""
     liner = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e14)
     made = bearing()
     runs = [Rotor(b, load=(0.0, -LOAD)).run(0.02, 2e-4) for b in (dataclasses.replace(made, bush=liner), made)]

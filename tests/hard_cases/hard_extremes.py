@@ -94,7 +94,8 @@ def wide():
 
 @hard_case("30 m/s surface speed")
 def fast():
-    """30 m/s on a clearance of 50 um: shear of 6e5 1/s, strong cross-coupling; heated, thinned and supplied at one end."""
+    """30 m/s on a clearance of 50 um: shear of 6e5 1/s, strong cross-coupling;
+    heated, thinned and supplied at one end."""
     oil = ehd.oil("ISO VG 32", temperature=313.15)
     speed = 30.0 / 0.025
     ends = (1e5, 0.0)
@@ -115,7 +116,8 @@ def fast():
 
 @hard_case("load of a thousandth of a newton")
 def tiny_load():
-    """A millionth of the film's force and hardly any mass: neutral half-speed whirl, which forgives no error of the start."""
+    """A millionth of the film's force and hardly any mass: neutral half-speed
+    whirl, which forgives no error of the start."""
     made = bearing()
     load = 1e-3
     eq = ehd.equilibrium(made, speed=SPEED, load=(0.0, -load))

@@ -15,7 +15,8 @@ VENTED = ehd.ElrodAdams(cavity_pressure=-1e5)
 
 @hard_case("starved groove")
 def starved():
-    """A narrow groove at ambient pressure feeds less than leaks: most of the bore is cavity, and the film carries what is left."""
+    """A narrow groove at ambient pressure feeds less than leaks: most of the
+    bore is cavity, and the film carries what is left."""
     groove = ehd.AxialGroove(angle=0.5 * math.pi, width_angle=0.1, length=0.004)
     made = bearing(cavitation=ehd.ElrodAdams(), supply=(groove,))
     rotor = Rotor(made, load=(0.0, -600.0))
@@ -27,7 +28,8 @@ def starved():
     # in the settled state, what the groove feeds is what leaks
     assert abs(h.supply_flow[-1] / h.leakage[-1] - 1.0) < 5e-3
     assert h.largest_eccentricity_ratio.max() < 1.0
-    # oil over the whole run, by the steps' own rule (backward Euler): fed - leaked = held at the end - held at the start
+    # oil over the whole run, by the steps' own rule (backward Euler): fed -
+    # leaked = held at the end - held at the start
     model = rotor.joint.element.model
     volume = np.outer(model.grid.width_x, model.grid.width_z) * model.flow_scale
     end, gap = model.solver.content.copy(), model.solver.H.copy()
@@ -41,7 +43,8 @@ def starved():
 
 @hard_case("groove passes under the load")
 def groove_under_load():
-    """A feed hole in the turning journal passes the loaded side once a turn and lets the pressure there collapse to its own."""
+    """A feed hole in the turning journal passes the loaded side once a turn and
+    lets the pressure there collapse to its own."""
     hole = ehd.AxialGroove(angle=0.0, width_angle=0.35, length=0.014, pressure=1e5, rotating=True)
     made = bearing(cavitation=VENTED, supply=(hole,))
     rotor = Rotor(made, load=(0.0, -1500.0))
@@ -70,7 +73,8 @@ def step_load_mass_conserving():
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5), film=ehd.FiniteLength())
     rotor, run = step_load(made, 0.04)
     h = run.history
-    # from the reference orbit with the Guembel condition: 0.754 at 14 ms; the oil that the cavity keeps changes it by little
+    # from the reference orbit with the Guembel condition: 0.754 at 14 ms; the
+    # oil that the cavity keeps changes it by little
     k = int(np.argmax(h.eccentricity_ratio))
     assert abs(h.eccentricity_ratio[k] - 0.754) < 0.04
     assert abs(h.time[k] - 0.014) < 3e-3

@@ -31,8 +31,8 @@ def spinning_pair():
     h = run.history
     # the pair keeps its common spin: relative spin stays zero but for the friction torque of nothing
     assert np.abs(h.motion[:, 8]).max() < 1e-3 * SPEED
-    # a housing that turns under a fixed load is a bearing whose journal turns backwards at twice the wedge: So with the sum of both
-    # surface speeds relative to the load, 2 omega instead of omega
+    # a housing that turns under a fixed load is a bearing whose journal turns backwards at twice the
+    # wedge: So with the sum of both surface speeds relative to the load, 2 omega instead of omega
     position = ehd.equilibrium(made, speed=2.0 * SPEED, load=(0.0, -400.0))
     assert abs(h.eccentricity_ratio[-1] - position.eccentricity_ratio) < 5e-3
     return run
@@ -40,7 +40,8 @@ def spinning_pair():
 
 @hard_case("moving frame", rejected=0)
 def moving_frame():
-    """The whole model flies at 100 m/s: gaps of micrometres are differences of metres, and not a digit may depend on it."""
+    """The whole model flies at 100 m/s: gaps of micrometres are differences of
+    metres, and not a digit may depend on it."""
     made = bearing()
     runs = []
     for speed in (0.0, 100.0):
@@ -135,7 +136,8 @@ def two_joints():
 
 @hard_case("three bearings on a rigid shaft")
 def three_bearings():
-    """Statically indeterminate: with ideal joints the reactions have no solution; the films share the load by their stiffness."""
+    """Statically indeterminate: with ideal joints the reactions have no
+    solution; the films share the load by their stiffness."""
     made = bearing()
     mbs, joints = shaft([made] * 3, [-0.1, 0.0, 0.1], load=(0.0, -6000.0), load_z=0.0)
     run = solve(mbs, joints, settings(0.06, 2e-4))
@@ -150,7 +152,8 @@ def three_bearings():
 
 @hard_case("redundant beside an ideal joint")
 def redundant():
-    """A film in the same place as an ideal joint: kinematically redundant, and nothing is left for the film to carry."""
+    """A film in the same place as an ideal joint: kinematically redundant, and
+    nothing is left for the film to carry."""
     made = bearing()
     mbs, joints = shaft([made, made], [-0.1, 0.1], load=(0.0, -2000.0), load_z=-0.1, ideal=-0.1)
     run = solve(mbs, joints, settings(0.02, 1e-4))
@@ -163,7 +166,8 @@ def redundant():
 
 
 def crank(made, *, speed, turns, steps_per_turn, big_end=False):
-    """Slider-crank (crank 50 mm, rod 120 mm, slider 0.14 kg) turning at ``speed`` with a lubricated gudgeon pin or big end."""
+    """Slider-crank (crank 50 mm, rod 120 mm, slider 0.14 kg) turning at
+    ``speed`` with a lubricated gudgeon pin or big end."""
     container = exu.SystemContainer()
     mbs = container.AddSystem()
     mbs.variables["container"] = container
@@ -244,7 +248,8 @@ def fast_crank():
 
 @hard_case("crank at steps of two degrees", rejected=3)
 def coarse_crank():
-    """The crank's end leaves its tangent by 30 um in a step, more than the clearance: Newton has to start where the accelerations lead."""
+    """The crank's end leaves its tangent by 30 um in a step, more than the
+    clearance: Newton has to start where the accelerations lead."""
     made = bearing(**PIN, viscosity=0.02, film=ehd.FiniteLength(n_theta=96, n_z=8))
     coarse, fine = (
         crank(made, speed=4000.0 * 2.0 * math.pi / 60.0, turns=2, steps_per_turn=steps, big_end=True)

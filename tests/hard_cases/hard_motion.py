@@ -16,7 +16,8 @@ from exudyn_ehd.reference import short_bearing
 
 @hard_case("sudden load reversal")
 def load_reversal():
-    """2000 N turn around within no time: the journal crosses the bearing, and the film ruptures on one side and forms on the other."""
+    """2000 N turn around within no time: the journal crosses the bearing, and
+    the film ruptures on one side and forms on the other."""
     made = bearing()
     rotor = Rotor(made, load=lambda t: (0.0, -2000.0 if t < 0.06 else 2000.0))
     run = rotor.run(0.12, 2e-4)
@@ -33,7 +34,8 @@ def load_reversal():
 
 @hard_case("reversed rotation")
 def reversed_rotation():
-    """The same orbit turned backwards: upstream and downstream, rupture and reformation change places, to the last digits."""
+    """The same orbit turned backwards: upstream and downstream, rupture and
+    reformation change places, to the last digits."""
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
     runs = [Rotor(made, load=(0.0, -2000.0), speed=sign * SPEED).run(0.02, 2e-4) for sign in (1.0, -1.0)]
     one, other = (run.history for run in runs)
@@ -47,7 +49,8 @@ def reversed_rotation():
 
 @hard_case("oscillating rotation")
 def oscillating_rotation():
-    """The journal swings and stands still twice a period, like a gudgeon pin: without a wedge the squeeze alone carries."""
+    """The journal swings and stands still twice a period, like a gudgeon pin:
+    without a wedge the squeeze alone carries."""
     made = bearing()
     rate = 200.0
     angle = (lambda t: 0.5 * math.sin(rate * t), lambda t: 0.5 * rate * math.cos(rate * t))
@@ -103,7 +106,8 @@ def released():
 
 @hard_case("whirl threshold of the short bearing", rejected=0)
 def whirl_threshold():
-    """A rigid rotor 3 % on either side of its threshold: growth and decay of 1 % a turn decide between stable and lost."""
+    """A rigid rotor 3 % on either side of its threshold: growth and decay
+    of 1 % a turn decide between stable and lost."""
     eps, speed = 0.2, 400.0
     made = bearing(film=ehd.ShortBearing(n_theta=192), length=0.01)
     load = made.reference_force(speed) * short_bearing.load(eps, made.length / (2 * made.journal_radius))
@@ -163,7 +167,8 @@ def whip(first, last, duration, end, step):
 
 @hard_case("run-up through whirl into whip", rejected=4)
 def run_up():
-    """A flexible rotor passes its critical speed, starts to whirl at half its speed and locks to its own frequency: a limit cycle."""
+    """A flexible rotor passes its critical speed, starts to whirl at half its
+    speed and locks to its own frequency: a limit cycle."""
     run, natural = whip(100.0, 1000.0, 0.5, 1.5, 5e-4)
     h = run.history
     late = h.time > 1.2
@@ -191,7 +196,8 @@ def rotating_load():
     run = rotor.run(0.12, 2e-4)
     h = run.history
     late = h.time > 0.09
-    # seen from the load, a bearing turning at minus the speed: e from the equilibrium that also has the journal's inertia
+    # seen from the load, a bearing turning at minus the speed: e from the
+    # equilibrium that also has the journal's inertia
     r = h.eccentricity_ratio[late]
     assert np.ptp(r) < 5e-3
     turned = np.unwrap(np.arctan2(h.eccentricity[late, 1], h.eccentricity[late, 0]))

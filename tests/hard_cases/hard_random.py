@@ -1,21 +1,24 @@
-"""The film solver's record over random states: who fails, how many linear solves it takes, how well the balances are met.
+"""The film solver's record over random states: who fails, how many linear
+solves it takes, how well the balances are met.
 
-Bearings: L/D 0.25 to 2, eight grids from 24 x 4 to 128 x 12 (odd ones too), short bearings, end pressures, supply areas (also in the
-journal), walls, rough surfaces, pressure, shear and density laws. States: eccentricity ratio uniform to 0.9 or with the gap
-uniform in its logarithm down to 1e-4 c (pressed into each other up to 1.02 with a wall), tilt up to 95 % of what the gap leaves, any
-direction, spin positive, negative, zero, tiny and large, axial speed, rates from 1e-3 to 10 times the spin; warm and cold starts.
-Mass-conserving films also in transient sequences with jumps of position and speed at steps from 1e-6 to 3e-3 s.
+Bearings: L/D 0.25 to 2, eight grids from 24 x 4 to 128 x 12 (odd ones too), short bearings, end pressures,
+supply areas (also in the journal), walls, rough surfaces, pressure, shear and density laws. States:
+eccentricity ratio uniform to 0.9 or with the gap uniform in its logarithm down to 1e-4 c (pressed into each
+other up to 1.02 with a wall), tilt up to 95 % of what the gap leaves, any direction, spin positive, negative,
+zero, tiny and large, axial speed, rates from 1e-3 to 10 times the spin; warm and cold starts. Mass-conserving
+films also in transient sequences with jumps of position and speed at steps from 1e-6 to 3e-3 s.
 
-Films on liners of 1e7 to 1e11 Pa, 1 mm thick on 20 mm, half of them with wall or asperities, steady and in motion; the same with pressure and shear
-laws and rough surfaces. What they leave out, because there
-no film need exist: tension that pulls a liner shut (`FullSommerfeld` only with contact and above 1e10 Pa; no contact, no tension in the
-cavity; else no more than an atmosphere), and steady films after `Gumbel`, whose balance is not that of a complementarity problem (one in
-two thousand of these states is not found). Impedance maps over their whole domain, and beyond it, which they must say.
+Films on liners of 1e7 to 1e11 Pa, 1 mm thick on 20 mm, half of them with wall or asperities, steady
+and in motion; the same with pressure and shear laws and rough surfaces. What they leave out, because
+there no film need exist: tension that pulls a liner shut (`FullSommerfeld` only with contact and above
+1e10 Pa; no contact, no tension in the cavity; else no more than an atmosphere), and steady films after
+`Gumbel`, whose balance is not that of a complementarity problem (one in two thousand of these states
+is not found). Impedance maps over their whole domain, and beyond it, which they must say.
 
-A state counts as failed if its status is not CONVERGED, a number of it is not finite, its pressure or fill leaves its bounds, or a
-balance of its discrete equations is not met. The one exception: oils with a pressure law have no viscosity beyond some GPa, where they
-count as solid. A film that would need such pressures has no solution and must say so (NO_PRESSURE); these states are counted apart,
-once it is checked that the pressure is beyond the law's range.
+A state counts as failed if its status is not CONVERGED, a number of it is not finite, its pressure or fill leaves
+its bounds, or a balance of its discrete equations is not met. The one exception: oils with a pressure law have no
+viscosity beyond some GPa, where they count as solid. A film that would need such pressures has no solution and must
+say so (NO_PRESSURE); these states are counted apart, once it is checked that the pressure is beyond the law's range.
 """
 
 from __future__ import annotations
@@ -36,7 +39,8 @@ from exudyn_ehd.joint.model.build import build_model
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
 GRIDS = [(48, 8), (64, 10), (96, 10), (64, 16), (33, 7), (24, 4), (40, 5), (128, 12)]
 STATES_PER_MODEL = 250
-# Of a balance: rounding of conductances that differ by the cube of the gaps' ratio, over the largest flow that meets at a vertex.
+# Of a balance: rounding of conductances that differ by the cube of the gaps'
+# ratio, over the largest flow that meets at a vertex.
 BALANCE = 1e-7
 SOLID = "the oil is solid"
 
@@ -170,9 +174,13 @@ def random_map(rng):
     """A bearing with an impedance map; two lengths, as every one takes seconds to build."""
     closure = [ehd.Gumbel(), ehd.SwiftStieber()][rng.integers(2)]
     return ehd.JournalBearing(
-        journal_radius=RADIUS, length=RADIUS * float(rng.choice([1.0, 2.0])), radial_clearance=CLEARANCE, cavitation=closure,
-        lubricant=ehd.Lubricant(viscosity=VISCOSITY), film=ehd.ImpedanceMap(n_theta=96),
-    )  # fmt: skip
+        journal_radius=RADIUS,
+        length=RADIUS * float(rng.choice([1.0, 2.0])),
+        radial_clearance=CLEARANCE,
+        cavitation=closure,
+        lubricant=ehd.Lubricant(viscosity=VISCOSITY),
+        film=ehd.ImpedanceMap(n_theta=96),
+    )
 
 
 def random_state(rng, bearing):
@@ -201,7 +209,8 @@ def random_state(rng, bearing):
 
 
 def balance_error(model):
-    """Largest violation of the discrete equations, each over the largest flow at its vertex (or a millionth of the largest of all)."""
+    """Largest violation of the discrete equations, each over the largest flow
+    at its vertex (or a millionth of the largest of all)."""
     s, g, closure = model.solver, model.grid, model.bearing.cavitation
     y = s.system
     out = np.empty(g.shape)
@@ -220,7 +229,8 @@ def balance_error(model):
         flow = np.maximum(flow, y.area * np.maximum(y.mass_old, y.fill * y.H) * y.inverse_step)
     else:
         flow = np.maximum(flow, np.abs(y.area * y.H_t))
-    # a closure stops at pressures right to 1e-13 of the peak; where the gap is wide, that is a flow beside which others vanish
+    # a closure stops at pressures right to 1e-13 of the peak; where the gap is
+    # wide, that is a flow beside which others vanish
     wide = y.kx + np.roll(y.kx, 1, axis=0) + y.kz
     wide[:, 1:] += y.kz[:, :-1]
     flow = np.maximum(flow, 1e-5 * wide * np.abs(P).max())
@@ -285,7 +295,8 @@ def check(model, evaluation):
 
 
 def check_map(model, evaluation):
-    """What is wrong with an evaluation of an impedance map, or None: beyond its table it must say so, within it heat what it brakes."""
+    """What is wrong with an evaluation of an impedance map, or None: beyond its
+    table it must say so, within it heat what it brakes."""
     motion = evaluation.motion
     inside = math.hypot(*motion[:2]) <= model.bearing.film.largest_eccentricity_ratio * CLEARANCE
     if evaluation.status is not (ehd.Status.CONVERGED if inside else ehd.Status.OUTSIDE_MAP):

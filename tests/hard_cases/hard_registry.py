@@ -1,8 +1,8 @@
 """The named set of hard cases.
 
-A case is a function that builds scenes, runs them through Exudyn, asserts the physics and returns the runs whose counts go into the
-table. Its docstring tells what is hard. ``rejected`` and ``newton`` are the largest numbers of rejected steps and of Newton iterations per
-accepted step that its runs may take together; both are asserted.
+A case is a function that builds scenes, runs them through Exudyn, asserts the physics and returns the runs whose
+counts go into the table. Its docstring tells what is hard. ``rejected`` and ``newton`` are the largest numbers
+of rejected steps and of Newton iterations per accepted step that its runs may take together; both are asserted.
 """
 
 from __future__ import annotations

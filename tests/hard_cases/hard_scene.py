@@ -108,8 +108,14 @@ def solve(mbs, joints, simulation_settings, *, solver=None, fails=False, restart
 
 
 _MAY_BE_ABSENT = (
-    "supply_flow", "film_temperature", "peak_temperature", "peak_pressure", "leakage", "contact_torque", "bore_displacement",
-)  # fmt: skip
+    "supply_flow",
+    "film_temperature",
+    "peak_temperature",
+    "peak_pressure",
+    "leakage",
+    "contact_torque",
+    "bore_displacement",
+)
 
 
 def assert_finite(history):
@@ -146,10 +152,23 @@ class Rotor:
     """
 
     def __init__(
-        self, bearing, *, mass=2.0, load=(0.0, 0.0), speed=SPEED, position=(0.0, 0.0), velocity=(0.0, 0.0), tilt=(0.0, 0.0),
-        spatial=False, load_z=0.0, inertia=1e-3, spin=0.0, housing=None, name="rotor bearing",
+        self,
+        bearing,
+        *,
+        mass=2.0,
+        load=(0.0, 0.0),
+        speed=SPEED,
+        position=(0.0, 0.0),
+        velocity=(0.0, 0.0),
+        tilt=(0.0, 0.0),
+        spatial=False,
+        load_z=0.0,
+        inertia=1e-3,
+        spin=0.0,
+        housing=None,
+        name="rotor bearing",
         step_control=None,
-    ):  # fmt: skip
+    ):
         self.container = exu.SystemContainer()
         self.mbs = mbs = self.container.AddSystem()
         self.bearing, self.mass, self.load = bearing, mass, load if callable(load) else (lambda t: load)
@@ -231,7 +250,8 @@ class Rotor:
         )
 
     def momentum_error(self, history):
-        """Momentum gained minus impulse of film and load, over the impulses: the steps' own equation of motion, integrated.
+        """Momentum gained minus impulse of film and load, over the impulses:
+        the steps' own equation of motion, integrated.
 
         Second order in the step; holds for rotors that only film and load act on.
         """

@@ -107,7 +107,8 @@ def trapezoidal():
 
 @hard_case("film that is not finite", rejected=30)
 def not_finite():
-    """A load that turns into nan in the middle of a run: named as such, not as a film's failure, with all steps before it kept."""
+    """A load that turns into nan in the middle of a run: named as such, not as
+    a film's failure, with all steps before it kept."""
     made = bearing()
     rotor = Rotor(made, load=lambda t: (0.0, -500.0 if t < 5e-3 else float("nan")))
     run = rotor.run(0.02, 1e-4, fails=True)
@@ -119,7 +120,8 @@ def not_finite():
 
 @hard_case("restart from a stored state")
 def restart():
-    """Stopped in the middle of a swinging load, written to a file and taken up by a new system: nothing may remember the stop."""
+    """Stopped in the middle of a swinging load, written to a file and taken up
+    by a new system: nothing may remember the stop."""
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
 
     def rotor():

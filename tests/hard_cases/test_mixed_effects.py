@@ -1,4 +1,5 @@
-"""Three to six effects at once over load cycles: every accepted step is finite, and in balance of oil, heat and momentum.
+"""Three to six effects at once over load cycles: every accepted step is finite,
+and in balance of oil, heat and momentum.
 
 The configurations are drawn with fixed seeds; combinations that a bearing refuses are left out by the draw.
 """
@@ -27,7 +28,10 @@ CLOSURES = [
 ]
 # One of a group at most; "law" entries go to the lubricant.
 GROUPS = [
-    [("law", {"pressure_law": ehd.BarusPressure(coefficient=5e-9)}), ("law", {"pressure_law": ehd.RoelandsPressure(coefficient=5e-9)})],
+    [
+        ("law", {"pressure_law": ehd.BarusPressure(coefficient=5e-9)}),
+        ("law", {"pressure_law": ehd.RoelandsPressure(coefficient=5e-9)}),
+    ],
     [("law", {"shear_law": ehd.CarreauShear(relaxation_time=2e-6, exponent=0.8, residual=0.2)})],
     [("law", {"density_law": ehd.DowsonHigginson()})],
     [
@@ -42,7 +46,7 @@ GROUPS = [
     [("profile", (ehd.Crown(drop=3e-6), ehd.OutOfRound(amplitude=2e-6, order=2)))],
     [("wear", ehd.ArchardWear(wear_rate=1e-15, acceleration=1e4))],
     [("end_pressures", (1e5, 3e4))],
-]  # fmt: skip
+]
 
 
 def draw(seed):
@@ -56,10 +60,15 @@ def draw(seed):
         else:
             options[name] = value
     return ehd.JournalBearing(
-        journal_radius=R, length=L, radial_clearance=C, lubricant=dataclasses.replace(ehd.oil("ISO VG 32", temperature=325.0), **laws),
-        film=ehd.FiniteLength(n_theta=45, n_z=6), cavitation=CLOSURES[seed % len(CLOSURES)],
-        asperity=ehd.GreenwoodTripp(composite_roughness=ROUGH, composite_modulus=2e10), **options,
-    )  # fmt: skip
+        journal_radius=R,
+        length=L,
+        radial_clearance=C,
+        lubricant=dataclasses.replace(ehd.oil("ISO VG 32", temperature=325.0), **laws),
+        film=ehd.FiniteLength(n_theta=45, n_z=6),
+        cavitation=CLOSURES[seed % len(CLOSURES)],
+        asperity=ehd.GreenwoodTripp(composite_roughness=ROUGH, composite_modulus=2e10),
+        **options,
+    )
 
 
 class Balances:
@@ -153,9 +162,14 @@ def test_mixed_effects_on_a_modal_bush(seed):
 def test_an_iterate_deep_in_a_contact_is_not_taken_for_a_solution(spectral_radius):
     """A tolerance relative to the residual there, 1e16 N, would accept a journal metres beyond its bore."""
     made = ehd.JournalBearing(
-        journal_radius=R, length=L, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.015), film=ehd.FiniteLength(n_theta=45, n_z=6),
-        cavitation=ehd.ElrodAdams(cavity_pressure=-5e4), asperity=ehd.GreenwoodTripp(composite_roughness=ROUGH, composite_modulus=2e10),
-    )  # fmt: skip
+        journal_radius=R,
+        length=L,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=0.015),
+        film=ehd.FiniteLength(n_theta=45, n_z=6),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-5e4),
+        asperity=ehd.GreenwoodTripp(composite_roughness=ROUGH, composite_modulus=2e10),
+    )
     scene = hard_scene.Rotor(
         made, mass=3.0, speed=300.0, position=(0.2 * C, -0.3 * C), velocity=(0.03, -0.02), load=(0.0, -6000.0)
     )

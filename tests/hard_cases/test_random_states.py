@@ -4,9 +4,11 @@ import hard_random
 import pytest
 import report
 
-# Over 100 000 states: 363 for a steady mass-conserving film that took pseudo time steps, 37 for the others; more would mean cycling sets.
+# Over 100 000 states: 363 for a steady mass-conserving film that took pseudo
+# time steps, 37 for the others; more would mean cycling sets.
 LARGEST = 500
-# Liners under steady motions that no journal keeps up follow pseudo time in up to 200 steps, each of them up to 80 solves where sets cycle.
+# Liners under steady motions that no journal keeps up follow pseudo time in up
+# to 200 steps, each of them up to 80 solves where sets cycle.
 LARGEST_ON_LINER = 6000
 
 

@@ -1,8 +1,9 @@
 """One short transient per effect in Exudyn: Newton's iterations are those of the plain film, and the physics shows.
 
-A rotor of 2 kg is dropped from the centre of its bearing under 600 N at 200 rad/s, in steps of 0.1 ms. Each effect runs beside the film without it
-(same closure, supply and end pressures). The laws of the lubricant and the temperature field have such runs in
-tests/coupling/test_rheology_run.py, reduced films in tests/coupling/test_film_models_in_exudyn.py; here they get their physics.
+A rotor of 2 kg is dropped from the centre of its bearing under 600 N at 200 rad/s, in steps
+of 0.1 ms. Each effect runs beside the film without it (same closure, supply and end pressures). The
+laws of the lubricant and the temperature field have such runs in tests/coupling/test_rheology_run.py,
+reduced films in tests/coupling/test_film_models_in_exudyn.py; here they get their physics.
 """
 
 import functools
@@ -57,7 +58,8 @@ def compare(run, measured, request):
             for name in ("motion", "force", "moment", "minimum_gap", "peak_pressure", "friction_torque", "power_loss"):
                 assert np.all(np.isfinite(getattr(history, name))), name
         print(f"{request.node.name}: {steps:.2f} Newton iterations per step, plain film {plain_steps:.2f}")
-        # the exact tangent: a quarter of an iteration more at most, where surfaces touch (0.20) or cavities refill (0.09)
+        # the exact tangent: a quarter of an iteration more at most, where
+        # surfaces touch (0.20) or cavities refill (0.09)
         measured("Newton iterations per step", steps, plain_steps + 0.25)
         # as the guide says
         assert 1.1 < steps < 2.6
@@ -81,8 +83,10 @@ def test_shear_thins_the_oil(compare):
 
 
 @pytest.mark.parametrize(
-    "thermal", [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)], ids=["lumped", "field"]
-)  # fmt: skip
+    "thermal",
+    [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)],
+    ids=["lumped", "field"],
+)
 def test_heat_thins_the_oil(compare, thermal):
     on, off = compare(bearing(thermal=thermal, end_pressures=ENDS), bearing(end_pressures=ENDS))
     # without a step back in time: the film warms up from its start
@@ -93,12 +97,15 @@ def test_heat_thins_the_oil(compare, thermal):
 
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-5e4)], ids=["swift", "elrod"])
 @pytest.mark.parametrize(
-    "thermal", [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)], ids=["lumped", "field"]
-)  # fmt: skip
+    "thermal",
+    [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)],
+    ids=["lumped", "field"],
+)
 def test_heat_thins_compressible_oil(compare, thermal, closure):
     options = {"thermal": thermal, "end_pressures": ENDS, "cavitation": closure}
     on, off = compare(bearing({"density_law": ehd.DowsonHigginson()}, **options), bearing(**options))
-    # some 10 MPa compress oil by half a per cent: the film warms up as one of incompressible oil, but not to the same temperature
+    # some 10 MPa compress oil by half a per cent: the film warms up as one of
+    # incompressible oil, but not to the same temperature
     rise, plain = on.film_temperature[-1] - 323.15, off.film_temperature[-1] - 323.15
     assert plain > 0.5 and 1e-6 < abs(rise / plain - 1.0) < 0.02
 
@@ -185,7 +192,8 @@ SOFT = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)
 )
 def test_liner_spreads_a_contact(compare, contact):
     on, off = compare(bearing(bush=SOFT, **contact), bearing(**contact), HEAVY, SLOW)
-    # the journal sinks into the liner by more than the clearance, at its ends too, and film and contact share a wider spot
+    # the journal sinks into the liner by more than the clearance, at its ends
+    # too, and film and contact share a wider spot
     assert on.largest_eccentricity_ratio.max() > 2.0 > off.largest_eccentricity_ratio.max()
     assert on.contact_load[-1] > 0.02 * HEAVY
     assert on.peak_pressure.max() < 0.6 * off.peak_pressure.max()

@@ -1,4 +1,5 @@
-"""A lubricated joint in its limits: the ideal joint, Petroff's friction, exchanged roles, a spinning pair, explicit steps."""
+"""A lubricated joint in its limits: the ideal joint, Petroff's friction,
+exchanged roles, a spinning pair, explicit steps."""
 
 import math
 
@@ -23,7 +24,8 @@ def _bearing(**options):
 
 
 def test_slider_crank_converges_to_the_ideal_joint(example):
-    """With viscosity proportional to clearance the film's scale of force grows as 1/c, so that e = eps c falls as c^2."""
+    """With viscosity proportional to clearance the film's scale of force grows
+    as 1/c, so that e = eps c falls as c^2."""
     slider_crank = example("slider_crank")
     ideal = slider_crank.simulate(None, turns=2, steps_per_turn=360)
     late = ideal.angle >= 2 * math.pi - 1e-6
@@ -115,7 +117,8 @@ def test_pair_that_spins_together_has_no_wedge():
 
 
 def test_squeeze_of_a_whirling_journal_against_half_speed_whirl():
-    """A journal that whirls at half its spin meets no net entrainment: the film carries nothing (Sommerfeld's whirl)."""
+    """A journal that whirls at half its spin meets no net entrainment: the film
+    carries nothing (Sommerfeld's whirl)."""
     spin, e = 300.0, 0.6 * CLEARANCE
     bearing = _bearing(cavitation=ehd.FullSommerfeld())
     still = ehd.steady(bearing, speed=spin, eccentricity_ratio=0.6)

@@ -64,8 +64,8 @@ def test_short_bearing_squeeze_is_its_quadrature(eps):
 
 
 def test_petroff_published_loss():
-    # d 10 mm, psi 1e-5, L 5 mm, mu 0.001 Pa s, 150 against 120 revolutions per second: 2.790537 W. The number depends on
-    # whether journal or bore radius is meant, which is worth psi = 1e-5: 2e-5.
+    # d 10 mm, psi 1e-5, L 5 mm, mu 0.001 Pa s, 150 against 120 revolutions per second: 2.790537 W.
+    # The number depends on whether journal or bore radius is meant, which is worth psi = 1e-5: 2e-5.
     assert petroff.power(1e-3, 2.0 * math.pi * 30.0, 5e-3, 5e-3, 5e-8) == pytest.approx(2.790537, rel=2e-5)
 
 

@@ -1,7 +1,8 @@
-"""Butenschoen, Das hydrodynamische, zylindrische Gleitlager endlicher Breite unter instationaerer Belastung (thesis, 1976).
+"""Butenschoen, Das hydrodynamische, zylindrische Gleitlager endlicher Breite
+unter instationaerer Belastung (thesis, 1976).
 
-Pure rotation. Inlet: the film starts with p = 0 on the line of maximum gap (`MaximumGap`), Swift-Stieber exit, as in the
-source. Grid 96 x 10 (the default).
+Pure rotation. Inlet: the film starts with p = 0 on the line of maximum gap
+(`MaximumGap`), Swift-Stieber exit, as in the source. Grid 96 x 10 (the default).
 """
 
 from __future__ import annotations
@@ -29,7 +30,8 @@ def test_load_attitude_and_side_flow(table, make_bearing, measured, ratio):
         load = max(load, abs(film.sommerfeld_number / row["So_own"] - 1.0))
         attitude = max(attitude, abs(math.degrees(film.attitude_angle) - row["beta_deg_own"]))
         flow = max(flow, abs(film.leakage / flow_unit / row["Qside_own"] - 1.0))
-    # Printed So has four decimals, which is more than 1 % at small L/D and eps: half a unit of the last digit is allowed for.
+    # Printed So has four decimals, which is more than 1 % at small L/D and eps:
+    # half a unit of the last digit is allowed for.
     measured("So against the printed value", load_printed, 0.01)
     # Independent solver with extrapolated grids, itself good to 0.1 %; the rest is this grid at eps 0.95.
     measured("So against the independent solver", load, 0.01)

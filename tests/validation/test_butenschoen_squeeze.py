@@ -1,8 +1,8 @@
 """Butenschoen (thesis, 1976): pure radial squeeze, ``So_V = F psi^2 / (L D mu d(eps)/dt)``.
 
 Inlet: periodic film (`Periodic`), Swift-Stieber. eps < 0 means that the journal moves towards the centre. A few printed
-digits of the source are wrong, so the values of an independent solver (within 0.7 % of the printed ones elsewhere) count.
-Grid 96 x 10 (the default) up to eps 0.95; 192 x 10 above, where the pressure peak is 10 degrees wide.
+digits of the source are wrong, so the values of an independent solver (within 0.7 % of the printed ones elsewhere)
+count. Grid 96 x 10 (the default) up to eps 0.95; 192 x 10 above, where the pressure peak is 10 degrees wide.
 """
 
 from __future__ import annotations

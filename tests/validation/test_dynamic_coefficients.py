@@ -1,8 +1,8 @@
 """Stiffness, damping and whirl threshold of the plain bearing, L/D = 0.5, against an independent solver (2 %).
 
-Periodic film, Swift-Stieber. x along the load, y 90 degrees ahead in the sense of rotation, ``K = k c / W``,
-``B = b c omega / W``. The rupture line snaps to cells, which perturbs derivatives far more than forces: 192 x 16 holds 1 %,
-the default grid 96 x 10 up to 4 % (and 2 % up to eps 0.6).
+Periodic film, Swift-Stieber. x along the load, y 90 degrees ahead in the sense of rotation,
+``K = k c / W``, ``B = b c omega / W``. The rupture line snaps to cells, which perturbs derivatives
+far more than forces: 192 x 16 holds 1 %, the default grid 96 x 10 up to 4 % (and 2 % up to eps 0.6).
 """
 
 from __future__ import annotations

@@ -1,11 +1,11 @@
 """Mass-conserving cavitation against three one-dimensional films with exact solutions.
 
-* Pocketed slider: parameters of D. Fowell, A. V. Olver, A. D. Gosman, H. A. Spikes, I. Pegg, J. Tribology 129 (2007) 827;
-  flow, pressure and film fraction from the closed form of every part between rupture and reformation.
+* Pocketed slider: parameters of D. Fowell, A. V. Olver, A. D. Gosman, H. A. Spikes, I. Pegg, J. Tribology 129
+  (2007) 827; flow, pressure and film fraction from the closed form of every part between rupture and reformation.
 * Parabolic slider with ambient pressure at both ends: quadrature of the one-dimensional film.
-* Oscillating squeeze film, after L. Ausas, M. Jai, G. Buscaglia, J. Tribology 131 (2009) 031702:
-  ``h^3 p'' = 2 d(fill h)/dt``, h(t) = 0.125 cos(4 pi t) + 0.375, p(0) = p(1) = 0.025; the edge Sigma(t) of the cavity comes from
-  an ordinary differential equation, good to 6e-4.
+* Oscillating squeeze film, after L. Ausas, M. Jai, G. Buscaglia, J. Tribology 131 (2009)
+  031702: ``h^3 p'' = 2 d(fill h)/dt``, h(t) = 0.125 cos(4 pi t) + 0.375, p(0) = p(1) = 0.025;
+  the edge Sigma(t) of the cavity comes from an ordinary differential equation, good to 6e-4.
 
 In one dimension a slider with sealed sides and one interval across is used.
 """

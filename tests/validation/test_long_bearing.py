@@ -1,7 +1,7 @@
 """Infinitely long bearing: closed forms (full and half Sommerfeld) and a one-dimensional Reynolds condition.
 
-A ring without side flow: only the column of maximum gap is held at p = 0. One axial interval, 360 columns; the scheme is of
-second order in theta, 1/360 of a turn leaves about 1e-4 up to eps 0.9.
+A ring without side flow: only the column of maximum gap is held at p = 0. One axial interval, 360
+columns; the scheme is of second order in theta, 1/360 of a turn leaves about 1e-4 up to eps 0.9.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""Long bearing with the Reynolds condition against quadrature (``analytic_long_bearing.csv``); p = 0 at the maximum gap."""
+"""Long bearing with the Reynolds condition against quadrature
+(``analytic_long_bearing.csv``); p = 0 at the maximum gap."""
 
 from __future__ import annotations
 

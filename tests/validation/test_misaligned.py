@@ -1,10 +1,11 @@
 """Tilted journal: forces and moments against an independent solver (one code, one grid: 1 %).
 
-The eccentricity varies linearly, ``e(z)/c = eps + tau 2 z / L``, in the direction of the eccentricity, here x. Inlet: p = 0 on
-the line of maximum gap (theta = pi for every z). The table's radial and tangential load point along the eccentricity and, for
-the load on the bore, against the sense of rotation: ``So_radial = int p cos / F_ref``, ``So_tang = -int p sin / F_ref``; its
-moments are the first z-moments of the same two densities over F_ref L / 2. The wrench on the journal has
-``F = -int p (cos, sin)`` and ``M = int z p (sin, -cos)``, hence m_rad = -M_y and m_tan = -M_x. Grid 96 x 10 (the default).
+The eccentricity varies linearly, ``e(z)/c = eps + tau 2 z / L``, in the direction of the eccentricity,
+here x. Inlet: p = 0 on the line of maximum gap (theta = pi for every z). The table's radial and
+tangential load point along the eccentricity and, for the load on the bore, against the sense of rotation:
+``So_radial = int p cos / F_ref``, ``So_tang = -int p sin / F_ref``; its moments are the first z-moments
+of the same two densities over F_ref L / 2. The wrench on the journal has ``F = -int p (cos, sin)`` and
+``M = int z p (sin, -cos)``, hence m_rad = -M_y and m_tan = -M_x. Grid 96 x 10 (the default).
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Measured friction in mixed lubrication (Sander et al., 2015; digitised): the course, not the numbers.
 
-The table gives the friction torque of a test bearing at two mean pressures over speed. Bearing and oil below are of that size (diameter
-48 mm, length 25 mm, clearance 30 um, hot engine oil); roughness and boundary friction are assumed. What must come out without fitting
-them: torque falls with speed to a minimum near the measured one (327 and 545 rpm; measured between 300 and 500) and rises again, and
-the minimum moves up in speed with the load. The torque at 3000 rpm, all of it fluid friction, is proportional to a viscosity that is
-not known: within a factor of 2.5.
+The table gives the friction torque of a test bearing at two mean pressures over speed. Bearing and oil below are of
+that size (diameter 48 mm, length 25 mm, clearance 30 um, hot engine oil); roughness and boundary friction are
+assumed. What must come out without fitting them: torque falls with speed to a minimum near the measured one (327 and
+545 rpm; measured between 300 and 500) and rises again, and the minimum moves up in speed with the load. The torque
+at 3000 rpm, all of it fluid friction, is proportional to a viscosity that is not known: within a factor of 2.5.
 """
 
 import csv
@@ -45,7 +45,8 @@ def test_course_over_speed(pressure):
     fine = np.geomspace(50, 3000, 25)
     found = fine[np.argmin(computed(pressure, fine).friction_torque)]
     print(
-        f"minimum at {found:.0f} rpm, measured {lowest:.0f}; at 3000 rpm {curve.friction_torque[-1]:.3g} Nm, measured {torque[-1]}"
+        f"minimum at {found:.0f} rpm, measured {lowest:.0f}; "
+        f"at 3000 rpm {curve.friction_torque[-1]:.3g} Nm, measured {torque[-1]}"
     )
     assert lowest / 2 < found < 2 * lowest
     assert 0.4 < curve.friction_torque[-1] / torque[-1] < 2.5

@@ -1,7 +1,7 @@
 """Static load, attitude, side flow, friction and peak pressure against an independent solver.
 
-Finite volumes with an active-set method, two grids and Richardson extrapolation, estimated error of So below 0.05 %. Both
-inlets: 1 = film starts with p = 0 at the maximum gap, 0 = periodic. Swift-Stieber exit.
+Finite volumes with an active-set method, two grids and Richardson extrapolation, estimated error of So
+below 0.05 %. Both inlets: 1 = film starts with p = 0 at the maximum gap, 0 = periodic. Swift-Stieber exit.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ def _errors(table, make_bearing, film, inlet, lower, upper):
     return worst
 
 
-# So, attitude (degrees), side flow, friction, peak pressure. The limits are the accuracy that each grid is documented with;
-# the reference itself is worth 0.0005 in So. The side flow of the film with an inlet line is of first order in the axial
-# step, because pressure and flow are discontinuous in the corner.
+# So, attitude (degrees), side flow, friction, peak pressure. The limits are the accuracy that each grid
+# is documented with; the reference itself is worth 0.0005 in So. The side flow of the film with an inlet
+# line is of first order in the axial step, because pressure and flow are discontinuous in the corner.
 @pytest.mark.parametrize("inlet", (0.0, 1.0))
 @pytest.mark.parametrize(
     ("n_theta", "n_z", "lower", "upper", "limits"),
@@ -59,7 +59,8 @@ def test_static_table(table, make_bearing, measured, inlet, n_theta, n_z, lower,
 
 
 def test_the_inlet_matters(make_bearing):
-    # Periodic and maximum-gap inlet differ by 2 % in So and 4.4 degrees at eps = 0.1, L/D = 1: no test passes by accident.
+    # Periodic and maximum-gap inlet differ by 2 % in So and 4.4 degrees at
+    # eps = 0.1, L/D = 1: no test passes by accident.
     periodic, line = (
         ehd.steady(make_bearing(1.0, inlet=i), speed=SPEED, eccentricity_ratio=0.1) for i in INLET.values()
     )
@@ -102,7 +103,8 @@ def test_documented_grids_in_any_direction(make_bearing, table, measured, n_thet
 
 
 def test_documented_differences_between_models(make_bearing):
-    """Numbers that docstrings state: short bearing 19 % too high at L/D 0.25, Gumbel 15 % below Swift-Stieber, eps 0.8."""
+    """Numbers that docstrings state: short bearing 19 % too high at L/D 0.25,
+    Gumbel 15 % below Swift-Stieber, eps 0.8."""
 
     def load(*args, **options):
         return ehd.steady(make_bearing(*args, **options), speed=SPEED, eccentricity_ratio=0.8).sommerfeld_number

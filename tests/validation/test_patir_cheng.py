@@ -1,8 +1,8 @@
 """Flow and shear stress factors against the constants of Patir and Cheng's tables (1978, 1979).
 
-The numbers in the file were set against two transcriptions by others: foam-extend 4.0 (its lubricated contact; all of C, r, A1 to A3, a1 to
-a6) and the EHD program of R. Boman, University of Liege (A3, a4 to a6, D and s of the isotropic pattern). They agree. D and s of the
-other patterns, which only the test of reciprocity takes, have no second witness.
+The numbers in the file were set against two transcriptions by others: foam-extend 4.0 (its lubricated contact; all of
+C, r, A1 to A3, a1 to a6) and the EHD program of R. Boman, University of Liege (A3, a4 to a6, D and s of the isotropic
+pattern). They agree. D and s of the other patterns, which only the test of reciprocity takes, have no second witness.
 """
 
 import csv

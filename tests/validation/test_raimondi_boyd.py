@@ -1,7 +1,8 @@
 """Raimondi and Boyd, A solution for the finite journal bearing and its application to analysis and design, III (1958).
 
-Columns of an independent solver for the same rows (the printed ones are design charts). Inlet: p = 0 on the line of maximum
-gap. Friction with the whole clearance sheared. Flows in units of R c N L, N in revolutions per second. Grid 96 x 10.
+Columns of an independent solver for the same rows (the printed ones are design
+charts). Inlet: p = 0 on the line of maximum gap. Friction with the whole clearance
+sheared. Flows in units of R c N L, N in revolutions per second. Grid 96 x 10.
 """
 
 from __future__ import annotations

@@ -1,4 +1,5 @@
-"""A rotating journal with prescribed eccentricity: length 66 mm, c = 30 um, e = 24 um, 3000 rpm, 9 mPa s, rigid bearing.
+"""A rotating journal with prescribed eccentricity: length 66 mm, c = 30 um,
+e = 24 um, 3000 rpm, 9 mPa s, rigid bearing.
 
 Independent solver, R = 30 mm and 33 mm, four combinations of inlet and cavitation. Grid 192 x 16: 0.1 %.
 """
@@ -28,7 +29,8 @@ def test_peak_load_attitude_and_friction(table, measured):
         measured(f"peak pressure, {name}", abs(film.peak_pressure / 1e6 / row["pmax_MPa"] - 1.0), 1e-3)
         measured(f"load, {name}", abs(float(np.hypot(*film.force[:2])) / row["load_N"] - 1.0), 1e-3)
         measured(f"friction, {name}", abs(-film.friction_torque / row["friction_torque_full_Nm"] - 1.0), 1e-3)
-        # The eccentricity points along theta = 0, the largest gap is at 180 degrees; angles to 0.02 degrees of 0.01 printed.
+        # The eccentricity points along theta = 0, the largest gap is at
+        # 180 degrees; angles to 0.02 degrees of 0.01 printed.
         assert math.degrees(film.attitude_angle) == pytest.approx(row["attitude_deg"], abs=0.02)
         from_largest_gap = math.degrees(film.peak_angle) - 180.0
         assert from_largest_gap == pytest.approx(row["th_pmax_deg_from_hmax"], abs=0.03)

@@ -1,9 +1,9 @@
 """Ocvirk's short bearing against its closed forms: load, attitude, K, C, whirl threshold, pure squeeze.
 
 Half Sommerfeld film; periodic (every column is on its own, so no inlet line exists). The axial parabola is exact on any
-grid, and the trapezoidal rule in theta is exact to rounding over a smooth periodic integrand but of second order over a half
-film with kinks. Forces need 512 columns. Stiffness and damping are exact for the current set of unbroken columns, which moves
-by whole columns: an error of first order, 0.7 % at 512 columns, so that 0.1 % takes 16384 of them (0.1 s).
+grid, and the trapezoidal rule in theta is exact to rounding over a smooth periodic integrand but of second order over a
+half film with kinks. Forces need 512 columns. Stiffness and damping are exact for the current set of unbroken columns,
+which moves by whole columns: an error of first order, 0.7 % at 512 columns, so that 0.1 % takes 16384 of them (0.1 s).
 """
 
 from __future__ import annotations
@@ -95,7 +95,8 @@ def test_pure_squeeze(make_bearing, measured, eps, cavitated):
 
 
 def test_swift_stieber_equals_gumbel(make_bearing):
-    """Without pressure flow in theta every column is on its own: one sign of pressure per column, so both closures agree."""
+    """Without pressure flow in theta every column is on its own: one sign of
+    pressure per column, so both closures agree."""
     results = [
         ehd.steady(
             make_bearing(0.25, film=FILM, cavitation=k), speed=SPEED, eccentricity_ratio=0.7, velocity=(1e-3, 2e-3)

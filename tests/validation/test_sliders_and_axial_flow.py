@@ -1,4 +1,5 @@
-"""Films without a journal: plane slider, parabolic slider with a cavity, axial flow through a cone, Petroff's friction."""
+"""Films without a journal: plane slider, parabolic slider with a cavity, axial
+flow through a cone, Petroff's friction."""
 
 from __future__ import annotations
 
@@ -29,8 +30,9 @@ def test_plane_slider(closure, measured):
 def test_parabolic_slider_with_a_cavity_below_ambient(table, measured):
     """``h = hmin + (hmax - hmin)(2x/L - 1)^2``, ends at 101325 Pa, cavity at 0 Pa (absolute).
 
-    The table is the mass-conserving solution. Up to the rupture point it and Swift-Stieber's are the same, because inlet
-    pressure and ``p = p_cav, p' = 0`` at rupture fix them; behind it they differ. Gauge pressures: cavity at -101325 Pa.
+    The table is the mass-conserving solution. Up to the rupture point it and
+    Swift-Stieber's are the same, because inlet pressure and ``p = p_cav, p' = 0`` at
+    rupture fix them; behind it they differ. Gauge pressures: cavity at -101325 Pa.
     """
     L, h0, h1, U, mu, ambient = 76.2e-3, 25.4e-6, 50.8e-6, 4.57, 0.039, 101325.0
     grid = ehd.slider_grid(L, 0.01, 800, 1, sealed_sides=True)

@@ -1,10 +1,11 @@
 """Bearings with grooves against tables.
 
-* Two axial grooves 90 degrees from the load, 20 degrees wide: J. W. Lund, K. K. Thomsen, Topics in Fluid Film Bearing and Rotor
-  Bearing System Design (ASME 1978); 10 degrees wide: T. Someya (ed.), Journal-Bearing Databook (Springer 1989), of which only S
-  and phi are used, because the stiffness column at hand disagrees with its own damping. Swift-Stieber, p = 0 in the grooves and
-  at the ends. The rows of ``own_dynamic_coefficients.csv`` are an independent finite-volume solution, extrapolated.
-  S = mu N L D / W (R/c)^2 = 1 / (2 pi So); x along the load, y 90 degrees ahead in the sense of rotation.
+* Two axial grooves 90 degrees from the load, 20 degrees wide: J. W. Lund, K. K. Thomsen, Topics in Fluid
+  Film Bearing and Rotor Bearing System Design (ASME 1978); 10 degrees wide: T. Someya (ed.),
+  Journal-Bearing Databook (Springer 1989), of which only S and phi are used, because the stiffness column
+  at hand disagrees with its own damping. Swift-Stieber, p = 0 in the grooves and at the ends. The rows of
+  ``own_dynamic_coefficients.csv`` are an independent finite-volume solution, extrapolated. S = mu N L
+  D / W (R/c)^2 = 1 / (2 pi So); x along the load, y 90 degrees ahead in the sense of rotation.
 * A pressurised groove patch in an aligned and a tilted bearing: another finite-volume code on the same grid.
 """
 
@@ -74,15 +75,16 @@ def test_someya_load_and_attitude(make_bearing, table, measured):
         if row["S_own"] == "":
             continue
         result, *_ = _solve(_two_grooves(make_bearing, row["L_over_D"], 10), 1.0 / (2.0 * math.pi * row["S"]))
-        # Three printed digits and another closure near the grooves: the independent solution differs from the book by as
-        # much (S up to 2 %, phi up to 1.2 degrees).
+        # Three printed digits and another closure near the grooves: the independent
+        # solution differs from the book by as much (S up to 2 %, phi up to 1.2 degrees).
         own = abs(row["phi_own"] - row["phi_deg"])
         measured(f"eps {row['eps']}: eps", abs(result.eccentricity_ratio - row["eps"]), 4e-3)
         measured(f"eps {row['eps']}: phi, deg", abs(math.degrees(result.attitude_angle) - row["phi_deg"]), own + 0.5)
 
 
 def _patch(eps, tilt, cavitation, n_theta):
-    """The other code's bearing: 52 axial nodes, uniform; groove patch of 15 degrees x 60 mm at 70 kPa, 90 degrees ahead."""
+    """The other code's bearing: 52 axial nodes, uniform; groove patch
+    of 15 degrees x 60 mm at 70 kPa, 90 degrees ahead."""
     radius, length, clearance = 0.05, 0.08, 150e-6
     bearing = ehd.JournalBearing(
         journal_radius=radius, length=length, radial_clearance=clearance, lubricant=ehd.Lubricant(viscosity=0.01),
@@ -106,7 +108,8 @@ def test_groove_patch_against_another_finite_volume_code(table, measured):
         measured(f"{name}: friction", abs(film.friction_torque_bush / row["friction_Nm"] - 1.0), 5e-3)
         lever = math.hypot(row["Fh_N"], row["Fv_N"]) * 0.04
         expected = np.array([row["int_p_y_sinX_Nm"], row["minus_int_p_y_cosX_Nm"]])
-        # Against force times half length; 0.7 % of the moment itself, which is the difference of the two bearing halves.
+        # Against force times half length; 0.7 % of the moment itself, which is
+        # the difference of the two bearing halves.
         measured(f"{name}: moment", np.abs(film.moment[:2] - expected).max() / lever, 1e-3)
         if row["cavitation"] == "Elrod-Adams":
             measured("oil balance", abs(film.supply_flows.sum() / film.leakage - 1.0), 1e-10)

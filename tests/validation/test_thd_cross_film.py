@@ -2,14 +2,15 @@
 
 The reference, an infinitely long bearing from the end of its groove to the rupture line, solves for T(x, y)
 
-    mu u_y = p' y + tau_0,     q = int u dy the same at every x (Reynolds' equation with viscosity across the film: D. Dowson, Int. J.
-                               Mechanical Sciences 4 (1962) 159),
+    mu u_y = p' y + tau_0,     q = int u dy the same at every x,
     rho c_p (u T_x + v T_y) = k T_yy + mu u_y^2,
 
-by finite volumes, upwind in both directions, on the film's own stream function, so that mass and heat balance to rounding. Oil that flows
-back out of the film mixes with what enters, so that the net inflow has the film model's temperature there. Walls are adiabatic or held at a
-temperature. Bearing: diameter 100 mm, clearance 75 um, an oil of 27.7 mPa s at 40 degrees Celsius that thins by 3.4 % per kelvin, no
-axial flow; heat takes about three times as long across the mean film as the oil takes along it, so that neither way dominates.
+(Reynolds' equation with viscosity across the film: D. Dowson, Int. J. Mechanical Sciences 4 (1962) 159) by
+finite volumes, upwind in both directions, on the film's own stream function, so that mass and heat balance
+to rounding. Oil that flows back out of the film mixes with what enters, so that the net inflow has the film
+model's temperature there. Walls are adiabatic or held at a temperature. Bearing: diameter 100 mm, clearance
+75 um, an oil of 27.7 mPa s at 40 degrees Celsius that thins by 3.4 % per kelvin, no axial flow; heat takes
+about three times as long across the mean film as the oil takes along it, so that neither way dominates.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ END = 1.4 * math.pi  # of the reference's grid, from the largest gap; films end 
 
 @dataclass
 class Profile:
-    """Solution across the film: angles of faces, pressure there (Pa), temperatures (nx, ny) and mixing-cup temperature up to rupture, K."""
+    """Solution across the film: angles of faces, pressure there (Pa),
+    temperatures (nx, ny) and mixing-cup temperature up to rupture, K."""
 
     phi: np.ndarray
     p: np.ndarray
@@ -52,7 +54,8 @@ def viscosity(T, beta):
 
 
 def integrals(mu):
-    """int dy/mu and int y dy/mu over a unit film, cumulative, and their integrals; viscosity constant in every layer (faces, ny)."""
+    """int dy/mu and int y dy/mu over a unit film, cumulative, and their
+    integrals; viscosity constant in every layer (faces, ny)."""
     n, ny = mu.shape
     d, zero = 1.0 / ny, np.zeros((n, 1))
     y = (np.arange(ny) + 0.5) * d
@@ -115,7 +118,8 @@ def temperatures(along, across, heat, conductance, inflow, walls):
 
 
 def cross_film(eps, U, start, inflow, walls, beta=BETA, nx=160, ny=30):
-    """Solve from angle ``start`` behind the largest gap; ``walls``: temperatures of bush and journal, None: adiabatic."""
+    """Solve from angle ``start`` behind the largest gap; ``walls``:
+    temperatures of bush and journal, None: adiabatic."""
     phi = np.linspace(start, END, nx + 1)
     dx, h, y = R * (phi[1] - phi[0]), C * (1.0 + eps * np.cos(phi)), (np.arange(ny) + 0.5) / ny
     conductance = CONDUCTIVITY / CAPACITY * dx * ny * 2.0 / (h[1:] + h[:-1])
@@ -138,12 +142,15 @@ def cross_film(eps, U, start, inflow, walls, beta=BETA, nx=160, ny=30):
 
 
 def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=BETA):
-    """`FilmEnergy` (its load per length, peak pressure, temperatures up to rupture) and the profile, from the same inlet temperature."""
+    """`FilmEnergy` (its load per length, peak pressure, temperatures up to
+    rupture) and the profile, from the same inlet temperature."""
     speed = rpm * math.pi / 30.0
     oil = ehd.Lubricant(
-        temperature_law=ehd.ReynoldsTemperature(point=(SUPPLY, MU), coefficient=beta), temperature=SUPPLY, density=DENSITY,
+        temperature_law=ehd.ReynoldsTemperature(point=(SUPPLY, MU), coefficient=beta),
+        temperature=SUPPLY,
+        density=DENSITY,
         specific_heat=HEAT,
-    )  # fmt: skip
+    )
     U_b, U_j = (0.0 if wall is None else coefficient for wall in walls)
     thermal = ehd.FilmEnergy(
         supply_temperature=SUPPLY, bush_coefficient=U_b, journal_coefficient=U_j, conductivity=conductivity,
@@ -167,8 +174,9 @@ def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=
 
 @pytest.mark.parametrize("eps", [0.5, 0.8])
 def test_the_reference_without_thinning_is_the_film_model(measured, eps):
-    """Constant viscosity: the same pressure, and the same heat into the same flow. Both grids: 0.1 %, and 0.5 % for the rise, whose upwind
-    differences are of first order; heat balance of the reference: 0.1 % of its rupture between two faces."""
+    """Constant viscosity: the same pressure, and the same heat into the same flow.
+    Both grids: 0.1 %, and 0.5 % for the rise, whose upwind differences are of first
+    order; heat balance of the reference: 0.1 % of its rupture between two faces."""
     (load, peak, T), profile = both(eps, 2000.0, beta=1e-9)
     rise = T[-1] - T[0]
     measured(f"eps {eps}: load", abs(load / profile.load - 1.0), 1e-3)
@@ -184,8 +192,8 @@ STATES = [(0.5, 3000.0), (0.7, 3000.0), (0.8, 2000.0), (0.9, 1000.0)]
 
 @pytest.mark.parametrize(("eps", "rpm"), STATES)
 def test_adiabatic_film(measured, eps, rpm):
-    """The bush's side is hotter and thinner than the mean, which lowers load and heat: 5 % of load and peak pressure, 4 % of the rise;
-    the rise at the bush itself to 7 %."""
+    """The bush's side is hotter and thinner than the mean, which lowers load and heat:
+    5 % of load and peak pressure, 4 % of the rise; the rise at the bush itself to 7 %."""
     (load, peak, T), profile = both(eps, rpm)
     rise = profile.cup.max() - SUPPLY
     name = f"adiabatic, eps {eps}"
@@ -201,10 +209,10 @@ COOLED = {"both": (WALL, WALL), "journal": (None, WALL), "bush": (WALL, None)}
 @pytest.mark.parametrize("cooled", COOLED)
 @pytest.mark.parametrize(("eps", "rpm"), STATES)
 def test_cooled_film(measured, cooled, eps, rpm):
-    """Walls held at 325 K, with the oil's conductivity: the profile that the model assumes is fully developed, while that of one cooled
-    wall takes as long as the oil's whole way. 4 % of load and peak pressure with both walls cooled, 9 % with one; the mixed oil's largest
-    temperature to 1.5 and 6 K, in rises over the supply of 13 to 27 K; an adiabatic bush beside a cooled journal is hotter than the mean by
-    up to 8 K, and never colder."""
+    """Walls held at 325 K, with the oil's conductivity: the profile that the model assumes is fully developed,
+    while that of one cooled wall takes as long as the oil's whole way. 4 % of load and peak pressure with both
+    walls cooled, 9 % with one; the mixed oil's largest temperature to 1.5 and 6 K, in rises over the supply of 13
+    to 27 K; an adiabatic bush beside a cooled journal is hotter than the mean by up to 8 K, and never colder."""
     (load, peak, T), profile = both(eps, rpm, COOLED[cooled], CONDUCTIVITY)
     share, kelvin = (0.04, 1.5) if cooled == "both" else (0.09, 6.0)
     name = f"{cooled} cooled, eps {eps}"
@@ -216,7 +224,8 @@ def test_cooled_film(measured, cooled, eps, rpm):
 
 
 def test_the_oil_between_counts():
-    """Coefficients of 3 k/c from the mean temperature cool a thin film too little: 14 % of load are missing, with the conductivity 8 %."""
+    """Coefficients of 3 k/c from the mean temperature cool a thin film too
+    little: 14 % of load are missing, with the conductivity 8 %."""
     walls = COOLED["journal"]
     (plain, _, _), profile = both(0.8, 2000.0, walls, None, 3.0 * CONDUCTIVITY / C)
     (through, _, _), _ = both(0.8, 2000.0, walls, CONDUCTIVITY)

@@ -1,8 +1,8 @@
 """Steady film on a column liner against a reference table (two independent codes, which agree to 0.15 %).
 
-``H = 1 + eps cos + Cbar pbar``, L/D = 1, the film starts with p = 0 at the maximum gap, Swift-Stieber exit; Cbar = K_nu (mu omega / E)
-(R/c)^3 t/R. Sommerfeld number and attitude angle are compared within 0.5 %. The columns of peak pressure and smallest gap are
-cell values of a coarse grid and are not compared.
+``H = 1 + eps cos + Cbar pbar``, L/D = 1, the film starts with p = 0 at the maximum gap, Swift-Stieber
+exit; Cbar = K_nu (mu omega / E) (R/c)^3 t/R. Sommerfeld number and attitude angle are compared within
+0.5 %. The columns of peak pressure and smallest gap are cell values of a coarse grid and are not compared.
 """
 
 import csv
@@ -33,14 +33,16 @@ def solve(eps, cbar, n_theta, n_z):
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda r: f"eps{r['eps_rigid_geometry']}-C{r['Cbar=K_nu*Cd']}")
 def test_load_and_attitude(row):
-    """Measured at 192 x 12: So within 0.36 % (softest liner, eps 0.9), beta within 0.14 %; below eps 0.8 within 0.1 %."""
+    """Measured at 192 x 12: So within 0.36 % (softest liner, eps 0.9), beta
+    within 0.14 %; below eps 0.8 within 0.1 %."""
     result = solve(row["eps_rigid_geometry"], row["Cbar=K_nu*Cd"], 192, 12)
     assert result.sommerfeld_number == pytest.approx(row["So"], rel=5e-3)
     assert math.degrees(result.attitude_angle) == pytest.approx(row["beta_deg"], rel=5e-3)
 
 
 def test_finer_grids_converge():
-    """Softest row: successive grids approach each other; the end layer p ~ distance^(1/4) makes it about first order in n_z."""
+    """Softest row: successive grids approach each other; the end layer p ~
+    distance^(1/4) makes it about first order in n_z."""
     values = [solve(0.9, 0.5, 96, n).sommerfeld_number for n in (8, 16, 32)]
     assert abs(values[2] - values[1]) < 0.7 * abs(values[1] - values[0])
 
