@@ -18,7 +18,8 @@ both_films = pytest.mark.parametrize("film", FILMS, ids=("finite", "short"))
 
 
 def _random_motion(rng, bearing, largest=0.995):
-    """Eccentricity up to ``largest`` anywhere along the bearing; tilt, squeeze, tilt rates, spin of both signs, axial speed."""
+    """Eccentricity up to ``largest`` anywhere along the bearing; tilt, squeeze,
+    tilt rates, spin of both signs, axial speed."""
     c, L = bearing.radial_clearance, bearing.length
     reach = largest * rng.choice([rng.random(), 1.0 - 0.2 * rng.random() ** 3])
     share = rng.choice([0.0, rng.random()])
@@ -39,8 +40,8 @@ def _random_motion(rng, bearing, largest=0.995):
 def test_random_states(make_bearing, closure, film, pressures):
     """Twelve sets of 170 states: converged, finite, above the cavity pressure, in a bounded number of linear solves.
 
-    Jumps from state to state are far larger than any time step's, so the active set is always found again from afar. Up to 12
-    solves were seen, warm and cold; 30 is a bound against cycling, not a performance target.
+    Jumps from state to state are far larger than any time step's, so the active set is always found again from
+    afar. Up to 12 solves were seen, warm and cold; 30 is a bound against cycling, not a performance target.
     """
     *ends, pc = pressures
     cavitation = closure() if closure is ehd.FullSommerfeld else closure(cavity_pressure=pc)

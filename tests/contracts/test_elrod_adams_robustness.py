@@ -1,8 +1,9 @@
 """The mass-conserving film at random states: never a failure, fill within 0 and 1, few steps.
 
-States: five grids, L/D 0.25 to 2, eccentricity ratio to 0.99 with tilt up to 95 % of what the gap leaves, speed positive, negative,
-zero and tiny, axial speed, cavity pressure 1e3 to 1e6 Pa below the ends or only fed by supply areas; steady films cold and
-warm, and transient sequences with jumps of position and speed at steps from 1e-6 to 3e-3 s.
+States: five grids, L/D 0.25 to 2, eccentricity ratio to 0.99 with tilt up to 95 % of what
+the gap leaves, speed positive, negative, zero and tiny, axial speed, cavity pressure 1e3
+to 1e6 Pa below the ends or only fed by supply areas; steady films cold and warm, and
+transient sequences with jumps of position and speed at steps from 1e-6 to 3e-3 s.
 """
 
 from __future__ import annotations

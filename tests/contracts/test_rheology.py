@@ -49,7 +49,8 @@ def start(model):
 
 
 def tangent_error(model, history, scales):
-    """Largest difference between tangent and fourth-order central differences, relative to the rows, over several steps."""
+    """Largest difference between tangent and fourth-order central differences,
+    relative to the rows, over several steps."""
     unit = np.array([C, C, 1e-3, 1e-3, 5e-3, 5e-3, 0.2, 0.2, 300.0, 3.0])
     exact = model.evaluate(MOTION, history, STEP).tangent() * unit
     size = np.abs(exact).max(axis=1, keepdims=True)
@@ -69,7 +70,8 @@ def tangent_error(model, history, scales):
     "laws", list(itertools.product(PRESSURE, SHEAR, THERMAL)), ids=lambda laws: "-".join(type(x).__name__ for x in laws)
 )
 def test_tangent_is_exact(laws, cavitation):
-    """Against central differences; several steps, because a rupture line that moves within one spoils the difference."""
+    """Against central differences; several steps, because a rupture line that
+    moves within one spoils the difference."""
     model = make(*laws, cavitation=cavitation)
     assert tangent_error(model, start(model), (1e-4, 1e-5, 1e-6, 1e-7)) < 1e-6
 
@@ -235,10 +237,12 @@ def test_couette_kernel_equals_its_twin():
     ids=["swift", "gumbel", "full", "elrod"],
 )
 def test_density_near_the_end_of_the_pressure_law(cavitation, coefficient):
-    """Barus' transformed pressure (1 - exp(-alpha p)) / alpha ends at 1/alpha; an orbit brings films of constant density beyond it and compressible ones near.
+    """Barus' transformed pressure (1 - exp(-alpha p)) / alpha ends at 1/alpha; an
+    orbit brings films of constant density beyond it and compressible ones near.
 
-    The density's slope has no bound there, and whole Newton steps bounce back and forth across the end. From the last state or from nothing,
-    every state is found within 64 linear solves, with the same force; the tangent is exact (central differences, 1e-6 of the clearance).
+    The density's slope has no bound there, and whole Newton steps bounce back and forth across
+    the end. From the last state or from nothing, every state is found within 64 linear solves,
+    with the same force; the tangent is exact (central differences, 1e-6 of the clearance).
     """
     R, C, speed = 0.02, 20e-6, 300.0
     laws = {"pressure_law": ehd.BarusPressure(coefficient=coefficient), "density_law": ehd.DowsonHigginson()}
@@ -259,7 +263,8 @@ def test_density_near_the_end_of_the_pressure_law(cavitation, coefficient):
         assert found.status is again.status is ehd.Status.CONVERGED
         assert max(found.iterations, again.iterations) <= 64
         peaks.append(found.quantities()["peak_pressure"])
-        # at alpha p = 12 the density's slope, exp(alpha p), is 2e5 times that at ambient pressure and magnifies what Newton leaves
+        # at alpha p = 12 the density's slope, exp(alpha p), is 2e5 times that
+        # at ambient pressure and magnifies what Newton leaves
         near = coefficient * peaks[-1] < 9.0
         np.testing.assert_allclose(again.wrench[:2], found.wrench[:2], rtol=1e-8 if near else 1e-6)
     assert 1.0 - np.exp(-coefficient * max(peaks)) > 0.97

@@ -1,4 +1,5 @@
-"""What every effect of the surfaces keeps, with every closure it goes with: exact tangent, off costs nothing, limits, robustness."""
+"""What every effect of the surfaces keeps, with every closure it goes with:
+exact tangent, off costs nothing, limits, robustness."""
 
 import math
 
@@ -70,7 +71,8 @@ SCALE = np.array([C, C, C / L, C / L, C * SPEED, C * SPEED, C / L * SPEED, C / L
 
 
 def worst_tangent_error(model, at, history, step):
-    """Largest difference between the tangent and central differences, each row in its largest entry, each column in its unit."""
+    """Largest difference between the tangent and central differences, each row
+    in its largest entry, each column in its unit."""
     tangent = model.evaluate(at, history, step).tangent() * SCALE
     difference = np.empty((6, 10))
     for k in range(10):
@@ -85,7 +87,8 @@ def worst_tangent_error(model, at, history, step):
 @every_pair
 @pytest.mark.parametrize(("eps", "speed"), [(0.6, SPEED), (0.93, -0.7 * SPEED)])
 def test_tangent_is_exact(effect, closure, eps, speed):
-    """Below 1e-6 of each row's largest entry, with and without a history; differences of step 1e-6 are good to about 1e-8."""
+    """Below 1e-6 of each row's largest entry, with and without a history;
+    differences of step 1e-6 are good to about 1e-8."""
     options = EFFECTS[effect]
     if effect == "roughness" or "profile" in effect:
         eps = min(eps, 0.8)
@@ -135,7 +138,8 @@ def vanishing(effect, amplitude):
     ("roughness", (8e-4, 4e-4, 2e-4), 1.5),
 ])  # fmt: skip
 def test_vanishing_amplitude_recovers_the_plain_film(effect, amplitudes, rate):
-    """First order in the amplitude; order 1.5 by 1 + 0.87 H^-1.5 for surfaces with ridges along the motion. 0.06 for the next order."""
+    """First order in the amplitude; order 1.5 by 1 + 0.87 H^-1.5 for surfaces
+    with ridges along the motion. 0.06 for the next order."""
     at = motion(0.7)
     plain = build_model(bearing()).evaluate(at).wrench
     errors = [
@@ -147,7 +151,8 @@ def test_vanishing_amplitude_recovers_the_plain_film(effect, amplitudes, rate):
 
 
 def test_vanishing_isotropic_roughness_and_asperities_leave_nothing():
-    """Their factors fall exponentially: at h = 60 sigma and more the force is the plain film's to 1e-9, the contact exactly nothing."""
+    """Their factors fall exponentially: at h = 60 sigma and more the force is
+    the plain film's to 1e-9, the contact exactly nothing."""
     at = motion(0.7)
     plain = build_model(bearing()).evaluate(at).wrench
     small = 0.25 * C / 80
@@ -162,7 +167,8 @@ def test_vanishing_isotropic_roughness_and_asperities_leave_nothing():
 
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_force_turns_with_the_model(effect):
-    """Turning a whole bearing, with its profile, by a grid column turns the force; 1e-10 is rounding through the solver."""
+    """Turning a whole bearing, with its profile, by a grid column turns the
+    force; 1e-10 is rounding through the solver."""
     if "profile" in EFFECTS[effect]:
         options = EFFECTS[effect] | {"profile": ehd.OutOfRound(order=2, amplitude=2e-6, phase=0.0)}
         turn = math.pi
@@ -182,14 +188,20 @@ def test_force_turns_with_the_model(effect):
 
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_random_states_in_mixed_lubrication(closure):
-    """Eccentricity to 1.05 anywhere along the bearing, tilt, squeeze, reversed and zero speed: always a finite film and tangent."""
+    """Eccentricity to 1.05 anywhere along the bearing, tilt, squeeze, reversed
+    and zero speed: always a finite film and tangent."""
     rng = np.random.default_rng(11)
     for effect in ("asperity", "mixed", "worn", "liner_asperity", "liner_wall"):
         model = build_model(bearing(cavitation=CLOSURES[closure], n_theta=40, n_z=6, **EFFECTS[effect]))
         for _ in range(60):
             reach, share = 1.05 * rng.random() ** 0.3, rng.choice([0.0, rng.random()])
-            at = motion(reach * (1 - share), rng.uniform(0, 6.3), SPEED * rng.choice([-1, 0, 0.01, 1, 5]), reach * share,
-                        rng.choice([0.0, 0.1, 1.0]))  # fmt: skip
+            at = motion(
+                reach * (1 - share),
+                rng.uniform(0, 6.3),
+                SPEED * rng.choice([-1, 0, 0.01, 1, 5]),
+                reach * share,
+                rng.choice([0.0, 0.1, 1.0]),
+            )
             history = model.initial_history(at)
             evaluation = model.evaluate(at, history, 1e-4)
             assert evaluation.status is ehd.Status.CONVERGED, at
@@ -200,7 +212,8 @@ def test_random_states_in_mixed_lubrication(closure):
 @pytest.mark.parametrize("effect", ["asperity", "roughness", "mixed", "worn", "liner", "profile"])
 @pytest.mark.parametrize("closure", ["gumbel", "swift"])
 def test_friction_takes_power(effect, closure):
-    """A turning journal at rest otherwise loses power to film and contact, whatever its position, and the contact never gives any."""
+    """A turning journal at rest otherwise loses power to film and contact,
+    whatever its position, and the contact never gives any."""
     rng = np.random.default_rng(5)
     cavitation = ehd.Gumbel() if closure == "gumbel" else ehd.SwiftStieber()
     model = build_model(bearing(cavitation=cavitation, end_pressures=(0.0, 0.0), **EFFECTS[effect]))
@@ -216,7 +229,8 @@ def test_friction_takes_power(effect, closure):
 @pytest.mark.parametrize("modulus", [1e9, 1e10, 1e12])
 @pytest.mark.parametrize("closure", ["gumbel", "swift"])
 def test_random_states_on_a_liner(closure, modulus):
-    """Transient steps from the steady film nearby: eccentricity to 0.99, tilt, squeeze up to the journal's own speed, reversed spin."""
+    """Transient steps from the steady film nearby: eccentricity to 0.99, tilt,
+    squeeze up to the journal's own speed, reversed spin."""
     rng = np.random.default_rng(23)
     bush = ehd.ElasticLiner(thickness=0.002, youngs_modulus=modulus)
     model = build_model(bearing(cavitation=CLOSURES[closure], n_theta=40, n_z=6, bush=bush))

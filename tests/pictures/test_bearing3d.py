@@ -17,14 +17,16 @@ def test_hill_is_proportional_to_the_pressure():
 
 
 def test_journal_touches_the_bore_where_the_gap_vanishes(film):
-    """The drawn gap over the drawn clearance is the gap of the rigid surfaces over c, at both ends of a tilted journal."""
+    """The drawn gap over the drawn clearance is the gap of the rigid surfaces
+    over c, at both ends of a tilted journal."""
     bearing = film.bearing
     z = film.z[[0, -1]] / bearing.journal_radius
     theta = film.theta
     points = bearing3d.journal_surface(film, np.linspace(0.0, 2.0 * np.pi, 721), z)
     gap = 1.0 - np.hypot(points[..., 0], points[..., 1]).max(axis=0)
     smallest = film.gap[:, [0, -1]].min(axis=0) / bearing.radial_clearance * bearing3d.CLEARANCE
-    # the film's own gap is the first order in c/R of the circles', here drawn at c/R = 0.22, and sampled every 7.5 degrees
+    # the film's own gap is the first order in c/R of the circles', here drawn
+    # at c/R = 0.22, and sampled every 7.5 degrees
     np.testing.assert_allclose(gap, smallest, atol=2e-3)
     assert theta.size == 48
 

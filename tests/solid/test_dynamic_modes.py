@@ -1,4 +1,5 @@
-"""Modes of a bush in motion: vibrations and mass of the mesh, a closed form, and responses to an accelerated housing."""
+"""Modes of a bush in motion: vibrations and mass of the mesh, a closed form,
+and responses to an accelerated housing."""
 
 import dataclasses
 
@@ -102,9 +103,11 @@ def test_breathing_vibration_has_the_frequency_of_the_closed_form():
 
 @pytest.mark.parametrize(("share", "error", "error_static"), [(0.1, 6e-4, 8e-4), (0.5, 0.015, 0.02), (1.2, 0.1, 0.3)])
 def test_harmonic_response_of_the_bore_is_the_meshes(modes, static, share, error, error_static):
-    """(K - omega^2 M) u = load under a smooth pressure, at shares of the lowest frequency; errors of what the mass changes.
+    """(K - omega^2 M) u = load under a smooth pressure, at shares of the lowest
+    frequency; errors of what the mass changes.
 
-    Static modes have the term of omega^2 exactly, so their error falls with omega^2 too; above resonances they lose the response.
+    Static modes have the term of omega^2 exactly, so their error falls with
+    omega^2 too; above resonances they lose the response.
     """
     mesh = modes.mesh
     solid = TotalLagrange(mesh=mesh, material=STEEL)

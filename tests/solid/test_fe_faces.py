@@ -73,7 +73,8 @@ def test_quadrilaterals_are_those_of_the_bush_mesh():
 
 @pytest.mark.parametrize("kind", MAKERS)
 def test_rigid_motions_of_a_bore_leave_its_gap_alone(kind):
-    """Translations and rotations about any axis, of 1 m and 1 rad per unit; faceted bores have their nodes on the cylinder only."""
+    """Translations and rotations about any axis, of 1 m and 1 rad per unit;
+    faceted bores have their nodes on the cylinder only."""
     faces = MAKERS[kind]()
     modes = [np.tile(e, (len(faces.positions), 1)) for e in np.eye(3)]
     modes += [np.cross(e, faces.positions) for e in np.eye(3)]

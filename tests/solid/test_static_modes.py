@@ -25,7 +25,8 @@ def modes():
 
 
 def _radial_response(mesh, pressure):
-    """Radial bore displacement (nodes,) under a pressure with a dense solver; outer surface fixed. And the nodal loads."""
+    """Radial bore displacement (nodes,) under a pressure with a dense solver;
+    outer surface fixed. And the nodal loads."""
     solid = TotalLagrange(mesh=mesh, material=STEEL)
     load = pressure_loads(mesh.bore, len(mesh.nodes), [pressure])[:, 0]
     fixed = (3 * mesh.outer.nodes[:, None] + np.arange(3)).ravel()
