@@ -1,8 +1,8 @@
 """The big end of a connecting rod: an elastic bore on a moving housing.
 
-A slider-crank at 3000 rpm with a gas pulse on the piston. The rod's big end is the housing and carries a steel bush of 8 mm, the crank
-pin is the journal. Rigid bore against a modal bush: the elastic one lowers the pressure peak of the firing stroke and changes the
-smallest film.
+A slider-crank at 3000 rpm with a gas pulse on the piston. The rod's big end is the housing and carries a steel bush of
+8 mm, the crank pin is the journal. Rigid bore against a modal bush: the elastic one lowers the pressure peak of the
+firing stroke and changes the smallest film.
 
 Run ``python examples/elastic_big_end.py``; the picture is written to ``results``.
 """
@@ -28,20 +28,21 @@ SPEED = 3000.0 * 2.0 * math.pi / 60.0
 PISTON_MASS, ROD_MASS, ROD_INERTIA = 0.5, 0.55, 2e-3
 GAS_FORCE, GAS_WIDTH = 25e3, 0.35
 BUSH = ehd.ModalBush(
-    mesh=ehd.HollowCylinder(
-        inner_radius=0.024, thickness=0.008, length=0.022, axial=4, radial=2, circumferential=40
-    ),
+    mesh=ehd.HollowCylinder(inner_radius=0.024, thickness=0.008, length=0.022, axial=4, radial=2, circumferential=40),
     material=ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0),
     tilted=False,
-)  # fmt: skip
+)
 
 
 def big_end(*, quick: bool) -> ehd.JournalBearing:
     """Return the bearing with a rigid bore."""
     return ehd.JournalBearing(
-        journal_radius=0.024, length=0.022, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=8e-3),
+        journal_radius=0.024,
+        length=0.022,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=8e-3),
         film=ehd.FiniteLength(n_theta=64, n_z=8) if quick else ehd.FiniteLength(n_theta=96, n_z=10),
-    )  # fmt: skip
+    )
 
 
 def gas_force(angle: float) -> float:
@@ -50,8 +51,8 @@ def gas_force(angle: float) -> float:
     return GAS_FORCE * math.exp(-((distance / GAS_WIDTH) ** 2))
 
 
-def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) -> dict:
-    """Run the mechanism from the outer dead centre at full speed."""
+def build(bearing: ehd.JournalBearing):
+    """The mechanism at its outer dead centre at full speed; returns the system and its lubricated joint."""
     system = exu.SystemContainer()
     mbs = system.AddSystem()
     origin = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
@@ -98,6 +99,12 @@ def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) 
         mbs, name="big end", itemNumbers=[rod, crank], position=[CRANK, 0, 0], axis=[0, 0, 1], bearing=bearing
     )
     mbs.Assemble()
+    return mbs, joint
+
+
+def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) -> dict:
+    """Run the mechanism from the outer dead centre at full speed."""
+    mbs, joint = build(bearing)
     settings = exu.SimulationSettings()
     settings.timeIntegration.endTime = turns * 2.0 * math.pi / SPEED
     settings.timeIntegration.numberOfSteps = steps = round(turns * steps_per_turn)

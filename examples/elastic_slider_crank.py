@@ -1,23 +1,26 @@
 """A slider-crank whose connecting rod is a chain of ANCF beams and floats on oil at both ends.
 
-The mechanism of `slider_crank.py` at 5000 rpm (P. Flores, J. Ambrosio, Computers & Structures 82 (2004) 1359: crank 0.05 m, 0.30 kg,
-1e-4 kg m2; rod 0.12 m, 0.21 kg, 2.5e-4 kg m2; slider 0.14 kg). Its rod is uniform (m l^2 / 12 = 2.5e-4 kg m2); here it is a flat
-steel bar of the same mass, 10 mm high in the plane of motion and 22 mm wide. Both pins: radius 10 mm, length 20 mm, clearance 20 um,
-0.02 Pa s. Four mechanisms side by side: rod rigid or elastic, pins ideal (Exudyn's revolute joints) or lubricated.
+The mechanism of `slider_crank.py` at 5000 rpm (P. Flores, J. Ambrosio, Computers & Structures 82 (2004) 1359: crank
+0.05 m, 0.30 kg, 1e-4 kg m2; rod 0.12 m, 0.21 kg, 2.5e-4 kg m2; slider 0.14 kg). Its rod is uniform (m l^2 / 12 = 2.5e-4
+kg m2); here it is a flat steel bar of the same mass, 10 mm high in the plane of motion and 22 mm wide. Both pins:
+radius 10 mm, length 20 mm, clearance 20 um, 0.02 Pa s. Four mechanisms side by side: rod rigid or elastic, pins ideal
+(Exudyn's revolute joints) or lubricated.
 
-What the elastic rod changes: its own inertia, m w^2 r per length at the crank, bends it by 0.09 mm, more than four clearances, first one
-way and then the other; it is stretched by 12 um at the inner dead centre, about as far as the gudgeon pin leaves the middle of its film;
-and the bend turns the rod's eyes by 0.14 degrees, which adds to the swing of the pins. The film sees forces, which the mechanism's inertia
-sets: orbits and films stay those of the rigid rod within a few per cent, while the slider's position and velocity do not.
+What the elastic rod changes: its own inertia, m w^2 r per length at the crank, bends it by 0.09 mm, more than four
+clearances, first one way and then the other; it is stretched by 12 um at the inner dead centre, about as far as the
+gudgeon pin leaves the middle of its film; and the bend turns the rod's eyes by 0.14 degrees, which adds to the swing of
+the pins. The film sees forces, which the mechanism's inertia sets: orbits and films stay those of the rigid rod within
+a few per cent, while the slider's position and velocity do not.
 
-The beam. P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody Systems", takes the
-two-node element of A. A. Shabana and R. Y. Yakoub (J. Mechanical Design 123 (2001) 606): position and all three slopes at each node,
-24 coordinates, cubic along the axis, elastic forces from continuum mechanics. Exudyn's ``ObjectANCFBeam`` has position and the two slopes of the
-cross section, 18 coordinates for two nodes, linear along the axis, elastic forces from section stiffnesses (tension, shear, torsion, bending)
-at one point in the middle against locking. It converges quadratically: with n elements a cantilever under a force at its tip bends by
-1 / (4 n^2) too little, a simply supported beam under uniform load by 8 / (5 n^2), a tension is exact. The paper's element is cubic and needs fewer
-elements, with more coordinates each; the strains of its solid's cross section stiffen it in bending (Poisson locking), which section
-stiffnesses do not.
+The beam. P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody Systems",
+takes the two-node element of A. A. Shabana and R. Y. Yakoub (J. Mechanical Design 123 (2001) 606): position and all
+three slopes at each node, 24 coordinates, cubic along the axis, elastic forces from continuum mechanics. Exudyn's
+``ObjectANCFBeam`` has position and the two slopes of the cross section, 18 coordinates for two nodes, linear along the
+axis, elastic forces from section stiffnesses (tension, shear, torsion, bending) at one point in the middle against
+locking. It converges quadratically: with n elements a cantilever under a force at its tip bends by 1 / (4 n^2) too
+little, a simply supported beam under uniform load by 8 / (5 n^2), a tension is exact. The paper's element is cubic and
+needs fewer elements, with more coordinates each; the strains of its solid's cross section stiffen it in bending
+(Poisson locking), which section stiffnesses do not.
 
 Run ``python examples/elastic_slider_crank.py``; pictures are written to ``results/elastic_slider_crank``.
 """
@@ -47,7 +50,8 @@ STEEL, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 HEIGHT = 0.010  # of the rod, in the plane of motion
 WIDTH = ROD_MASS / (DENSITY * ROD * HEIGHT)
 SHEAR_FACTOR = 5.0 / 6.0
-DAMPING_TIME = 4e-6  # s, Kelvin-Voigt: loss factor 0.002 at the crank's frequency, 0.04 at the rod's first bending, 0.2 at its stretching
+# s, Kelvin-Voigt: loss factor 0.002 at the crank's frequency, 0.04 at the rod's first bending, 0.2 at its stretching
+DAMPING_TIME = 4e-6
 BEARING = ehd.JournalBearing(
     journal_radius=0.010, length=0.020, radial_clearance=20e-6, lubricant=ehd.Lubricant(viscosity=0.02)
 )
@@ -58,8 +62,9 @@ CASES = ("ideal pins, rigid rod", "ideal pins, elastic rod", "oil, rigid rod", "
 class Run:
     """One simulated mechanism; arrays over the recorded instants.
 
-    ``angle`` crank angle (rad); ``slider``, ``velocity``, ``acceleration`` (m, m/s, m/s2); ``deflection`` of the rod's middle
-    from the chord between its ends and ``stretch`` of that chord (m), zero for the rigid rod; ``histories`` of the joints, crank pin first.
+    ``angle`` crank angle (rad); ``slider``, ``velocity``, ``acceleration`` (m, m/s, m/s2); ``deflection`` of the rod's
+    middle from the chord between its ends and ``stretch`` of that chord (m), zero for the rigid rod; ``histories`` of
+    the joints, crank pin first.
     """
 
     angle: np.ndarray
@@ -226,9 +231,10 @@ class Mechanism:
 def rod_by_beam_theory(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Deflection of the middle and stretch of the rod (m) from the ideal mechanism's accelerations, quasi-static.
 
-    The rod carries -m a per length, with an acceleration a that is linear along it. Across: a simply supported beam with bending and
-    shear, 5 q l^4 / (384 EI) + q l^2 / (8 k GA), q the load in the middle (the antisymmetric rest does not move it), enlarged by
-    1 / (1 + N / P) under the tension N in the middle, P = pi^2 EI / l^2. Along: the integral of the tension over EA.
+    The rod carries -m a per length, with an acceleration a that is linear along it. Across: a simply supported beam
+    with bending and shear, 5 q l^4 / (384 EI) + q l^2 / (8 k GA), q the load in the middle (the antisymmetric rest does
+    not move it), enlarged by 1 / (1 + N / P) under the tension N in the middle, P = pi^2 EI / l^2. Along: the integral
+    of the tension over EA.
     """
     psi = -np.arcsin(CRANK / ROD * np.sin(angle))
     psi_t = -CRANK / ROD * SPEED * np.cos(angle) / np.cos(psi)
@@ -292,6 +298,21 @@ def print_table(rows: dict[str, dict[str, float]]) -> None:
         print(f"{key:38s}" + "".join(f"{row[key]:25.4g}" if key in row else f"{'-':>25s}" for row in rows.values()))
 
 
+def _draw_rod(ax, elastic: Run, late: np.ndarray, degrees: np.ndarray) -> None:
+    """Bending and stretch of the rod against beam theory."""
+    bent, stretched = rod_by_beam_theory(elastic.angle)
+    pairs = (
+        ("bending", elastic.deflection, bent, "tab:blue"),
+        ("stretch", elastic.stretch, stretched, "tab:red"),
+    )
+    for label, simulated, theory, colour in pairs:
+        ax.plot(degrees, 1e6 * simulated[late], color=colour, label=label)
+        ax.plot(degrees, 1e6 * theory[late], color="black", ls=":", lw=1.2, label=None)
+    ax.plot([], [], color="black", ls=":", label="beam theory")
+    ax.set(ylabel="deformation of the rod [µm]")
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
+
+
 @styled(10.0)
 def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     """Slider against the ideal mechanism, the rod against beam theory, pins and films."""
@@ -315,19 +336,7 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
         ax.set(ylabel=f"slider {label} - rigid ideal")
     axes[0, 1].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
 
-    elastic = runs[CASES[3]]
-    bent, stretched = rod_by_beam_theory(elastic.angle)
-    pairs = (
-        ("bending", elastic.deflection, bent, "tab:blue"),
-        ("stretch", elastic.stretch, stretched, "tab:red"),
-    )
-    for label, simulated, theory, colour in pairs:
-        axes[1, 0].plot(degrees, 1e6 * simulated[late], color=colour, label=label)
-        axes[1, 0].plot(degrees, 1e6 * theory[late], color="black", ls=":", lw=1.2, label=None)
-    axes[1, 0].plot([], [], color="black", ls=":", label="beam theory")
-    axes[1, 0].set(ylabel="deformation of the rod [µm]")
-    axes[1, 0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
-
+    _draw_rod(axes[1, 0], runs[CASES[3]], late, degrees)
     around = np.linspace(0, 2 * np.pi, 200)
     axes[1, 1].plot(np.cos(around), np.sin(around), color="grey", lw=1)
     for name in CASES[2:]:

@@ -1,16 +1,19 @@
 """A connecting-rod bearing over the four-stroke cycle: where does its pin go, and how thin does the film get?
 
-The load acts along the rod and reverses twice per cycle; the pin turns at 2000 rpm. This is the dynamically loaded bearing on which
-mobility methods are compared: length 25.4 mm, diameter 63.5 mm, radial clearance 35.56 um, 4.16 mPa s; the load over 720 degrees is digitised from P. Flores,
-J. C. P. Claro, J. Ambrosio, Mecanica Experimental 13 (2006) 115 (after J. F. Booker, J. Basic Engineering 87 (1965) 537).
+The load acts along the rod and reverses twice per cycle; the pin turns at 2000 rpm. This is the dynamically loaded
+bearing on which mobility methods are compared: length 25.4 mm, diameter 63.5 mm, radial clearance 35.56 um, 4.16 mPa s;
+the load over 720 degrees is digitised from P. Flores, J. C. P. Claro, J. Ambrosio, Mecanica Experimental 13 (2006) 115
+(after J. F. Booker, J. Basic Engineering 87 (1965) 537).
 
 The same engine is driven through five bearings:
 
-* ``short``: short-bearing film, the model of the literature. Its orbit is laid over one that was integrated independently for a
-  massless journal in the short-bearing film (``data/four_stroke_orbit.csv``),
-* ``finite``: two-dimensional film with Swift-Stieber rupture, the default of the package. At L/D = 0.4 the short bearing is too stiff,
+* ``short``: short-bearing film, the model of the literature. Its orbit is laid over one that was integrated
+  independently for a massless journal in the short-bearing film (``data/four_stroke_orbit.csv``),
+* ``finite``: two-dimensional film with Swift-Stieber rupture, the default of the package. At L/D = 0.4 the short
+  bearing is too stiff,
 * ``Gumbel``: the same with the linear pressure clipped,
-* ``oil balance``: Elrod-Adams, with the oil of the cavities as history; fed by the ends and by a hole in the pin at 3 bar,
+* ``oil balance``: Elrod-Adams, with the oil of the cavities as history; fed by the ends and by a hole in the pin at
+  3 bar,
 * ``elastic``: the default film on a steel bush 6 mm thick.
 
 Run ``python examples/engine_big_end.py``; pictures are written to ``results/engine_big_end``.
@@ -35,7 +38,8 @@ from exudyn_ehd.pictures.style import styled
 DATA = pathlib.Path(__file__).parent / "data"
 SPEED = 2000.0 * 2.0 * math.pi / 60.0
 CYCLE = 4.0 * math.pi / SPEED
-# The literature's journal has no mass. At c omega^2 = 1.6 m/s2 this one's inertia is below a thousandth of the smallest load.
+# The literature's journal has no mass. At c omega^2 = 1.6 m/s2 this one's inertia is below a thousandth of the smallest
+# load.
 JOURNAL_MASS = 0.05
 
 
@@ -135,12 +139,10 @@ def simulate(bearing: ehd.JournalBearing, *, start_up: float, steps_per_cycle: i
     clock = time.perf_counter()
     ehd.SolveDynamic(mbs, settings)
     seconds = (time.perf_counter() - clock) / steps
-    history = joint.history
-    angle = 720.0 * (history.time / CYCLE - start_up)
-    kept = angle >= -1e-6
+    angle = 720.0 * (joint.history.time / CYCLE - start_up)
     return Cycle(
-        angle=angle[kept],
-        history=history.between(start_up * CYCLE),
+        angle=angle[angle >= -1e-6],
+        history=joint.history.between(start_up * CYCLE),
         seconds_per_step=seconds,
         iterations_per_step=mbs.sys["dynamicSolver"].it.newtonStepsCount / steps,
     )

@@ -1,12 +1,14 @@
 """A finite-element connecting rod whose big end deforms under the oil pressure.
 
-The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the piston, with the whole rod as a reduced finite-element body:
-two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and the modes that its bore needs under an
-oil film. At the firing the mechanism asks a rigid rod and both elastic ones for the same pin force. What the oil does with it is a matter of the shank: a
-narrow one carries the firing load in the middle of a thin eye that gives way beside it, so that the pressure gathers over the shank
-and the film right after the firing is less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the pressure
-is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide shank is the heavier one: between
-firings its inertia asks for more force than that of the narrow one, whose mass the rigid rod has.)
+The slider-crank of `elastic_big_end.py`, 3000 rpm with a gas pulse on the piston, with the whole rod as a reduced
+finite-element body: two eyes and a shank of 20-node hexahedra, small end as rigid interface, eigenmodes of the rod and
+the modes that its bore needs under an oil film. At the firing the mechanism asks a rigid rod and both elastic ones for
+the same pin force. What the oil does with it is a matter of the shank: a narrow one carries the firing load in the
+middle of a thin eye that yields next to it, so that the pressure gathers over the shank and the film right after the
+firing is less than half as thick as in a rigid bore; a wide one backs the whole loaded side, the bore yields where the
+pressure is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide
+shank is the heavier one: between firings its inertia asks for more force than that of the narrow one, whose mass the
+rigid rod has.)
 
 Run ``python examples/fe_connecting_rod.py``; the picture is written to ``results``.
 """
@@ -46,7 +48,10 @@ DAMPING = 2e-6
 
 
 def rod_mesh(across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return nodes (n, 3) in m, elements (m, 20) and the nodes of the small end's bore; small end at the origin, big end at x = -ROD."""
+    """Return nodes (n, 3) in m, elements (m, 20) and the nodes of the small end's bore.
+
+    The small end lies at the origin, the big end at x = -ROD.
+    """
     big = ehd.HollowCylinder(
         inner_radius=BORE, thickness=0.008, length=LENGTH, axial=AXIAL, radial=2, circumferential=40
     ).mesh()
@@ -64,9 +69,9 @@ def rod_mesh(across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     cell = np.stack(np.meshgrid(*map(np.arange, (ALONG, across, AXIAL)), indexing="ij"), axis=-1).reshape(-1, 1, 3)
     xi, eta, zeta = np.moveaxis((cell + 0.5 * (NODES + 1.0)) / np.array([ALONG, across, AXIAL]), -1, 0)
     shank = bridge(xi, 2.0 * eta - 1.0, LENGTH * (zeta - 0.5))
-    places = np.concatenate(
-        [(big.nodes - [ROD, 0.0, 0.0])[big.elements], small.nodes[small.elements], shank]
-    ).reshape(-1, 3)  # fmt: skip
+    places = np.concatenate([(big.nodes - [ROD, 0.0, 0.0])[big.elements], small.nodes[small.elements], shank]).reshape(
+        -1, 3
+    )
     # parts share the nodes that coincide
     _, first, elements = np.unique(np.round(places / 1e-8), axis=0, return_index=True, return_inverse=True)
     nodes = places[first]
@@ -87,8 +92,15 @@ def rod_fem(across: int, tolerance: float) -> tuple[FEMinterface, ehd.BoreModesR
     fem.ComputeHurtyCraigBamptonModes([list(held)], 4)
     # the pin stays parallel to the bore
     report = ehd.add_bore_modes(
-        fem, position=[-ROD, 0, 0], axis=[0, 0, 1], radius=BORE, length=LENGTH, fixed_nodes=held, tolerance=tolerance, tilted=False
-    )  # fmt: skip
+        fem,
+        position=[-ROD, 0, 0],
+        axis=[0, 0, 1],
+        radius=BORE,
+        length=LENGTH,
+        fixed_nodes=held,
+        tolerance=tolerance,
+        tilted=False,
+    )
     return fem, report
 
 
@@ -106,21 +118,22 @@ def rigid_inertia(fem: FEMinterface) -> RigidBodyInertia:
 def big_end(*, quick: bool) -> ehd.JournalBearing:
     """Return the bearing with a rigid bore."""
     return ehd.JournalBearing(
-        journal_radius=BORE, length=LENGTH, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=8e-3),
+        journal_radius=BORE,
+        length=LENGTH,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=8e-3),
         film=ehd.FiniteLength(n_theta=64, n_z=8) if quick else ehd.FiniteLength(n_theta=96, n_z=10),
-    )  # fmt: skip
+    )
 
 
 def gas_force(angle: float) -> float:
-    """Force on the piston towards the crank, N; one pulse just after the outer dead centre of every second turn, the first one's too."""
+    """Force on the piston towards the crank, N: a pulse after the outer dead centre of the first, third, ... turn."""
     distance = math.remainder(angle - 0.4 * math.pi, 4.0 * math.pi)
     return GAS_FORCE * math.exp(-((distance / GAS_WIDTH) ** 2))
 
 
-def simulate(
-    bearing: ehd.JournalBearing, fem: FEMinterface, *, flexible: bool, turns: float, steps_per_turn: int
-) -> dict:
-    """Run the mechanism from the outer dead centre at full speed."""
+def crank_and_piston():
+    """Crank and piston at the outer dead centre at full speed, guided and driven; the system and both bodies."""
     mbs = exu.SystemContainer().AddSystem()
     origin = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
 
@@ -153,6 +166,12 @@ def simulate(
             loadVectorUserFunction=lambda mbs, t, load: [-gas_force(SPEED * t), 0, 0],
         )
     )
+    return mbs, crank, piston
+
+
+def build(bearing: ehd.JournalBearing, fem: FEMinterface, *, flexible: bool):
+    """The whole mechanism; returns the system and its lubricated joint."""
+    mbs, crank, piston = crank_and_piston()
     # the small end is the rod's floating frame and starts at rest in the piston
     spin = [0.0, 0.0, -SPEED * CRANK / ROD]
     if flexible:
@@ -163,9 +182,11 @@ def simulate(
         bearing = dataclasses.replace(bearing, bush=ehd.FEBore(fem=fem))
     else:
         rod = mbs.CreateRigidBody(
-            inertia=rigid_inertia(fem), referencePosition=[CRANK + ROD, 0, 0], initialAngularVelocity=spin,
+            inertia=rigid_inertia(fem),
+            referencePosition=[CRANK + ROD, 0, 0],
+            initialAngularVelocity=spin,
             nodeType=exu.NodeType.RotationRxyz,
-        )  # fmt: skip
+        )
         rod_node = mbs.GetObject(rod)["nodeNumber"]
     pins = [
         mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=piston)),
@@ -176,6 +197,14 @@ def simulate(
         mbs, name="big end", itemNumbers=[rod, crank], position=[CRANK, 0, 0], axis=[0, 0, 1], bearing=bearing
     )
     mbs.Assemble()
+    return mbs, joint
+
+
+def simulate(
+    bearing: ehd.JournalBearing, fem: FEMinterface, *, flexible: bool, turns: float, steps_per_turn: int
+) -> dict:
+    """Run the mechanism from the outer dead centre at full speed."""
+    mbs, joint = build(bearing, fem, flexible=flexible)
     settings = exu.SimulationSettings()
     settings.timeIntegration.endTime = turns * 2.0 * math.pi / SPEED
     settings.timeIntegration.numberOfSteps = steps = round(turns * steps_per_turn)
@@ -204,7 +233,7 @@ def simulate(
 
 
 def draw_rod(axes, fem: FEMinterface) -> None:
-    """Draw the mesh from the side, and deformed by a firing load: parabola of 60 degrees to each side on the shank's side of the bore."""
+    """Draw the mesh from the side, and deformed by a firing load: a parabola over 120 degrees on the shank's side."""
     nodes, elements = np.asarray(fem.nodes["Position"]), fem.elements[0]["Hex20"]
     shape = 300.0 * firing_shape(fem)[0]
     ring = [4, 12, 5, 13, 6, 14, 7, 15, 4]
@@ -216,7 +245,7 @@ def draw_rod(axes, fem: FEMinterface) -> None:
 
 
 def firing_shape(fem: FEMinterface) -> tuple[np.ndarray, np.ndarray]:
-    """Displacements (n, 3) in m of the whole mesh, without modes, and of the modes under a pressure of 25 kN from the shank's side."""
+    """Displacements (n, 3) in m of the whole mesh and of its modes under a pressure of 25 kN from the shank's side."""
     places = np.asarray(fem.nodes["Position"])
     mesh = ehd.mesh_from_fem(fem, bore_radius=BORE, origin=(-ROD, 0, 0))
     theta, z = (a.ravel() for a in np.meshgrid(np.linspace(-1.0, 1.0, 81), np.linspace(-0.5, 0.5, 21) * LENGTH))

@@ -1,21 +1,25 @@
 """A spatial four-bar mechanism whose elastic rocker tilts its journals in their bearings.
 
-An RSSR mechanism: a crank (radius 20 mm, 1800 rpm, axis y) moves through a coupler with a ball at either end a rocker whose axis x crosses
-the crank's at 90 degrees. The rocker is a steel shaft of 16 mm in two bearings 100 mm apart (length 16 mm, radial clearance 16 um, 0.04 Pa s), with an arm
-overhanging by 30 mm; the coupler takes hold of the arm's middle, a tool of 0.25 kg sits at its tip. The numbers are our own. The tool's inertia, 0.6 kN to
-and fro, bends arm and shaft. Between the bearings the shaft sees no other force, so that beam theory gives the tilt of the right journal from
-what the left film carries: with force F and moment M on the left journal, distance s, and the section's rotation in place of the axis' slope::
+An RSSR mechanism: a crank (radius 20 mm, 1800 rpm, axis y) moves through a coupler with a ball at either end a rocker
+whose axis x crosses the crank's at 90 degrees. The rocker is a steel shaft of 16 mm in two bearings 100 mm apart
+(length 16 mm, radial clearance 16 um, 0.04 Pa s), with an arm overhanging by 30 mm; the coupler takes hold of the arm's
+middle, a tool of 0.25 kg sits at its tip. The numbers are our own. The tool's inertia, 0.6 kN to and fro, bends arm and
+shaft. Between the bearings the shaft sees no other force, so that beam theory gives the tilt of the right journal from
+what the left film carries: with force F and moment M on the left journal, distance s, and the section's rotation in
+place of the axis' slope::
 
     tilt = (e_right - e_left) / s + F s^2 / (3 EI) - M s / (2 EI) + F / (k GA)
 
-A rigid rocker tilts only as far as its two journals are eccentric to different sides: the first term, below 1e-4 rad. Elastic, the right journal stands aslant
-by 9e-4 rad. Its film is thinnest at the bearing's edge, little more than half as thick as a calculation of the same bearing under the same
-load finds with parallel axes: the usual way to size bearings, done here with the recorded load on a journal that can't tilt.
+A rigid rocker tilts only as far as its two journals are eccentric to different sides: the first term, below 1e-4 rad.
+Elastic, the right journal stands aslant by 9e-4 rad. Its film is thinnest at the bearing's edge, little more than half
+as thick as a calculation of the same bearing under the same load finds with parallel axes: the usual way to size
+bearings, done here with the recorded load on a journal that can't tilt.
 
 The rocker swings by +-20 degrees: twice per turn there is no entrainment and the squeeze of the film alone carries.
 
-Shaft and arm are geometrically exact beams (``ObjectBeamGeometricallyExact`` on ``NodeRigidBodyRxyz``, whose first angle is the swing); the rigid rocker is one body of
-the same mass and inertia, with the same bearings, and with Exudyn's ideal revolute joint. The coupler has no mass.
+Shaft and arm are geometrically exact beams (``ObjectBeamGeometricallyExact`` on ``NodeRigidBodyRxyz``, whose first
+angle is the swing); the rigid rocker is one body of the same mass and inertia, with the same bearings, and with
+Exudyn's ideal revolute joint. The coupler has no mass.
 
 Run ``python examples/four_bar_spatial.py``; pictures are written to ``results/four_bar_spatial``.
 """
@@ -90,8 +94,11 @@ def section() -> exu.BeamSection:
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Run:
-    """One simulated mechanism: recorded ``time`` (s), ``tool`` position (n, 3) in m, histories of left and right joint, reaction of the
-    ideal joint (n, 3) in N or None."""
+    """One simulated mechanism.
+
+    Recorded ``time`` (s), ``tool`` position (n, 3) in m, histories of left and right joint, reaction of the ideal joint
+    (n, 3) in N or None.
+    """
 
     time: np.ndarray
     tool: np.ndarray
@@ -143,10 +150,11 @@ class Mechanism:
         mass = mbs.AddObject(eii.ObjectMassPoint(nodeNumber=pin, mass=0.1))
         for k in range(3):
             self._constrain(
-                pin, k,
+                pin,
+                k,
                 offsetUserFunction=lambda mbs, t, item, offset, k=k: self._pin_displacement(t)[k],
                 offsetUserFunction_t=lambda mbs, t, item, offset, k=k: self._pin_velocity(t)[k],
-            )  # fmt: skip
+            )
         ends = [mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=mass)), ball]
         mbs.AddObject(eii.ObjectConnectorDistance(markerNumbers=ends, distance=COUPLER))
         self.tool = self._sensor(eii.SensorMarker, "Position", markerNumber=tool)
@@ -245,7 +253,8 @@ class Mechanism:
 def tilt_by_beam_theory(run: Run, *, elastic: bool) -> np.ndarray:
     """Slopes (n, 2) of the right journal from the eccentricities and the left film's force and moment; see the story.
 
-    Linear elements with one integration point, n between the bearings, have F s^2 (1/3 - 1/(12 n^2)) / EI in place of F s^2 / (3 EI).
+    Linear elements with one integration point, n between the bearings, have F s^2 (1/3 - 1/(12 n^2)) / EI in place
+    of F s^2 / (3 EI).
     """
     left, right = run.histories
     chord = (right.eccentricity - left.eccentricity) / SPAN
@@ -280,10 +289,11 @@ def with_parallel_axes(history: ehd.JointHistory, bearing: ehd.JournalBearing) -
             markerNumber=mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=journal)),
             loadVector=[0, 0, 0],
             loadVectorUserFunction=lambda mbs, now, load: [
-                *(-float(np.interp(now, t, history.force[:, k])) for k in (0, 1)), 0.0,
+                *(-float(np.interp(now, t, history.force[:, k])) for k in (0, 1)),
+                0.0,
             ],
         )
-    )  # fmt: skip
+    )
     joint = ehd.CreateLubricatedJoint(
         mbs, name="parallel", itemNumbers=[ground, journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing
     )
@@ -356,9 +366,12 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     axes[0, 1].plot([], [], color="black", ls=":", label="beam theory")
     kept = parallel.time >= begin
     axes[1, 0].plot(
-        degrees(parallel.time[kept]), 1e6 * parallel.minimum_gap[kept], color="black", ls=":",
+        degrees(parallel.time[kept]),
+        1e6 * parallel.minimum_gap[kept],
+        color="black",
+        ls=":",
         label="same load, parallel axes",
-    )  # fmt: skip
+    )
     labels = (
         "force in the right bearing [kN]",
         "tilt of the right journal [µrad]",
@@ -383,7 +396,7 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
 def main(
     *, quick: bool = False, output: str | pathlib.Path | None = "results/four_bar_spatial"
 ) -> dict[str, dict[str, float]]:
-    """Compare ideal joint, rigid and elastic rocker; returns the numbers by case, and of the journal with parallel axes.
+    """Compare ideal joint, rigid and elastic rocker; returns the numbers by case, parallel axes among them.
 
     Parameters
     ----------

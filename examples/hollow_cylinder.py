@@ -75,9 +75,13 @@ def simulate(counts: tuple[int, int, int], step: float, end: float, instants: li
         return True
 
     moved = mbs.AddSensor(
-        items.SensorNode(nodeNumber=exu.NodeIndex(top), outputVariableType=exu.OutputVariableType.Displacement,
-                         storeInternal=True, writeToFile=False)
-    )  # fmt: skip
+        items.SensorNode(
+            nodeNumber=exu.NodeIndex(top),
+            outputVariableType=exu.OutputVariableType.Displacement,
+            storeInternal=True,
+            writeToFile=False,
+        )
+    )
     stressed = mbs.AddSensor(
         items.SensorUserFunction(sensorUserFunction=stresses, storeInternal=True, writeToFile=False)
     )

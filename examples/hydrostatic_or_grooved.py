@@ -1,14 +1,16 @@
 """Where the oil comes in: a bearing with a supply groove, with and without an oil balance.
 
-A bearing of 100 mm diameter and 80 mm length (radial clearance 150 um, 10 mPa s, 3000 rpm) is fed through one axial groove of 15 degrees x 60 mm at 0.7 bar. Three
-questions are asked with Gumbel's condition (negative pressure clipped), Swift-Stieber's (pressure and slope vanish at the rupture line)
-and Elrod and Adams' (mass conserving):
+A bearing of 100 mm diameter and 80 mm length (radial clearance 150 um, 10 mPa s, 3000 rpm) is fed through one axial
+groove of 15 degrees x 60 mm at 0.7 bar. Three questions are asked with Gumbel's condition (negative pressure clipped),
+Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Adams' (mass conserving):
 
-1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gumbel are laid beside another
+1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gumbel are laid next to another
    finite-volume code on the same case.
-2. Where should the groove be? The load of 3 kN is fixed, the groove goes around. What flows in has to flow out: only the mass-conserving film knows,
+2. Where should the groove be? The load of 3 kN is fixed, the groove goes around. What flows in has to flow out: only
+the mass-conserving film knows,
    and only it notices that a groove under the load starves the film until it can't carry.
-3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of it.
+3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of
+it.
 
 Run ``python examples/hydrostatic_or_grooved.py``; pictures are written to ``results/hydrostatic_or_grooved``.
 """
@@ -33,8 +35,8 @@ LOAD, TURNING_LOAD, LOAD_SPEED = 3000.0, 2000.0, 0.1 * SPEED
 MASS = 5.0
 CLOSURES = {"Gumbel": ehd.Gumbel(), "Swift-Stieber": ehd.SwiftStieber(), "Elrod-Adams": ehd.ElrodAdams()}
 COLOURS = {"Gumbel": "tab:green", "Swift-Stieber": "tab:blue", "Elrod-Adams": "tab:red"}
-# Another finite-volume code on the grid 200 x 52, force on the shell in N, friction in N m: eccentricity ratio 0.5 towards
-# angle 0, the tilted rows with a tilt across the eccentricity that takes 30 % of the clearance at the ends.
+# Another finite-volume code on the grid 200 x 52, force on the shell in N, friction in N m: eccentricity ratio 0.5
+# towards angle 0, the tilted rows with a tilt across the eccentricity that takes 30 % of the clearance at the ends.
 OTHER_CODE = {
     ("Elrod-Adams", "aligned"): (1058.30, -1386.73, 1.38092),
     ("Gumbel", "aligned"): (811.49, -1396.89, 1.46715),
@@ -71,7 +73,10 @@ def at_a_position(film: ehd.FiniteLength) -> dict[tuple[str, str], ehd.SteadyRes
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """Over the groove's angle from the load's direction (k,) in degrees: smallest film in m, flow in and out in m3/s; nan where the film can't carry."""
+    """Smallest film in m, flow in and out in m3/s over the groove's angle from the load's direction (k,) in degrees.
+
+    nan where the film can't carry.
+    """
 
     angle: np.ndarray
     minimum_gap: np.ndarray
@@ -98,7 +103,7 @@ def around(closure: str, film: ehd.FiniteLength, *, step: float) -> Sweep:
 def turning_load(
     closure: str, film: ehd.FiniteLength, *, turns: float, steps_per_turn: int
 ) -> tuple[np.ndarray, ehd.JointHistory]:
-    """Journal under a load that turns with `LOAD_SPEED`; the load's angle from the groove in degrees (n,), and the history."""
+    """Journal under a load that turns with `LOAD_SPEED`: its angle from the groove in degrees (n,), and the history."""
     bearing = make_bearing(closure, 0.0, film)
     start = ehd.equilibrium(
         dataclasses.replace(bearing, cavitation=ehd.SwiftStieber()), speed=SPEED, load=(-TURNING_LOAD, 0.0)

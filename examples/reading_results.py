@@ -1,7 +1,7 @@
 """What can be read from a joint after a run: tables, files, pictures, an animation.
 
-A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an unbalance of 5 kN
-that turns with it. The numbers are made up; nothing is compared.
+A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an
+unbalance of 5 kN that turns with it. The numbers are made up; nothing is compared.
 
 Run ``python examples/reading_results.py``; everything is written to ``results/reading_results``.
 """

@@ -1,10 +1,12 @@
 """A rotating journal in a flexible bush: elastohydrodynamic pressure at a prescribed eccentricity.
 
-The second case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody Systems".
+The second case of P. Flores, "Modeling, Analysis and Simulation of 3D Elastohydrodynamic Revolute Joints in Multibody
+Systems".
 
-Length 66 mm, clearance 30 um, eccentricity 24 um, 3000 rpm, 9 mPa s, bush 20 mm thick with its outer surface fixed; E = 2.1e12 Pa as
-printed there, which is ten times steel, and steel, aluminium and a polymer. The paper leaves out the journal's radius; 30 mm
-assumed. Cavitation by Gumbel as in the paper and, beside it, mass conserving with a cavity 1 bar below the ends.
+Length 66 mm, clearance 30 um, eccentricity 24 um, 3000 rpm, 9 mPa s, bush 20 mm thick with its outer surface fixed; E =
+2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper leaves out the
+journal's radius; 30 mm assumed. Cavitation by Gumbel as in the paper and, beside it, mass conserving with a cavity 1
+bar below the ends.
 
 The flexible bore widens the film and lowers the peak; the film gets thicker.
 """
@@ -90,9 +92,12 @@ def main(*, quick: bool = False, results: str | Path | None = None) -> dict:
         inner_radius=0.03, thickness=0.02, length=0.066, axial=4, radial=2, circumferential=24 if quick else 40
     )
     rigid = ehd.JournalBearing(
-        journal_radius=0.03, length=0.066, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=9e-3),
+        journal_radius=0.03,
+        length=0.066,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=9e-3),
         film=ehd.FiniteLength(n_theta=64, n_z=8) if quick else ehd.FiniteLength(n_theta=96, n_z=16),
-    )  # fmt: skip
+    )
     moduli = {"steel": 2.1e11} if quick else MODULI
     cases: dict = {}
     for closure, cavitation in CLOSURES.items():
@@ -132,8 +137,11 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
             film = cases[closure, "aligned", name]["film"]
             axes.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
         axes.set(
-            xlabel="angle [°]", ylabel="pressure at the mid-plane [MPa]", title=f"aligned, {title}", xticks=range(0, 361, 60)
-        )  # fmt: skip
+            xlabel="angle [°]",
+            ylabel="pressure at the mid-plane [MPa]",
+            title=f"aligned, {title}",
+            xticks=range(0, 361, 60),
+        )
         axes.legend()
     for column, name in enumerate(("aligned", "tilted")):
         film = cases["Gumbel", name, "steel, modal"]["film"]
@@ -146,8 +154,11 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
         T, Z = np.meshgrid(angle, 1e3 * film.z, indexing="ij")
         view.plot_surface(T, Z, pressure, cmap="viridis", rcount=97, ccount=17)
         view.set(
-            xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gumbel: pressure [MPa]", xticks=range(0, 361, 90)
-        )  # fmt: skip
+            xlabel="angle [°]",
+            ylabel="z [mm]",
+            title=f"steel, {name}, Gumbel: pressure [MPa]",
+            xticks=range(0, 361, 90),
+        )
     return figure
 
 
@@ -198,9 +209,12 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
         film = cases["Gumbel", "aligned", name]["film"]
         gap.plot(*at_middle(film, 1e6 * film.gap), label=name.split(",")[0])
     gap.set(
-        xlabel="angle [°]", ylabel="film thickness at the mid-plane [µm]", ylim=(0, None), title="aligned, Gumbel",
+        xlabel="angle [°]",
+        ylabel="film thickness at the mid-plane [µm]",
+        ylim=(0, None),
+        title="aligned, Gumbel",
         xticks=range(0, 361, 60),
-    )  # fmt: skip
+    )
     gap.legend()
     film = cases["Gumbel", "tilted", "steel, modal"]["film"]
     axes = figure.add_subplot(1, 3, 3)
@@ -212,8 +226,11 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
     picture = axes.contourf(angle, 1e3 * film.z, 1e6 * shift.T, 24)
     figure.colorbar(picture, label="µm")
     axes.set(
-        xlabel="angle [°]", ylabel="z [mm]", title="radial displacement of the bore, steel, tilted", xticks=range(0, 361, 60)
-    )  # fmt: skip
+        xlabel="angle [°]",
+        ylabel="z [mm]",
+        title="radial displacement of the bore, steel, tilted",
+        xticks=range(0, 361, 60),
+    )
     return figure
 
 
@@ -225,7 +242,8 @@ if __name__ == "__main__":
     outcome = main(quick=arguments.quick, results=arguments.results)
     outcome.pop("pictures")
     print(
-        f"{'':55s}{'peak':>8s}{'load':>8s}{'min. film':>11s}{'extent':>8s}{'asymmetry':>11s}{'evaluation':>12s}{'solve':>8s}"
+        f"{'':55s}{'peak':>8s}{'load':>8s}{'min. film':>11s}{'extent':>8s}{'asymmetry':>11s}"
+        f"{'evaluation':>12s}{'solve':>8s}"
     )
     print(f"{'':55s}{'MPa':>8s}{'kN':>8s}{'um':>11s}{'°':>8s}{'-':>11s}{'ms':>12s}{'s':>8s}")
     for (closure, name, label), case in outcome.items():

@@ -1,26 +1,32 @@
 """A flexible rotor on two oil films runs up through oil whirl into oil whip.
 
-A steel shaft, 22 mm thick and 0.6 m long, runs in two bearings (diameter 30 mm, length 15 mm, radial clearance 0.1 mm, 0.05 Pa s) and carries
-a disc of 1.6 kg in its middle. The bushes sit in spherical seats and follow the shaft's slope, without which their edges would carry the whipping
-shaft. The numbers are our own, of the size of laboratory rotors that show whirl and whip. The shaft is a chain of geometrically exact beams
-(``ObjectBeamGeometricallyExact``) on ``NodeRigidBodyRxyz`` nodes, whose first angle is the spin: it may grow without limit, while the other two stay at the
+A steel shaft, 22 mm thick and 0.6 m long, runs in two bearings (diameter 30 mm, length 15 mm, radial clearance 0.1 mm,
+0.05 Pa s) and carries a disc of 1.6 kg in its middle. The bushes sit in spherical seats and follow the shaft's slope,
+without which their edges would carry the whipping shaft. The numbers are our own, of the size of laboratory rotors that
+show whirl and whip. The shaft is a chain of geometrically exact beams (``ObjectBeamGeometricallyExact``) on
+``NodeRigidBodyRxyz`` nodes, whose first angle is the spin: it may grow without limit, while the other two stay at the
 shaft's bend. The bearings' journals are the end nodes themselves.
 
 Three things are compared.
 
-* Linear theory: `equilibrium` gives position, K and C of a bearing at each speed; with the mass and stiffness matrices of the shaft (from Exudyn's
-  ``ComputeLinearizedSystem``) they make the rotor's eigenvalues. Where the largest real part changes sign, whirl begins. Beside it the
-  textbook's rotor of one mass on a massless shaft, for which the threshold needs only the critical mass and whirl ratio that `equilibrium` reports:
-  journals' mass + disc's mass / (1 - (nu / omega_n)^2) = critical mass (J. W. Lund, J. Tribology 109 (1987) 37, with the shaft in series).
-* Free vibration in time, started in the whirling mode at two speeds about the threshold: growth and frequency against the eigenvalue.
-* The run-up. A light tap on the disc every 0.2 s is what an instability can grow from. Beyond the threshold a whirl grows, first at the eigenvalue's
-  frequency; when it fills the clearance it jumps to half the spin, the mean speed of the oil. When half the spin comes near the
-  shaft's first bending frequency, the whirl bends away from it and stays a few per cent below that frequency however fast the rotor turns: whip.
-  It bends the shaft by fifty clearances. The journals stay on their films, but barely: at exactly half the spin a film has no wedge, so that it needs
-  all of its eccentricity to hold a journal that whirls close to it. The thinnest film is below a micrometre, where a real bearing rubs.
+* Linear theory: `equilibrium` gives position, K and C of a bearing at each speed; with the mass and stiffness matrices
+of the shaft (from Exudyn's
+  ``ComputeLinearizedSystem``) they make the rotor's eigenvalues. Where the largest real part changes sign, whirl
+  begins. Beside it the textbook's rotor of one mass on a massless shaft, for which the threshold needs only the
+  critical mass and whirl ratio that `equilibrium` reports: journals' mass + disc's mass / (1 - (nu / omega_n)^2) =
+  critical mass (J. W. Lund, J. Tribology 109 (1987) 37, with the shaft in series).
+* Free vibration in time, started in the whirling mode at two speeds about the threshold: growth and frequency against
+the eigenvalue. * The run-up. A light tap on the disc every 0.2 s is what an instability can grow from. Beyond the
+threshold a whirl grows, first at the eigenvalue's
+  frequency; when it fills the clearance it jumps to half the spin, the mean speed of the oil. When half the spin comes
+  near the shaft's first bending frequency, the whirl bends away from it and stays a few per cent below that frequency
+  however fast the rotor turns: whip. It bends the shaft by fifty clearances. The journals stay on their films, but
+  barely: at exactly half the spin a film has no wedge, so that it needs all of its eccentricity to hold a journal that
+  whirls close to it. The thinnest film is below a micrometre, where a real bearing rubs.
 
-K and C belong to small motions: the frequency of the limit cycle is not the eigenvalue's, and only the nonlinear film gives it. Gyroscopic moments
-are left out of the linear theory, since the disc in the middle does not tilt in the first mode, and so is what little moment the bushes transmit.
+K and C belong to small motions: the frequency of the limit cycle is not the eigenvalue's, and only the nonlinear film
+gives it. Gyroscopic moments are left out of the linear theory, since the disc in the middle does not tilt in the first
+mode, and so is what little moment the bushes transmit.
 
 Run ``python examples/rotor_oil_whirl.py``; pictures are written to ``results/rotor_oil_whirl``.
 """
@@ -90,19 +96,7 @@ class Rotor:
         u = np.zeros((count, 4)) if displacement is None else displacement
         v = np.zeros((count, 4)) if velocity is None else velocity
         spin = 0.0 if speed is None else speed(0.0)
-        self.nodes = [
-            mbs.AddNode(
-                eii.NodeRigidBodyRxyz(
-                    referenceCoordinates=[k * length, 0, 0, 0, 0, 0],
-                    initialCoordinates=[0, u[k, 0], u[k, 1], 0, u[k, 2], u[k, 3]],
-                    # the two bending angles count in the turning shaft
-                    initialVelocities=[
-                        0, v[k, 0], v[k, 1], spin, v[k, 2] + spin * u[k, 3], v[k, 3] - spin * u[k, 2],
-                    ],
-                )
-            )
-            for k in range(count)
-        ]  # fmt: skip
+        self.nodes = [self._node(k * length, u[k], v[k], spin) for k in range(count)]
         data = section()
         beams = [
             mbs.AddObject(eii.ObjectBeamGeometricallyExact(nodeNumbers=list(pair), length=length, sectionData=data))
@@ -125,26 +119,16 @@ class Rotor:
             mbs.AddLoad(
                 eii.LoadForceVector(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=taps(tap))
             )
-        self.joints = []
-        if film is not None:
-            self.joints = [
-                ehd.CreateLubricatedJoint(
-                    mbs,
-                    name=name,
-                    itemNumbers=[self._bush(x), node],
-                    position=[x, 0, 0],
-                    rotationMatrixAxes=[[0, 0, 1], [1, 0, 0], [0, 1, 0]],  # x, y of the joint are y, z of space
-                    bearing=film,
-                )
-                for name, node, x in (("left", self.nodes[0], 0.0), ("right", self.nodes[-1], SPAN))
-            ]
+        ends = (("left", self.nodes[0], 0.0), ("right", self.nodes[-1], SPAN))
+        self.joints = [] if film is None else [self._joint(film, *end) for end in ends]
         self._hold(self.nodes[0], 0)
         if speed is not None:
             self._hold(
-                self.nodes[elements // 2], 3,
+                self.nodes[elements // 2],
+                3,
                 offsetUserFunction=lambda mbs, t, item, offset: angle(t),
                 offsetUserFunction_t=lambda mbs, t, item, offset: speed(t),
-            )  # fmt: skip
+            )
         self.disc_sensor = mbs.AddSensor(
             eii.SensorNode(
                 nodeNumber=self.nodes[elements // 2],
@@ -153,6 +137,27 @@ class Rotor:
             )
         )
         mbs.Assemble()
+
+    def _node(self, x: float, u: np.ndarray, v: np.ndarray, spin: float):
+        """Node of the shaft: displacements and velocities (4,) in y, z and the two bending angles."""
+        return self.mbs.AddNode(
+            eii.NodeRigidBodyRxyz(
+                referenceCoordinates=[x, 0, 0, 0, 0, 0],
+                initialCoordinates=[0, u[0], u[1], 0, u[2], u[3]],
+                # the two bending angles count in the turning shaft
+                initialVelocities=[0, v[0], v[1], spin, v[2] + spin * u[3], v[3] - spin * u[2]],
+            )
+        )
+
+    def _joint(self, film: ehd.JournalBearing, name: str, node, x: float) -> ehd.LubricatedJoint:
+        return ehd.CreateLubricatedJoint(
+            self.mbs,
+            name=name,
+            itemNumbers=[self._bush(x), node],
+            position=[x, 0, 0],
+            rotationMatrixAxes=[[0, 0, 1], [1, 0, 0], [0, 1, 0]],  # x, y of the joint are y, z of space
+            bearing=film,
+        )
 
     def _bush(self, x: float):
         """Bush in a spherical seat: it follows the shaft's slope, but does not turn with it."""
@@ -271,7 +276,7 @@ class LinearRotor:
         return float(optimize.brentq(lambda w: self.mode(w)[0].real, 60.0 * HZ, 2.0 * self.first_bending, xtol=0.01))
 
     def threshold_of_one_mass(self) -> float:
-        """The same for the disc (with 17/35 of the shaft) on a massless shaft, the rest of the shaft at the journals."""
+        """The same for the disc with 17/35 of the shaft on a massless shaft, the rest of the shaft at the journals."""
         modal = 0.5 * (DISC_MASS + 17.0 / 35.0 * SHAFT_MASS)
         own = math.sqrt(24.0 * STEEL * INERTIA / SPAN**3 / modal)
 
@@ -283,13 +288,17 @@ class LinearRotor:
 
 
 def free_whirl(linear: LinearRotor, speed: float, *, turns: float, steps_per_turn: int) -> complex:
-    """Growth rate + i frequency (1/s) of the simulated rotor, released in its whirling mode 1 % of the clearance wide."""
+    """Growth rate + i frequency (1/s) of the simulated rotor, released in its whirling mode at 1 % of the clearance."""
     value, mode = linear.mode(speed)
     mode = mode / np.hypot(*np.abs(mode[0, :2])) * 0.01 * CLEARANCE
     rotor = Rotor(
-        linear.elements, linear.film, lambda t: speed, lambda t: speed * t,
-        linear.rest(speed) + mode.real, (value * mode).real,
-    )  # fmt: skip
+        linear.elements,
+        linear.film,
+        lambda t: speed,
+        lambda t: speed * t,
+        linear.rest(speed) + mode.real,
+        (value * mode).real,
+    )
     history, _, _ = rotor.run(turns * HZ / abs(value.imag), HZ / abs(value.imag) / steps_per_turn)
     t, y = history.time, history.eccentricity[:, 0] / (0.01 * CLEARANCE)
 
@@ -305,8 +314,8 @@ def free_whirl(linear: LinearRotor, speed: float, *, turns: float, steps_per_tur
 class RunUp:
     """The run-up on a uniform grid of times, with spectra of the left journal's forward motion.
 
-    ``speed`` (Hz), ``orbit`` x + i y of the journal and ``disc`` y + i z of the disc (m), ``gap`` smallest film (m); ``spectrum_speed`` (k,) and
-    ``frequency`` (n,) in Hz with ``amplitude`` (n, k) in m.
+    ``speed`` (Hz), ``orbit`` x + i y of the journal and ``disc`` y + i z of the disc (m), ``gap`` smallest film (m);
+    ``spectrum_speed`` (k,) and ``frequency`` (n,) in Hz with ``amplitude`` (n, k) in m.
     """
 
     time: np.ndarray
@@ -349,9 +358,17 @@ def run_up(linear: LinearRotor, first: float, last: float, duration: float, step
     orbit = at(h.eccentricity[:, 0]) + 1j * at(h.eccentricity[:, 1])
     window = round(0.2 / step)
     frequency, centres, amplitude = signal.spectrogram(
-        orbit, 1.0 / step, window="hann", nperseg=window, noverlap=window * 9 // 10, nfft=8 * window,
-        return_onesided=False, detrend="constant", scaling="spectrum", mode="magnitude",
-    )  # fmt: skip
+        orbit,
+        1.0 / step,
+        window="hann",
+        nperseg=window,
+        noverlap=window * 9 // 10,
+        nfft=8 * window,
+        return_onesided=False,
+        detrend="constant",
+        scaling="spectrum",
+        mode="magnitude",
+    )
     kept = np.flatnonzero((frequency > 0.0) & (frequency < 1.2 * last))
     return RunUp(
         time=t,
@@ -398,13 +415,8 @@ def figures(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ri
     }
 
 
-@styled(10.0)
-def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride: RunUp, path: pathlib.Path) -> None:
-    """Waterfall, frequencies and growth rates against linear theory, orbits."""
-    threshold, bending = linear.threshold() / HZ, linear.first_bending / HZ
-    fig = plt.figure(figsize=(14, 9), layout="constrained")
-    grid = fig.add_gridspec(2, 3, width_ratios=(1.5, 1, 1))
-    water = fig.add_subplot(grid[:, 0])
+def _draw_waterfall(water, ride: RunUp, threshold: float, bending: float) -> None:
+    """Spectra of the left journal over the spin."""
     lines = np.linspace(0, ride.spectrum_speed.size - 1, 34).round().astype(int)
     height = 0.09 * (ride.spectrum_speed[-1] - ride.spectrum_speed[0]) / (0.5 * CLEARANCE)
     for order, k in enumerate(lines[::-1]):
@@ -418,14 +430,22 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     water.axvline(bending, color="tab:red", ls="-.", label="first bending frequency", **guide)
     water.axhline(threshold, color="tab:green", ls="--", label="threshold of linear theory", **guide)
     water.set(
-        xlabel="frequency [Hz]", ylabel="spin [Hz]", xlim=(20, ride.frequency[-1]), ylim=(ends[0] - 1.0, ends[1] + 12.0),
+        xlabel="frequency [Hz]",
+        ylabel="spin [Hz]",
+        xlim=(20, ride.frequency[-1]),
+        ylim=(ends[0] - 1.0, ends[1] + 12.0),
         title=f"forward motion of the left journal\n(0.5 c = {height * 0.5 * CLEARANCE:.1f} Hz high)",
-    )  # fmt: skip
+    )
     water.legend(loc="upper center", bbox_to_anchor=(0.5, -0.06), ncols=2, frameon=False)
 
-    speeds = np.linspace(0.85 * threshold, ends[1], 40)
+
+def _draw_modes(
+    frequency, growth, linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride: RunUp, threshold: float
+) -> None:
+    """Whirl frequency and growth rate over the spin, from time and from linear theory."""
+    bending = linear.first_bending / HZ
+    speeds = np.linspace(0.85 * threshold, ride.spectrum_speed[-1] + 4.0, 40)
     modes = [linear.mode(HZ * s)[0] for s in speeds]
-    frequency, growth = fig.add_subplot(grid[0, 1]), fig.add_subplot(grid[0, 2])
     grown = ride.spectrum_speed > 1.02 * threshold
     frequency.plot(ride.spectrum_speed[grown], ride.peak()[grown], color="tab:blue", lw=2, label="run-up")
     frequency.plot(speeds, [m.imag / HZ for m in modes], color="black", ls=":", label="linear theory")
@@ -445,7 +465,10 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     growth.axvline(threshold, color="tab:green", ls="--", label="threshold")
     growth.set(xlabel="spin [Hz]", ylabel="growth rate [1/s]", xlim=(0.87 * threshold, 1.3 * threshold), ylim=(-19, 27))
     growth.legend(loc="lower right")
-    orbits, disc = fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2])
+
+
+def _draw_orbits(orbits, disc, ride: RunUp, threshold: float, bending: float) -> None:
+    """Left journal and disc before the whirl, in it, and in the whip."""
     around = np.exp(1j * np.linspace(0.0, HZ, 200))
     orbits.plot(around.real, around.imag, color="grey", lw=1)
     chosen = (
@@ -467,6 +490,17 @@ def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride:
     orbits.set(xlabel="y / c [-]", ylabel="z / c [-]", aspect="equal", title="left journal in its bearing")
     disc.set(xlabel="y [mm]", ylabel="z [mm]", aspect="equal", title="disc")
     disc.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False)
+
+
+@styled(10.0)
+def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride: RunUp, path: pathlib.Path) -> None:
+    """Waterfall, frequencies and growth rates against linear theory, orbits."""
+    threshold, bending = linear.threshold() / HZ, linear.first_bending / HZ
+    fig = plt.figure(figsize=(14, 9), layout="constrained")
+    grid = fig.add_gridspec(2, 3, width_ratios=(1.5, 1, 1))
+    _draw_waterfall(fig.add_subplot(grid[:, 0]), ride, threshold, bending)
+    _draw_modes(fig.add_subplot(grid[0, 1]), fig.add_subplot(grid[0, 2]), linear, rates, ride, threshold)
+    _draw_orbits(fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2]), ride, threshold, bending)
     fig.savefig(path, dpi=85)
     plt.close(fig)
 

@@ -1,16 +1,17 @@
 """A slider-crank mechanism whose gudgeon-pin bearing is filled with oil.
 
-The crank turns at 5000 rpm. The bearing between connecting rod (housing) and the slider's pin (journal) is modelled three times:
+The crank turns at 5000 rpm. The bearing between connecting rod (housing) and the slider's pin (journal) is modelled
+three times:
 
 * ideal: Exudyn's revolute joint,
 * literature: clearance 0.5 mm and 0.4 Pa s, as in the studies of clearance joints that use this mechanism
-  (P. Flores, J. Ambrosio, Computers & Structures 82 (2004) 1359: crank 0.05 m, 0.30 kg, 1e-4 kg m2; rod 0.12 m, 0.21 kg,
-  2.5e-4 kg m2; slider 0.14 kg). A clearance of 5 % of the radius is no bearing that one would build, and the package warns; it shows
-  what play does,
+  (P. Flores, J. Ambrosio, Computers & Structures 82 (2004) 1359: crank 0.05 m, 0.30 kg, 1e-4 kg m2; rod 0.12 m, 0.21
+  kg, 2.5e-4 kg m2; slider 0.14 kg). A clearance of 5 % of the radius is no bearing that one would build, and the
+  package warns; it shows what play does,
 * realistic: clearance 20 um and 0.02 Pa s.
 
-The pin swings by +-24.6 degrees only: there are two instants per turn without any entrainment, in which the squeeze of the
-film alone carries the load.
+The pin swings by +-24.6 degrees only: there are two instants per turn without any entrainment, in which the squeeze of
+the film alone carries the load.
 
 Run ``python examples/slider_crank.py``; pictures are written to ``results/slider_crank``.
 """
@@ -38,14 +39,15 @@ ROD_MASS, ROD_INERTIA = 0.21, 2.5e-4
 SLIDER_MASS = 0.14
 SPEED = 5000.0 * 2.0 * math.pi / 60.0
 PIN_RADIUS, PIN_LENGTH = 0.010, 0.020
+COLOURS = {"literature": "tab:orange", "realistic": "tab:blue"}
 
 
 @dataclass(frozen=True, kw_only=True)
 class Run:
     """One simulated mechanism; arrays over the recorded instants.
 
-    ``angle`` crank angle (rad), ``slider`` position and ``acceleration`` (m, m/s2), ``force`` of the joint on the pin in global
-    x, y (N), ``moment`` that drives the crank (Nm), ``history`` of the joint or None.
+    ``angle`` crank angle (rad), ``slider`` position and ``acceleration`` (m, m/s2), ``force`` of the joint on the pin
+    in global x, y (N), ``moment`` that drives the crank (Nm), ``history`` of the joint or None.
     """
 
     angle: np.ndarray
@@ -80,8 +82,11 @@ def _planar_body(mbs, name: str, mass: float, inertia: float, position, velocity
     return node, mbs.AddObject(eii.ObjectRigidBody2D(name=name, nodeNumber=node, mass=mass, inertia=inertia))
 
 
-def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn: int) -> Run:
-    """Run the mechanism from the outer dead centre at full speed; ``bearing=None`` is the ideal joint."""
+def build(bearing: ehd.JournalBearing | None):
+    """The mechanism at its outer dead centre at full speed; returns the system, its sensors and the lubricated joint.
+
+    ``bearing=None`` is the ideal joint.
+    """
     SC = exu.SystemContainer()
     mbs = SC.AddSystem()
     rod_spin = -SPEED * CRANK / ROD
@@ -109,12 +114,10 @@ def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn
             offsetUserFunction_t=lambda mbs, t, item, offset: SPEED,
         )
     )
-    joint = None
+    sensors, joint = {}, None
     if bearing is None:
         pin = mbs.AddObject(eii.ObjectJointRevolute2D(markerNumbers=[marker(rod, ROD / 2), marker(slider, 0)]))
-        force_sensor = mbs.AddSensor(
-            eii.SensorObject(objectNumber=pin, storeInternal=True, outputVariableType=exu.OutputVariableType.Force)
-        )
+        sensors["pin"] = _force_sensor(mbs, pin)
     else:
         joint = ehd.CreateLubricatedJoint(
             mbs,
@@ -124,19 +127,24 @@ def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn
             axis=[0, 0, 1],
             bearing=bearing,
         )
-    sensors = {
-        name: mbs.AddSensor(
-            eii.SensorNode(
-                nodeNumber=slider_node, storeInternal=True, outputVariableType=getattr(exu.OutputVariableType, name)
-            )
+    for name in ("Displacement", "Acceleration"):
+        kind = getattr(exu.OutputVariableType, name)
+        sensors[name] = mbs.AddSensor(
+            eii.SensorNode(nodeNumber=slider_node, storeInternal=True, outputVariableType=kind)
         )
-        for name in ("Displacement", "Acceleration")
-    }
-    moment_sensor = mbs.AddSensor(
-        eii.SensorObject(objectNumber=drive, storeInternal=True, outputVariableType=exu.OutputVariableType.Force)
-    )
+    sensors["drive"] = _force_sensor(mbs, drive)
     mbs.Assemble()
+    return mbs, sensors, joint
 
+
+def _force_sensor(mbs, item):
+    force = exu.OutputVariableType.Force
+    return mbs.AddSensor(eii.SensorObject(objectNumber=item, storeInternal=True, outputVariableType=force))
+
+
+def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn: int) -> Run:
+    """Run the mechanism from the outer dead centre at full speed; ``bearing=None`` is the ideal joint."""
+    mbs, sensors, joint = build(bearing)
     settings = exu.SimulationSettings()
     period = 2.0 * math.pi / SPEED
     settings.timeIntegration.endTime = turns * period
@@ -150,30 +158,31 @@ def simulate(bearing: ehd.JournalBearing | None, *, turns: float, steps_per_turn
     ehd.SolveDynamic(mbs, settings)
     seconds = time.perf_counter() - start
 
-    def stored(sensor):
-        return mbs.GetSensorStoredData(sensor)
-
-    position = stored(sensors["Displacement"])
-    angle = SPEED * position[:, 0]
+    stored = {name: mbs.GetSensorStoredData(sensor) for name, sensor in sensors.items()}
+    position = stored["Displacement"]
     if joint is None:
-        force = -stored(force_sensor)[:, 1:3]  # Exudyn reports the force on the other side
+        force = -stored["pin"][:, 1:3]  # Exudyn reports the force on the other side
     else:
-        h = joint.history
-        turn = np.interp(position[:, 0], h.time, np.unwrap(_rod_angle(h.time)))
-        local = np.column_stack([np.interp(position[:, 0], h.time, h.force[:, k]) for k in (0, 1)])
-        c, s = np.cos(turn), np.sin(turn)
-        force = np.column_stack([c * local[:, 0] - s * local[:, 1], s * local[:, 0] + c * local[:, 1]])
+        force = _force_in_space(joint.history, position[:, 0])
     return Run(
-        angle=angle,
+        angle=SPEED * position[:, 0],
         slider=CRANK + ROD + position[:, 1],
-        acceleration=stored(sensors["Acceleration"])[:, 1],
+        acceleration=stored["Acceleration"][:, 1],
         force=force,
-        moment=stored(moment_sensor)[:, 1],
+        moment=stored["drive"][:, 1],
         history=None if joint is None else joint.history,
         bearing=bearing,
         steps=settings.timeIntegration.numberOfSteps,
         seconds=seconds,
     )
+
+
+def _force_in_space(h: ehd.JointHistory, time: np.ndarray) -> np.ndarray:
+    """Force on the pin in global x, y (n, 2), N; the history holds it in the rod's frame."""
+    turn = np.interp(time, h.time, np.unwrap(_rod_angle(h.time)))
+    local = np.column_stack([np.interp(time, h.time, h.force[:, k]) for k in (0, 1)])
+    c, s = np.cos(turn), np.sin(turn)
+    return np.column_stack([c * local[:, 0] - s * local[:, 1], s * local[:, 0] + c * local[:, 1]])
 
 
 def _rod_angle(t: np.ndarray) -> np.ndarray:
@@ -221,13 +230,22 @@ def print_table(rows: dict[str, dict[str, float]], ideal: Run, start_up: float) 
         print(f"{key:32s}{first}" + "".join(f"{row[key]:14.4g}" for row in rows.values()))
 
 
+def _over_the_crank_angle(axes, end: int, which: str) -> None:
+    for ax in axes:
+        ax.set(
+            xlabel="crank angle after start-up [°]",
+            xlim=(0, end),
+            xticks=range(0, end + 1, 90 if end == 360 else 180),
+        )
+        ax.grid(alpha=0.3, which=which)
+
+
 @styled(10.0)
-def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path) -> None:
-    """Mechanism figures over the crank angle, and the bearing's orbit, film and pressure."""
+def draw_mechanism(ideal: Run, runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
+    """Slider, joint force and driving moment over the crank angle."""
     end = round(math.degrees(ideal.angle[-1]) - 360.0 * start_up)
-    colours = dict(zip(runs, ("tab:orange", "tab:blue"), strict=True))
     fig, axes = plt.subplots(2, 2, figsize=(11, 7.5), layout="constrained")
-    everyone = {"ideal joint": (ideal, "black")} | {name: (run, colours[name]) for name, run in runs.items()}
+    everyone = {"ideal joint": (ideal, "black")} | {name: (run, COLOURS[name]) for name, run in runs.items()}
     for name, (run, colour) in everyone.items():
         late = _after(run, start_up)
         degrees = np.degrees(run.angle[late]) - 360.0 * start_up
@@ -251,31 +269,31 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
         "crank moment [Nm]",
     )
     for ax, label in zip(axes.flat, labels, strict=True):
-        ax.set(
-            xlabel="crank angle after start-up [°]",
-            ylabel=label,
-            xlim=(0, end),
-            xticks=range(0, end + 1, 90 if end == 360 else 180),
-        )
-        ax.grid(alpha=0.3)
+        ax.set(ylabel=label)
+    _over_the_crank_angle(axes.flat, end, "major")
     axes[0, 1].legend(loc="upper center", bbox_to_anchor=(0.5, 1.14), ncols=3, frameon=False)
     fig.suptitle("Slider-crank at 5000 rpm: ideal and lubricated gudgeon-pin bearing", x=0.27)
-    fig.savefig(folder / "mechanism.png", dpi=120)
+    fig.savefig(path, dpi=120)
     plt.close(fig)
 
+
+@styled(10.0)
+def draw_bearing(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
+    """Orbit, film and pressure of the lubricated pins."""
     fig, axes = plt.subplots(1, 3, figsize=(13, 4.4), layout="constrained")
     around = np.linspace(0, 2 * np.pi, 200)
     axes[0].plot(np.cos(around), np.sin(around), color="grey", lw=1)
     for name, run in runs.items():
+        end = round(math.degrees(run.angle[-1]) - 360.0 * start_up)
         h, bearing = run.history, run.bearing
         assert h is not None and bearing is not None
         kept = h.time >= start_up * 2.0 * math.pi / SPEED
         degrees = np.degrees(SPEED * h.time[kept]) - 360.0 * start_up
         c = bearing.radial_clearance
         label = f"{name}: c = {1e6 * c:g} µm, {bearing.lubricant.viscosity:g} Pa s"
-        axes[0].plot(*(h.eccentricity[kept].T / c), color=colours[name], label=label)
-        axes[1].semilogy(degrees, h.minimum_gap[kept] / c, color=colours[name])
-        axes[2].plot(degrees, 1e-6 * h.peak_pressure[kept], color=colours[name])
+        axes[0].plot(*(h.eccentricity[kept].T / c), color=COLOURS[name], label=label)
+        axes[1].semilogy(degrees, h.minimum_gap[kept] / c, color=COLOURS[name])
+        axes[2].plot(degrees, 1e-6 * h.peak_pressure[kept], color=COLOURS[name])
     axes[0].set(
         xlabel="x / c (along the rod) [-]",
         ylabel="y / c [-]",
@@ -285,14 +303,8 @@ def draw(ideal: Run, runs: dict[str, Run], start_up: float, folder: pathlib.Path
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
     axes[1].set(ylabel="minimum gap / clearance [-]", title="minimum film")
     axes[2].set(ylabel="peak pressure [MPa]", title="peak pressure")
-    for ax in axes[1:]:
-        ax.set(
-            xlabel="crank angle after start-up [°]",
-            xlim=(0, end),
-            xticks=range(0, end + 1, 90 if end == 360 else 180),
-        )
-        ax.grid(alpha=0.3, which="both")
-    fig.savefig(folder / "bearing.png", dpi=120)
+    _over_the_crank_angle(axes[1:], end, "both")
+    fig.savefig(path, dpi=120)
     plt.close(fig)
 
 
@@ -328,7 +340,8 @@ def main(
     if output is not None:
         folder = pathlib.Path(output)
         folder.mkdir(parents=True, exist_ok=True)
-        draw(ideal, runs, start_up, folder)
+        draw_mechanism(ideal, runs, start_up, folder / "mechanism.png")
+        draw_bearing(runs, start_up, folder / "bearing.png")
         print(f"\npictures: {folder / 'mechanism.png'}, {folder / 'bearing.png'}")
     return rows
 

@@ -1,15 +1,16 @@
 """A shaft that rests on its bush, is started, and coasts to a stop: mixed friction, lift-off and wear.
 
-Journal bearings wear when they start and stop. A steel shaft of 5 kg (50 mm diameter, bush of bronze 25 mm long, 25 um radial clearance, oil of 20 mPa s)
-is pressed down by 2 kN. At rest its asperities carry everything. A motor with a speed governor brings it to 60 rad/s in 0.2 s: the film takes over
-within a few radians per second. Then the motor is cut, and the shaft coasts on the film's drag until the film gives way and
-the asperities stop it.
+Journal bearings wear when they start and stop. A steel shaft of 5 kg (50 mm diameter, bush of bronze 25 mm long, 25 um
+radial clearance, oil of 20 mPa s) is pressed down by 2 kN. At rest its asperities carry everything. A motor with a
+speed governor brings it to 60 rad/s in 0.2 s: the film takes over within a few radians per second. Then the motor is
+cut, and the shaft coasts on the film's drag until the film collapses and the asperities stop it.
 
-The asperity contact is Greenwood and Tripp's with boundary friction of 0.1, the film's average flow Patir and Cheng's (composite
-roughness 0.5 um, both surfaces isotropic), the wear Archard's with 1e-16 m2/N, a common value for boundary lubrication, one start standing for a thousand.
+The asperity contact is Greenwood and Tripp's with boundary friction of 0.1, the film's average flow Patir and Cheng's
+(composite roughness 0.5 um, both surfaces isotropic), the wear Archard's with 1e-16 m2/N, a common value for boundary
+lubrication, one start standing for a thousand.
 
-Shown beside each other: the Stribeck curve of steady running (``ehd.stribeck``) and the friction that the shaft meets on its way up and down, which
-leaves the curve where the film is squeezed or drawn in.
+Shown side by side: the Stribeck curve of steady running (``ehd.stribeck``) and the friction that the shaft meets
+on its way up and down, which leaves the curve where the film is squeezed or drawn in.
 
 Run ``python examples/start_stop.py``; the picture is written to ``results/start_stop``.
 """

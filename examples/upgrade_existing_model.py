@@ -1,12 +1,13 @@
 """An existing model before and after: the revolute joints of Exudyn's rigid-body tutorial become oil-filled.
 
-Two links hang on each other by revolute joints and fall under gravity, as in the tutorial that most users of Exudyn begin with (J. Gerstmayr, Exudyn's
-example ``rigidBodyTutorial3``: links of 1 m, 0.1 m wide, 5000 kg/m3, first axis z, second axis x, a force of 0.5 N and a torque of
-0.1 Nm on the tip; pins of 20 mm radius and 140 mm length). ``before`` builds it with ideal joints, ``after`` with bearings: the program prints
-the difference of the two functions, which is all that a model needs. The bearings have a radial clearance of 40 um and a gear oil of 0.4 Pa s.
+Two links hang on each other by revolute joints and fall under gravity, as in the tutorial that most users of Exudyn
+begin with (J. Gerstmayr, Exudyn's example ``rigidBodyTutorial3``: links of 1 m, 0.1 m wide, 5000 kg/m3, first axis z,
+second axis x, a force of 0.5 N and a torque of 0.1 Nm on the tip; pins of 20 mm radius and 140 mm length). ``before``
+builds it with ideal joints, ``after`` with bearings: the program prints the difference of the two functions, which is
+all that a model needs. The bearings have a radial clearance of 40 um and a gear oil of 0.4 Pa s.
 
-What the bearings change: the pins tilt and travel within their clearance, the film brakes the fall, and what it takes out of the mechanism's
-energy is what its losses add up to.
+What the bearings change: the pins tilt and travel within their clearance, the film brakes the fall, and what it takes
+out of the mechanism's energy is what its losses add up to.
 
 Run ``python examples/upgrade_existing_model.py``; the picture is written to ``results/upgrade_existing_model``.
 """

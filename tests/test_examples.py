@@ -32,13 +32,15 @@ def test_rotating_journal(example, tmp_path):
         for name in ("aligned", "tilted"):
             rigid = cases[closure, name, "rigid"]
             liner, modal, nodal = (cases[closure, name, f"steel, {kind}"] for kind in ("liner", "modal", "nodal"))
-            # the paper's conclusion: flexibility widens the film, by one interval of the grid and more, and lowers the peak
+            # the paper's conclusion: flexibility widens the film, by one interval of the grid and more, and lowers the
+            # peak
             for elastic in (liner, modal, nodal):
                 assert elastic["peak_MPa"] < 0.9 * rigid["peak_MPa"]
                 assert elastic["extent_deg"] >= rigid["extent_deg"] + 360 / 64 - 1e-9
             for solid in (modal, nodal):
                 assert solid["minimum_gap_um"] > 1.02 * rigid["minimum_gap_um"]
-            # columns give way too little at the ends and are none beyond them; the modes of tolerance 0.02 on a coarse film grid
+            # columns deflect too little at the ends and are none beyond them; the modes of tolerance 0.02 on a coarse
+            # film grid
             assert liner["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.05)
             assert modal["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.015)
             assert modal["minimum_gap_um"] == pytest.approx(nodal["minimum_gap_um"], rel=0.04)
@@ -74,7 +76,7 @@ def test_fe_connecting_rod(example, tmp_path):
 
 
 def test_modes_of_the_connecting_rod_deform_as_the_mesh_does(example):
-    """The whole mesh solved under a pressure that the modes weren't made for: 59 um at the bore, 0.19 um of it beyond the modes."""
+    """The whole mesh under a pressure that the modes weren't made for: 59 um at the bore, 0.19 um beyond the modes."""
     module = example("fe_connecting_rod")
     fem, report = module.rod_fem(module.SHANKS["narrow shank"], tolerance=0.02)
     assert report.error <= 0.02
@@ -96,11 +98,12 @@ def test_engine_big_end(example, tmp_path):
     short, finite, gumbel, balance, elastic = (
         rows[name] for name in ("short", "finite", "Gumbel", "oil balance", "elastic")
     )
-    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its smallest film
+    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its smallest
+    # film
     assert short["largest_distance_to_reference_orbit"] < 0.003
     assert short["minimum_film_um"] == pytest.approx(6.448, abs=0.01)
-    # a short bearing is too stiff at L / D = 0.4, by 18 % in the smallest film; clipping makes it thinner, cavities that
-    # have to be refilled much more so
+    # a short bearing is too stiff at L / D = 0.4, by 18 % in the smallest film; clipping makes it thinner, cavities
+    # that have to be refilled much more so
     assert finite["minimum_film_um"] == pytest.approx(5.29, abs=0.03)
     assert balance["minimum_film_um"] < gumbel["minimum_film_um"] < finite["minimum_film_um"] < short["minimum_film_um"]
     # 5 MPa hardly deform a steel bush
@@ -132,15 +135,17 @@ def test_elastic_slider_crank(example, tmp_path):
         for name in ("ideal pins, rigid rod", "ideal pins, elastic rod", "oil, rigid rod", "oil, elastic rod")
     )
     assert ideal["slider_position_um"] == 0.0
-    # with ideal pins the slider leaves the rigid mechanism's path by the rod's stretch (its bow shortens the chord by 0.1 um)
+    # with ideal pins the slider leaves the rigid mechanism's path by the rod's stretch (its bow shortens the chord by
+    # 0.1 um)
     theory = rows["beam theory on this mesh"]
     assert bent["slider_position_um"] == pytest.approx(theory["rod_stretch_um"], rel=0.01)
     for row in (bent, elastic):
         assert row["rod_stretch_um"] == pytest.approx(theory["rod_stretch_um"], rel=0.01)
-        # 3 %: quasi-static theory against a first bending frequency of 19 times the crank's, and what is left of the start-up
+        # 3 %: quasi-static theory against a first bending frequency of 19 times the crank's, and what is left of the
+        # start-up
         assert row["rod_deflection_um"] == pytest.approx(theory["rod_deflection_um"], rel=0.03)
-    # with oil it leaves it by the eccentricities of both pins at most, along a rod inclined by up to 24.6 degrees, with the
-    # elastic rod by the stretch too
+    # with oil it leaves it by the eccentricities of both pins at most, along a rod inclined by up to 24.6 degrees, with
+    # the elastic rod by the stretch too
     eccentricity = 20 * sum(rigid[f"{pin}_eccentricity_ratio"] for pin in ("crank_pin", "gudgeon_pin")) / 0.909
     assert 20 < rigid["slider_position_um"] < eccentricity
     assert rigid["slider_position_um"] + 3 < elastic["slider_position_um"] < eccentricity + bent["slider_position_um"]
@@ -191,12 +196,13 @@ def test_four_bar_spatial(example, tmp_path):
     rows = example("four_bar_spatial").main(quick=True, output=tmp_path)
     assert (tmp_path / "four_bar_spatial.png").stat().st_size > 10_000
     ideal, rigid, elastic, parallel = rows.values()
-    # the films of the rigid rocker carry what the ideal joint does, and let the tool off its path by about the eccentricity times the
-    # leverage of the arm, the elastic rocker by its bend
+    # the films of the rigid rocker carry what the ideal joint does, and let the tool off its path by about the
+    # eccentricity times the leverage of the arm, the elastic rocker by its bend
     assert rigid["largest_reaction_N"] == pytest.approx(ideal["largest_reaction_N"], rel=0.01)
     assert rigid["tool_deviation_um"] < 2.2 * 16 * rigid["right_eccentricity_ratio"]
     assert elastic["tool_deviation_um"] > 10 * rigid["tool_deviation_um"]
-    # a straight line through both journals, and a beam bent by the left film's force and moment; 0.5 %: the shaft's own inertia
+    # a straight line through both journals, and a beam bent by the left film's force and moment; 0.5 %: the shaft's own
+    # inertia
     assert rigid["beam_theory_off_by_urad"] < 1e-3 * rigid["right_tilt_urad"]
     assert elastic["beam_theory_off_by_urad"] < 5e-3 * elastic["right_tilt_urad"]
     # misalignment from elasticity: edge film and pressure against the bearing with parallel axes under the same load
@@ -227,8 +233,12 @@ def test_hydrostatic_or_grooved(example, tmp_path):
 def test_reading_results(example, tmp_path):
     found = example("reading_results").main(quick=True, results=tmp_path)
     assert [path.name for path in found["files"]] == [
-        "bearing.csv", "bearing.npz", "fill.png", "overview.png", "revolutions.csv"
-    ]  # fmt: skip
+        "bearing.csv",
+        "bearing.npz",
+        "fill.png",
+        "overview.png",
+        "revolutions.csv",
+    ]
     table, history, films = found["revolutions"], found["history"], found["films"]
     # friction slows the flywheel by less than 1e-4 per turn, so that the second one is not finished
     assert len(table) == 1
@@ -246,7 +256,7 @@ def test_reading_results(example, tmp_path):
 
 @pytest.mark.slow
 def test_rotating_journal_over_all_stiffnesses(example):
-    """The full grid: the softer the bush, the lower the peak and the wider the film, from the rigid limit on; bushes agree."""
+    """The full grid: the softer the bush, the lower the peak and the wider the film; bushes agree."""
     cases = example("rotating_journal").main()
     materials = ("E = 2.1e12 (paper)", "steel", "aluminium", "polymer")
     for closure in ("Gumbel", "mass conserving"):
