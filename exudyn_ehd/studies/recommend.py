@@ -11,8 +11,8 @@ from typing import Any
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.models import Film
 from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.studies.accuracy_table import (
     DATA,
@@ -223,13 +223,14 @@ def _unlike_measured_bushes(bearing: JournalBearing) -> str:
 
 def _elasticity(bearing: JournalBearing, speed: float | None) -> tuple[str, float]:
     """Kind of the bore, one of those that were measured, and its elasticity parameter."""
-    bush: Any = bearing.bush
+    bush = bearing.bush
     if bush is None:
         return "rigid", 0.0
     if speed is None:
         raise InputError("recommend: a flexible bore needs the speed, rad/s: its elasticity parameter grows with it.")
     if isinstance(bush, ElasticLiner):
         return "liner", elasticity_parameter(bearing, bush.compliance, speed)
+    assert isinstance(bush, ModalBush) and isinstance(bush.mesh, HollowCylinder)
     mesh, material = bush.mesh, bush.material
     compliance = bore_compliance(mesh.thickness, mesh.inner_radius, material.youngs_modulus, material.poisson_ratio)
     return "solid", elasticity_parameter(bearing, compliance, speed)

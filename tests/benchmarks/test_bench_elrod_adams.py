@@ -18,10 +18,15 @@ def _model(n_theta, n_z, cavitation=None, **options):
     closure = ehd.ElrodAdams(cavity_pressure=-1e5) if cavitation is None else cavitation
     return build_model(
         ehd.JournalBearing(
-            journal_radius=0.01, length=0.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=0.04),
-            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure, **options,
+            journal_radius=0.01,
+            length=0.02,
+            radial_clearance=2e-5,
+            lubricant=ehd.Lubricant(viscosity=0.04),
+            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+            cavitation=closure,
+            **options,
         )
-    )  # fmt: skip
+    )
 
 
 def _motion(k):

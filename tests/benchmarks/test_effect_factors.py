@@ -1,8 +1,9 @@
-"""Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table of factors.
+"""Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table.
 
-Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves undisturbed.
-Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state 1.25, of density 1.5, lumped heat
-1.05, field of heat 2.5), for others what was measured plus a twentieth, all times 1.02: so far do two runs on a shared machine differ.
+Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves
+undisturbed. Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state
+1.25, of density 1.5, lumped heat 1.05, field of heat 2.5), for others what was measured plus a twentieth, all times
+1.02: so far do two runs on a shared machine differ.
 """
 
 import math
@@ -20,17 +21,35 @@ from tests.benchmarks.accuracy.table import format_costs
 pytestmark = pytest.mark.benchmark
 
 EVALUATION_LIMITS = {
-    "`VogelTemperature`": 1.05, "`PatirCheng`": 1.1, "`GreenwoodTripp`": 1.15, "`PatirCheng`, `GreenwoodTripp`": 1.2, "`Crown`": 1.1,
-    "`GreenwoodTripp`, `ArchardWear`": 1.25, "`ElasticLiner`": 2.0, "`RegularisedWall`": 1.1, "`squeeze=False`": 1.05,
-    "`PatirCheng`, unequally rough": 1.35, "`BarusPressure`": 1.2, "`RoelandsPressure`": 1.2, "`CarreauShear`": 1.2,
-    "`DowsonHigginson`": 1.5, "`DowsonHigginson`, `BarusPressure`": 1.5, "`ElrodAdams`, `DowsonHigginson`": 1.5,
+    "`VogelTemperature`": 1.05,
+    "`PatirCheng`": 1.1,
+    "`GreenwoodTripp`": 1.15,
+    "`PatirCheng`, `GreenwoodTripp`": 1.2,
+    "`Crown`": 1.1,
+    "`GreenwoodTripp`, `ArchardWear`": 1.25,
+    "`ElasticLiner`": 2.0,
+    "`RegularisedWall`": 1.1,
+    "`squeeze=False`": 1.05,
+    "`PatirCheng`, unequally rough": 1.35,
+    "`BarusPressure`": 1.2,
+    "`RoelandsPressure`": 1.2,
+    "`CarreauShear`": 1.2,
+    "`DowsonHigginson`": 1.5,
+    "`DowsonHigginson`, `BarusPressure`": 1.5,
+    "`ElrodAdams`, `DowsonHigginson`": 1.5,
     "`ElrodAdams`, `DowsonHigginson`, `BarusPressure`": 1.5,
-}  # fmt: skip
-# Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by more solves.
+}
+# Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by
+# more solves.
 STEP_LIMITS = {
-    "`BarusPressure`": 1.25, "`RoelandsPressure`": 1.25, "`CarreauShear`": 1.25, "`DowsonHigginson`": 1.5,
-    "`DowsonHigginson`, `BarusPressure`": 1.5, "`LumpedThermal`": 1.05, "`FilmEnergy`": 2.5,
-}  # fmt: skip
+    "`BarusPressure`": 1.25,
+    "`RoelandsPressure`": 1.25,
+    "`CarreauShear`": 1.25,
+    "`DowsonHigginson`": 1.5,
+    "`DowsonHigginson`, `BarusPressure`": 1.5,
+    "`LumpedThermal`": 1.05,
+    "`FilmEnergy`": 2.5,
+}
 MARGIN = 1.02
 SMALLER = {"journal_radius": 0.025, "length": 0.05, "radial_clearance": 25e-6, "end_pressures": (1e5, 1e5)}
 AT_REST = np.tile([13e-6, 5e-6, 1e-4, -1.5e-4, 1e-3, -1e-3, 0.05, 0.02, 250.0, 0.3], (3, 1))
@@ -48,7 +67,7 @@ def test_effects_on_the_orbit():
 @pytest.mark.parametrize("name", STEP_LIMITS)
 @pytest.mark.parametrize("base", [effects.PLAIN, effects.CONSERVING], ids=["swift", "elrod"])
 def test_law_at_rest(name, base):
-    """Only two models in turns: the short history of a lumped temperature is sensitive to what else the processor's cache holds."""
+    """Only two models in turns: a lumped temperature's short history feels what else the processor's cache holds."""
     law = name if base == effects.PLAIN else f"{base}, {name}"
     models = {n: build_model(plain_bearing(**SMALLER, **effects.CASES[n].options)) for n in (base, law)}
     times = effects.block(models, AT_REST, 80)
@@ -88,7 +107,7 @@ def test_impedance_map_in_microseconds():
 
 
 def test_off_costs_nothing():
-    """A bearing that spells every option out as None against a model without effects: noise of a few per cent at most."""
+    """A bearing that spells every option out as None against a model without effects: a few per cent of noise."""
     off = dict.fromkeys(("contact", "asperity", "roughness", "wear", "profile", "thermal", "bush"))
     described = build_model(plain_bearing(**off, supply=()))
     models = {"described": described, "bare": type(described)(described.bearing, effects=Effects())}

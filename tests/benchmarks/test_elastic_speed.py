@@ -1,4 +1,4 @@
-"""Cost of flexible bushes beside a rigid bore; ``-m benchmark``. Scene, cases and measure are those of the shipped table (`bush_costs`).
+"""Cost of flexible bushes over a rigid bore; ``-m benchmark``. Scene, cases and measure are those of `bush_costs.csv`.
 
 Targets: 2 times the rigid bore with 31 modes (aligned), 3 times with 87 (tilted); 1.2 ms per film Jacobian with 31
 modes; 60 ms and 0.35 s per step with 4x1x24 and 4x2x40 elements. Run with one thread for the numeric libraries

@@ -1,8 +1,8 @@
 """Speed of the film: evaluation with exact tangent, growth with the grid, equilibrium, and the ratio to SOR.
 
-Run with ``pytest -m benchmark tests/benchmarks``; medians count, compilation is apart. The journal moves along an orbit, 1 degree
-and a small change of eccentricity per evaluation (a time step of 3 degrees with three evaluations), so that the active set has
-to follow as in a time integration.
+Run with ``pytest -m benchmark tests/benchmarks``; medians count, compilation is apart. The journal moves along an
+orbit, 1 degree and a small change of eccentricity per evaluation (a time step of 3 degrees with three evaluations), so
+that the active set has to follow as in a time integration.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def _sor(kx, kz, b, pc, relax, tolerance, P):
 
 
 class _RelaxedFilm:
-    """The same film, solved by SOR from the last pressure, with a tangent by forward differences of all ten components."""
+    """The same film, solved by SOR from the last pressure, tangent by forward differences of all ten components."""
 
     def __init__(self, bearing, relax, tolerance):
         self.model, self.relax, self.tolerance = build_model(bearing), relax, tolerance
@@ -155,9 +155,9 @@ class _RelaxedFilm:
 def test_against_sor(make_bearing, n_theta, n_z, capsys):
     """At least 15 times faster than SOR with its best relaxation and a difference tangent, in the same run.
 
-    SOR stops when the largest change in a sweep falls below a share of the peak. The ratio counts at the loosest tolerance
-    that keeps the force's error below 1e-8, which an implicit solver with a Newton tolerance of 1e-6 needs (the direct solution
-    is at rounding, and its tangent is exact). All tolerances are printed.
+    SOR stops when the largest change in a sweep falls below a share of the peak. The ratio counts at the loosest
+    tolerance that keeps the force's error below 1e-8, which an implicit solver with a Newton tolerance of 1e-6 needs
+    (the direct solution is at rounding, and its tangent is exact). All tolerances are printed.
     """
     bearing = make_bearing(1.0, film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
 
@@ -182,7 +182,8 @@ def test_against_sor(make_bearing, n_theta, n_z, capsys):
         error_tangent = float(abs(difference[:2, :2] + tangent[:2, :2]).max()) / stiff
         slow = _median_ms(_RelaxedFilm(bearing, best, tolerance), rounds=20)
         lines.append(
-            f"  tolerance {tolerance:.0e}: {slow:.2f} ms, force error {error_force:.1e}, stiffness error {error_tangent:.1e}, "
+            f"  tolerance {tolerance:.0e}: {slow:.2f} ms, force error {error_force:.1e}, "
+            f"stiffness error {error_tangent:.1e}, "
             f"factor {slow / fast:.0f}"
         )
         assert error_ours < error_force

@@ -1,7 +1,7 @@
 """Time per step of whole models.
 
-Peers on the same step-load orbit: another multibody code needs 59 and 192 ms per step on these grids (axial x circumferential
-vertices 13x49 and 21x81). Targets here: 1 and 2 ms; slider-crank 2 ms per step.
+Peers on the same step-load orbit: another multibody code needs 59 and 192 ms per step on these grids (axial x
+circumferential vertices 13x49 and 21x81). Targets here: 1 and 2 ms; slider-crank 2 ms per step.
 """
 
 import math
@@ -16,9 +16,13 @@ pytestmark = pytest.mark.benchmark
 @pytest.mark.parametrize(("n_theta", "n_z"), [(48, 12), (80, 20), (96, 10)])
 def test_step_load_orbit(benchmark, planar_rotor, n_theta, n_z):
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.025, radial_clearance=50e-6, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z, stretch=0.0), cavitation=ehd.Gumbel(),
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=50e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z, stretch=0.0),
+        cavitation=ehd.Gumbel(),
+    )
     steps = 200
 
     def model():

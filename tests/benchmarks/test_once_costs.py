@@ -1,4 +1,8 @@
-"""What is paid once; ``-m benchmark``. Targets: 20 s for the first film with an empty kernel cache, 2 s from the cache, 10 s for an impedance map, 3 s for modes."""
+"""What is paid once; ``-m benchmark``.
+
+Targets: 20 s for the first film with an empty kernel cache, 2 s from the cache, 10 s for an impedance map, 3 s for
+modes.
+"""
 
 import pytest
 

@@ -38,19 +38,27 @@ def make(laws, thermal, cavitation):
     oil = ehd.Lubricant(viscosity=0.02, temperature_law=WALTHER, **laws)
     return build_model(
         ehd.JournalBearing(
-            journal_radius=0.025, length=0.05, radial_clearance=25e-6, lubricant=oil, cavitation=cavitation, thermal=thermal,
+            journal_radius=0.025,
+            length=0.05,
+            radial_clearance=25e-6,
+            lubricant=oil,
+            cavitation=cavitation,
+            thermal=thermal,
             end_pressures=(1e5, 1e5),
         )
-    )  # fmt: skip
+    )
 
 
 def make_orbiting(laws):
     return build_model(
         ehd.JournalBearing(
-            journal_radius=R, length=0.03, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.03, **laws),
+            journal_radius=R,
+            length=0.03,
+            radial_clearance=C,
+            lubricant=ehd.Lubricant(viscosity=0.03, **laws),
             film=ehd.FiniteLength(n_theta=96, n_z=10),
         )
-    )  # fmt: skip
+    )
 
 
 def timed(call):
@@ -81,7 +89,8 @@ def test_factor_over_the_plain_film(name, cavitation):
             best[k] = np.minimum(best[k], step_time(model, histories[k]))
     plain, law = best @ (3.0, 2.0, 1.0)
     print(
-        f"{name} {type(cavitation).__name__}: plain {1e3 * plain:.3f} ms, with the law {1e3 * law:.3f} ms, {law / plain:.2f}"
+        f"{name} {type(cavitation).__name__}: "
+        f"plain {1e3 * plain:.3f} ms, with the law {1e3 * law:.3f} ms, {law / plain:.2f}"
     )
     assert law / plain < MARGIN * target
 
@@ -116,6 +125,7 @@ def test_density_on_an_orbit(name, eccentricity_ratio):
                 times[k] = min(times[k], evaluate + tangent)
     plain, law = best.mean(axis=1)
     print(
-        f"{name} on an orbit at {eccentricity_ratio}: plain {1e6 * plain:.0f} us, with the law {1e6 * law:.0f} us, {law / plain:.2f}"
+        f"{name} on an orbit at {eccentricity_ratio}: "
+        f"plain {1e6 * plain:.0f} us, with the law {1e6 * law:.0f} us, {law / plain:.2f}"
     )
     assert law / plain < MARGIN * target

@@ -85,14 +85,17 @@ def test_steps_of_a_scene(benchmark, scene):
     benchmark.extra_info["films_per_step"] = outcome.films
 
 
-# Largest exponents over all sizes. A banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed shape, which only large
-# grids approach (measured 1.6, 1.5); the mass-conserving film solves several such systems (1.3 to 2.0). Products with the k modes' shapes cost k,
-# those of the modal Jacobian k^2 (1.1 between 29 and 243 modes). A joint costs the same, whatever else is in the model (1.0): more would be
-# a search or a copy over all joints.
+# Largest exponents over all sizes. A banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed
+# shape, which only large grids approach (measured 1.6, 1.5); the mass-conserving film solves several such systems (1.3
+# to 2.0). Products with the k modes' shapes cost k, those of the modal Jacobian k^2 (1.1 between 29 and 243 modes). A
+# joint costs the same, whatever else is in the model (1.0): more would be a search or a copy over all joints.
 GROWTH_LIMITS = {
-    "SwiftStieber, force": 2.0, "SwiftStieber, force and tangent": 2.0, "ElrodAdams, force and tangent": 2.3,
-    "modal bush, force and tangent": 1.5, "step of a model": 1.25,
-}  # fmt: skip
+    "SwiftStieber, force": 2.0,
+    "SwiftStieber, force and tangent": 2.0,
+    "ElrodAdams, force and tangent": 2.3,
+    "modal bush, force and tangent": 1.5,
+    "step of a model": 1.25,
+}
 # The same between the two largest sizes (measured 1.5 and 1.0).
 LAST_LIMITS = {"modal bush, force and tangent": 2.0, "step of a model": 1.25}
 

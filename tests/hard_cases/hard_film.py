@@ -73,7 +73,7 @@ def step_load_mass_conserving():
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-1e5), film=ehd.FiniteLength())
     rotor, run = step_load(made, 0.04)
     h = run.history
-    # from the reference orbit with the Guembel condition: 0.754 at 14 ms; the
+    # from the reference orbit with the Gümbel condition: 0.754 at 14 ms; the
     # oil that the cavity keeps changes it by little
     k = int(np.argmax(h.eccentricity_ratio))
     assert abs(h.eccentricity_ratio[k] - 0.754) < 0.04
@@ -98,7 +98,7 @@ def step_load_vented():
     return run
 
 
-@hard_case("Guembel orbit under a step load")
+@hard_case("Gümbel orbit under a step load")
 def step_load_gumbel():
     """Pressures are clipped after the solution, so that the tangent jumps where a vertex changes sides."""
     rotor, run = step_load(bearing(cavitation=ehd.Gumbel(), film=ehd.FiniteLength()), 0.03)
@@ -131,7 +131,7 @@ def tilted_orbit(closure):
     return run
 
 
-@hard_case("tilted Guembel bearing, t_c = 0.3")
+@hard_case("tilted Gümbel bearing, t_c = 0.3")
 def tilted_gumbel():
     """Where other codes cycle: a tilted bearing whose clipped pressures change sides at each iteration."""
     return tilted_orbit(ehd.Gumbel())

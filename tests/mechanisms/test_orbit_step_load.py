@@ -1,7 +1,7 @@
 """Orbit of a journal under a step load against another multibody code.
 
 Journal of 2 kg, d = 50 mm, c = 50 um, B = 25 mm, 0.02 Pa s, 100 pi rad/s; 2000 N in -y from t = 0,
-concentric at rest; Guembel condition, ends at ambient pressure, closed ring. Reference:
+concentric at rest; Gümbel condition, ends at ambient pressure, closed ring. Reference:
 ``orbit_step_load_gumbel.csv``, run with steps of 0.1 ms on two film grids (axial x circumferential
 vertices 13x49 and 21x81), which differ by up to 0.0025 c from each other.
 """

@@ -1,4 +1,4 @@
-"""Half Sommerfeld (Guembel) film against an independent solver: linear solution, then negative pressure cut off.
+"""Half Sommerfeld (Gümbel) film against an independent solver: linear solution, then negative pressure cut off.
 
 Inlet: p = 0 on the line of maximum gap. The linear periodic film is antisymmetric
 about that line, so both inlets give the same; both are tested. Grid 128 x 12.

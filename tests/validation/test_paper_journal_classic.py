@@ -1,7 +1,7 @@
 """The paper's rotating journal with a rigid bearing, by the paper's own scheme;
 reference by independent finite volumes.
 
-L 66 mm, c 30 um, e 24 um, 3000 rpm, 9 mPa s, Guembel; the radius is not printed: 30 and 33 mm.
+L 66 mm, c 30 um, e 24 um, 3000 rpm, 9 mPa s, Gümbel; the radius is not printed: 30 and 33 mm.
 """
 
 from __future__ import annotations

@@ -155,9 +155,13 @@ def _check_order(names: list[str], runs: int) -> None:
 
 
 def _measure(study: Study, path: pathlib.Path, repeats: int, processes: int) -> None:
-    beside = os.cpu_count() or 1
     rows = run_study(
-        study, repeats=repeats, budget=BUDGET, processes=processes, reference_processes=beside, progress=_say
+        study,
+        repeats=repeats,
+        budget=BUDGET,
+        processes=processes,
+        reference_processes=os.cpu_count() or 1,
+        progress=_say,
     )
     times = f"median and quartiles of {min(repeats, 3)} to {repeats} runs in turns"
     write_table(path, Row, rows, [study.title, f"time per {study.scene.per}; {machine()}; {times}"])

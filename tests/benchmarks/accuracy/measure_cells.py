@@ -22,8 +22,8 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import Film, FiniteLength
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.studies.accuracy_table import (

@@ -2,7 +2,7 @@
 
 A free journal of 6.6 kg on six coordinates (R 30 mm, L 66 mm, c 30 um, 9 mPa s, 3000 rpm, film 80 x 16, steel bush of
 20 mm) under a load of 15 kN that swings at the speed of rotation, h = 0.1 ms, Newton to 1e-6; tilted cases load it
-beside its middle. Runs of all bores take turns in a process; times are process times, factors those of one process.
+next to its middle. Runs of all bores take turns in a process; times are process times, factors those of one process.
 Several processes, one after the other, tell how much these differ from one to the next: more than from turn to turn,
 since the products of modal bushes feel what else shares the processor's caches.
 """
@@ -30,10 +30,10 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import ModalBush, bore_modes
+from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.errors.study import Progress

@@ -24,8 +24,8 @@ from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.tables import format_seconds, read_rows, write_rows
 from tests.benchmarks.accuracy.scenes import mechanisms
 from tests.benchmarks.accuracy.scenes.measured import STEEL

@@ -14,9 +14,8 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove
-from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import ModalBush
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as Material
 from tests.benchmarks.accuracy.errors.study import Reference, Study
 from tests.benchmarks.accuracy.scenes.setting import Scene, Setting
@@ -36,7 +35,7 @@ CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 
 CAVITY = -1e5
 SOLID = "elastic solid"
 BushLevel = tuple[MeshSize, float, Grid | None]
-# Mesh, tolerance and film are refined together: next to the ends a bore gives way within less than an interval of a
+# Mesh, tolerance and film are refined together: next to the ends a bore deflects within less than an interval of a
 # coarse film, and finer modes on such a film converge to something else.
 BUSH_LEVELS: tuple[BushLevel, ...] = (
     ((4, 2, 32), 8e-3, (128, 16)),

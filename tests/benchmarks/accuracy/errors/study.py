@@ -153,10 +153,10 @@ def run_study(
     else:
         rungs = [_first(study, setting, say) for setting in study.settings]
         _repeat(rungs, repeats, budget, say)
-    beside = max(processes, reference_processes)
-    if beside > 1:
-        say(f"{study.name}: {len(references)} settings of references, {beside} side by side")
-        levels = _in_parallel(study, references, beside)
+    workers = max(processes, reference_processes)
+    if workers > 1:
+        say(f"{study.name}: {len(references)} settings of references, {workers} side by side")
+        levels = _in_parallel(study, references, workers)
     else:
         levels = [_attempt(study, setting, say) for setting in references]
     found = _references(study, levels)

@@ -70,7 +70,7 @@ def _row(rows: Sequence[Row], setting: str, quantity: str) -> Row:
 
 
 def paper_text(folder: pathlib.Path) -> str:
-    """The paper's scheme beside film models of this package."""
+    """The paper's scheme next to film models of this package."""
     rows, notes = read_table(folder / "steady_800_film.csv", Row)
     (paper,) = (row for row in rows if "(paper)" in row.setting and row.quantity == "load")
     coarse, default, film_map = (_row(rows, name, "load") for name in ("2D 48 x 6", "2D 96 x 10", "map"))
