@@ -2,11 +2,12 @@
 
 Module map
 ----------
-seams       what an effect must offer to take part
-model       from a bearing's description to its evaluation
-bore        shapes of an elastic bore and their balance
-tangent     derivatives of the wrench
-heat        temperature over time
-static      steady films, equilibrium, Stribeck curve
-audit       which effects mattered
+solved_film  one evaluation as a record: what all below but the seams read
+seams        what an effect must offer to take part
+bore         shapes of an elastic bore and their balance
+tangent      derivatives of the wrench
+heat         temperature over time
+model        from a bearing's description to its evaluation
+audit        which effects mattered
+static       steady films, equilibrium, Stribeck curve
 """

@@ -1,22 +1,19 @@
 """The seams of a bearing model: what an effect must offer to take part. Absent effects are absent from these tuples.
 
-All fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by the model's ``pressure_scale``; contact pressures and
-pressure laws are in Pa.
+All fields are (n, m) arrays on the film grid in scaled form as in `exudyn_ehd.joint.solved_film`; contact pressures and pressure laws are in Pa.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.liner import ElasticLiner
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 __all__ = [
     "Contact",
@@ -24,38 +21,12 @@ __all__ = [
     "FluxEffect",
     "GapLimiter",
     "GapTerm",
-    "History",
     "PressureLaw",
     "ShearFactor",
     "ShearProduct",
     "ThermalEffect",
     "Wear",
 ]
-
-
-@dataclass(frozen=True, eq=False)
-class History:
-    """What a bearing remembers between accepted steps; absent effects leave None.
-
-    Attributes
-    ----------
-    mass : (n, m) array or None
-        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
-    wear : (n, m) array or None
-        Scaled wear depth of the bore.
-    temperature : float, (n, m) array or None
-        Film temperature, K.
-    deflection : (n, m) array or None
-        Scaled deflection of an elastic liner.
-    density : (n, m) array or None
-        Density ratio of a compressible film (mass-conserving closures with a heat balance).
-    """
-
-    mass: np.ndarray | None = None
-    wear: np.ndarray | None = None
-    temperature: float | np.ndarray | None = None
-    deflection: np.ndarray | None = None
-    density: np.ndarray | None = None
 
 
 class GapTerm(Protocol):
@@ -144,29 +115,22 @@ class ShearFactor(Protocol):
 
 
 class ThermalEffect(Protocol):
-    """Temperature of the film: history of accepted steps, and viscosity of the next one.
+    """Temperature of the film: part of the history of accepted steps, and of the viscosity of the next one.
 
     The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it will become.
     """
 
-    @property
-    def temperature(self) -> float | np.ndarray:
-        """K, of the film that was evaluated last."""
+    def initial_temperature(self, shape: tuple[int, int]) -> float | np.ndarray:
+        """K, at the start of a motion, on a grid of this shape."""
 
-    def initial_temperature(self, model: BearingModel) -> float | np.ndarray:
-        """K, at the start of a motion."""
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """Bring the effect's viscosity field to a temperature, K; returns the viscosity over the reference that the whole film shares."""
 
-    def begin(self, model: BearingModel, history: History | None) -> None:
-        """Set the viscosity for the temperature of the history."""
+    def advance(self, film: SolvedFilm) -> float | np.ndarray:
+        """Temperature at the end of a solved film's step, K."""
 
-    def advance(self, model: BearingModel) -> float | np.ndarray:
-        """Temperature at the end of the step that was evaluated last, K."""
-
-    def steady_temperature(self, model: BearingModel) -> float | np.ndarray:
-        """Temperature in balance with the heat of the last evaluation, K; not finite if there is none."""
-
-    def quantities(self) -> dict[str, float]:
-        """``film_temperature`` and ``peak_temperature`` of the film that was evaluated last, K."""
+    def steady_temperature(self, film: SolvedFilm) -> float | np.ndarray:
+        """Temperature in balance with the heat of a solved film, K; not finite if there is none."""
 
 
 class ShearProduct:

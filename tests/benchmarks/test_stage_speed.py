@@ -10,6 +10,7 @@ from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.loads import film_loads
 from tests.benchmarks.accuracy import order
 from tests.benchmarks.accuracy.costs import effects, growth
 from tests.benchmarks.accuracy.scenes import measured
@@ -26,13 +27,14 @@ def _stage_runs(grid):
     model = build_model(growth.plain_bearing(film=ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])))
     states = growth.motions()
     evaluation = model.evaluate(states[0])
-    s, g, y, z = model.solver, model.grid, model.solver.system, model.grid.z
-    vx = 0.5 * model.omega
+    film = evaluation.film
+    s, g, y, z, p, w = film.solver, film.grid, film.solver.system, film.grid.z, film.parts, film.journal
+    vx = 0.5 * w.omega
 
     def gap():
-        rigid_gap(model.pose, model.cos_x, model.sin_x, z, 1.0, s.H)
-        rigid_gap(model.pose, model.cos_f, model.sin_f, z, 1.0, s.HF)
-        rigid_gap(model.rate, model.cos_x, model.sin_x, z, 0.0, s.H_t)
+        rigid_gap(w.pose, p.cos_x, p.sin_x, z, 1.0, s.H)
+        rigid_gap(w.pose, p.cos_f, p.sin_f, z, 1.0, s.HF)
+        rigid_gap(w.rate, p.cos_x, p.sin_x, z, 0.0, s.H_t)
 
     def coefficients():
         conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
@@ -46,9 +48,9 @@ def _stage_runs(grid):
         "coefficients": coefficients,
         "solve": lambda: s.closure.solve(y, s.work),
         "tangent": evaluation.tangent,
-        "integrals": lambda: pressure_integrals(model.P, g.weight, model.cos_x, model.sin_x, z, out),
-        "loads": model._loads,
-        "quantities": model.quantities,
+        "integrals": lambda: pressure_integrals(film.oil.P, g.weight, p.cos_x, p.sin_x, z, out),
+        "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None),
+        "quantities": evaluation.quantities,
     }
 
 

@@ -61,9 +61,9 @@ def test_random_states(make_bearing, closure, film, pressures):
         assert all(math.isfinite(v) for v in evaluation.quantities().values())
         p = model.solver.pressure
         assert np.isfinite(p).all()
-        assert (p >= model.cavity_pressure).all()
-        np.testing.assert_allclose(p[:, 0], ends[0] / model.pressure_scale)
-        np.testing.assert_allclose(p[:, -1], ends[1] / model.pressure_scale)
+        assert (p >= model.scales.cavity).all()
+        np.testing.assert_allclose(p[:, 0], ends[0] / model.scales.pressure)
+        np.testing.assert_allclose(p[:, -1], ends[1] / model.scales.pressure)
     print(f"{closure.__name__}: at most {largest} linear solves")
     assert largest <= 30
 

@@ -207,9 +207,9 @@ class Scene:
     def liner_energy(self):
         """Energy of an elastic liner at the film evaluated last, int p delta / 2 dA, J."""
         model = self.joint.element.model
-        pressure = model.P * model.pressure_scale
+        pressure = model.solver.pressure * model.scales.pressure
         area = model.grid.weight * model.grid.reference_length**2
-        return 0.5 * float(np.sum(pressure * model.liner_solver.deflection * CLEARANCE * area))
+        return 0.5 * float(np.sum(pressure * model.solver.deflection * CLEARANCE * area))
 
     def momentum(self):
         """Linear and angular momentum (6,) of bodies and bush about the global origin."""
@@ -259,7 +259,7 @@ class Scene:
         kinetic, elastic, power, damping = rows[:, :4].T
         taken = np.trapezoid(history.power_loss, t)
         change = kinetic[-1] - kinetic[0] + elastic[-1] - elastic[0]
-        if getattr(self.joint.element.model, "liner_solver", None) is not None:
+        if self.joint.element.model.remembers_deflection:
             change += self.liner_energy()
             self.joint.element.model.initial_history(history.motion[0])
             change -= self.liner_energy()

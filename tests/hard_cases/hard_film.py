@@ -31,7 +31,7 @@ def starved():
     # oil over the whole run, by the steps' own rule (backward Euler): fed -
     # leaked = held at the end - held at the start
     model = rotor.joint.element.model
-    volume = np.outer(model.grid.width_x, model.grid.width_z) * model.flow_scale
+    volume = np.outer(model.grid.width_x, model.grid.width_z) * model.parts.flow_scale
     end, gap = model.solver.content.copy(), model.solver.H.copy()
     start = model.initial_history(h.motion[0]).mass
     fed = float(np.sum(np.diff(h.time) * (h.supply_flow[1:] - h.leakage[1:])))

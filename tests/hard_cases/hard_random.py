@@ -234,9 +234,9 @@ def balance_error(model):
     wide = y.kx + np.roll(y.kx, 1, axis=0) + y.kz
     wide[:, 1:] += y.kz[:, :-1]
     flow = np.maximum(flow, 1e-5 * wide * np.abs(P).max())
-    if model.liner_solver is not None:
+    if model.parts.liner is not None:
         # pressures that deflect a liner by less than 1e-10 of the smallest gap count as none
-        flow = np.maximum(flow, wide * (1e-10 * s.H.min() / model.liner_solver.beta / BALANCE))
+        flow = np.maximum(flow, wide * (1e-10 * s.H.min() / model.parts.liner.beta / BALANCE))
     scale = np.maximum(flow, 1e-6 * flow.max()) + 1e-300
     free = ~g.fixed
     unbroken = free & (
@@ -249,28 +249,27 @@ def balance_error(model):
     return max(float(error), float(np.max((-out / scale)[free & ~unbroken], initial=0.0)))
 
 
-def beyond_law(model):
+def beyond_law(model, motion, past):
     """Whether the film of constant density and viscosity exceeds what the oil's laws reach."""
     law = model.effects.pressure_law
     if law is None:
         return False
-    if model.compressible is not None:
+    if model.parts.compressible is not None:
         bearing = dataclasses.replace(
             model.bearing, lubricant=ehd.Lubricant(viscosity=model.bearing.lubricant.viscosity)
         )
-        twin = build_model(bearing)
-        return twin.evaluate(model.motion, *model.start).quantities()["peak_pressure"] > LARGEST_PRESSURE
-    if model.compliant is not None:
+        return build_model(bearing).evaluate(motion, *past).quantities()["peak_pressure"] > LARGEST_PRESSURE
+    if model.parts.compliant is not None:
         # the last film that pseudo time reached on its way
-        highest = float(model.compliant.load[LOAD_P].max()) * model.pressure_scale
+        highest = float(model.parts.compliant.load[LOAD_P].max()) * model.scales.pressure
         return highest > 0.9 * law.largest_pressure
     highest = float(law.transform(np.array([law.largest_pressure]))[0])
-    return float(model.solver.pressure.max()) * model.pressure_scale > highest * (1.0 - 1e-9)
+    return float(model.solver.pressure.max()) * model.scales.pressure > highest * (1.0 - 1e-9)
 
 
-def check(model, evaluation):
-    """What is wrong with an evaluation, or None; and its balance error."""
-    if evaluation.status is ehd.Status.NO_PRESSURE and beyond_law(model):
+def check(model, evaluation, past):
+    """What is wrong with an evaluation from the ``past`` (history, step), or None; and its balance error."""
+    if evaluation.status is ehd.Status.NO_PRESSURE and beyond_law(model, evaluation.motion, past):
         return SOLID, 0.0
     if isinstance(model.bearing.film, ehd.ImpedanceMap):
         return check_map(model, evaluation), 0.0
@@ -288,7 +287,7 @@ def check(model, evaluation):
         return "pressure below the cavity's", 0.0
     if s.closure.conserves_mass and (s.fill.min() < 0.0 or s.fill.max() > 1.0):
         return "fill outside 0 to 1", 0.0
-    if not hasattr(s.system, "kx") or model.compressible is not None:
+    if not hasattr(s.system, "kx") or model.parts.compressible is not None:
         return None, 0.0
     error = balance_error(model)
     return ("balance" if not error <= BALANCE else None), error
@@ -345,7 +344,7 @@ def transient_campaign(name: str, make: Callable, states: int, seed: int, per_mo
             new[4:8] = (new[:4] - motion[:4]) / step
             motion = new
             evaluation = model.evaluate(motion, history, step, spin=0.3 * k)
-            if count(record, model, evaluation, (seed, bearing, motion, step)):
+            if count(record, model, evaluation, (seed, bearing, motion, step), (history, step)):
                 history = evaluation.history()
             else:
                 history = model.initial_history(motion)
@@ -353,9 +352,9 @@ def transient_campaign(name: str, make: Callable, states: int, seed: int, per_mo
     return record
 
 
-def count(record, model, evaluation, context) -> bool:
+def count(record, model, evaluation, context, past=(None, 0.0)) -> bool:
     """Enter one evaluation; whether it was a film."""
-    wrong, balance = check(model, evaluation)
+    wrong, balance = check(model, evaluation, past)
     record.states += 1
     record.worst = max(record.worst, evaluation.iterations)
     record.total += evaluation.iterations

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.solved_film import History
 
 R, L, C = 0.02, 0.02, 25e-6
 RATE = 2.0 * math.pi * 50.0
@@ -82,15 +82,15 @@ class Balances:
 
     def look(self, time, trial):
         row, model = self.row(time, trial), self.element.model
-        old, step = model.start
+        old, step = trial.memory, trial.step
         if row is not None and isinstance(old, History) and step > 0.0:
-            new, s = model.history(), model.solver
+            film, new, s = trial.evaluation.film, trial.evaluation.history(), model.solver
             if old.mass is not None:
                 inflow, gain = s.inflow(), float(np.sum((new.mass - old.mass) * s.area)) / step
                 self.oil = max(self.oil, abs(inflow.sum() - gain) / (np.abs(inflow).sum() + abs(gain)))
                 assert s.fill.min() >= 0.0 and s.fill.max() <= 1.0
             if old.temperature is not None:
-                b = model.effects.thermal.balance(model, new.temperature)
+                b = model.effects.thermal.balance(film, new.temperature)
                 error = abs(b["heat_in"] - b["carried_out"] - b["conducted"] - b["stored"])
                 self.heat = max(self.heat, error / max(abs(v) for v in b.values()))
         return row

@@ -254,7 +254,7 @@ def test_elrod_adams_loses_no_oil_over_a_run(run, measured, bush):
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-5e4), end_pressures=ENDS, bush=bush)
     history, _ = run(made)
     model = build_model(made)
-    volume = model.solver.area * model.flow_scale
+    volume = model.solver.area * model.parts.flow_scale
     start = memory = model.initial_history(history.motion[0])
     # the recorded steps once more, for the oil content that the joint does not show
     for motion, step in zip(history.motion[1:], np.diff(history.time), strict=True):

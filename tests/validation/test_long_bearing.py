@@ -77,7 +77,7 @@ def test_mid_plane_of_a_wide_bearing(make_bearing, measured, eps):
     )
     model = build_model(bearing)
     model.evaluate(np.array([-eps * bearing.radial_clearance, 0, 0, 0, 0, 0, 0, 0, SPEED, 0], dtype=float))
-    p = model.solver.pressure[:, 10] * model.pressure_scale * bearing.clearance_ratio**2 / (MU * SPEED)
+    p = model.solver.pressure[:, 10] * model.scales.pressure * bearing.clearance_ratio**2 / (MU * SPEED)
     exact = np.array([long_bearing.full_sommerfeld_pressure(eps, t) for t in model.grid.x])
     # 2-degree columns, second order.
     measured("mid-plane pressure over its peak", float(abs(p - exact).max() / exact.max()), 2e-3)

@@ -158,5 +158,5 @@ def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) 
     )
     motion = np.empty(SIZE)
     relative.relative_motion(sides[0].frame, sides[1].frame, motion)
-    settled = film.evaluate_steady(motion).status is Status.CONVERGED
-    return film.coordinates.copy() if settled else None
+    settled = film.evaluate_steady(motion)
+    return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None

@@ -149,6 +149,7 @@ class ModalFilmElement(BoreFilmElement):
     def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""
         model: Any = self.model
+        evaluation: Any = self.latest
         if isinstance(model.bore.modes, ReducedBore):
             return None
-        return np.tensordot(model.coordinates, model.bore.modes.displacements, 1)
+        return np.tensordot(evaluation.bore.coordinates, model.bore.modes.displacements, 1)

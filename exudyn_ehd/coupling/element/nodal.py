@@ -2,7 +2,7 @@
 
 The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame; normals are fixed in
 the frame. The nodal loads of pressure and shear are the shape functions' transpose of their forces at the film's vertices
-(`exudyn_ehd.joint.tangent.traction`). What the film's wrench has beyond them is spread over the bore's nodes as ``w (a + b x r)``, with a and b
+(`exudyn_ehd.joint.tangent.nodes`). What the film's wrench has beyond them is spread over the bore's nodes as ``w (a + b x r)``, with a and b
 from force and moment, so that journal and bush receive exactly opposite forces and moments, at any displacement: the small moments of
 forces on displaced points, and the shear's net force across the axis, clearance over radius of the load, which the wrench of a film
 leaves out as its Reynolds equation does. The housing itself is loaded through the bush.
@@ -20,7 +20,7 @@ from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.element.modal import SIZE, BoreFilmElement
 from exudyn_ehd.coupling.element.rigid import Trial
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.joint.tangent.traction import BoreForces
+from exudyn_ehd.joint.tangent.nodes import BoreForces
 from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current

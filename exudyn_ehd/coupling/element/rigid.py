@@ -80,6 +80,7 @@ class FilmElement:
         self.sides = (housing, journal)
         self.name = name
         self.evaluations = 0
+        self.latest: Evaluation | None = None
         self.recorder: FilmRecorder | None = None
         self.display = FilmDisplay(self)
         self.watch: GapWatch | None = None
@@ -151,6 +152,7 @@ class FilmElement:
         if np.isfinite(motion.sum()):
             evaluation = self.model.evaluate(motion, memory, step, self._spin() if self.model.needs_spin else 0.0)
             self.evaluations += 1
+        self.latest = evaluation
         self._trial = Trial(q, q_t, memory, step, motion, evaluation)
         return self._trial
 
@@ -417,8 +419,8 @@ class FilmElement:
 
     def fields(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> FilmFields:
         """Fields of the film that was evaluated last, at the state in ``configuration``."""
-        model: Any = self.model
-        return film_fields(model, time, self.bush_displacement(mbs, configuration))
+        evaluation: Any = self.latest
+        return film_fields(evaluation, time, self.bush_displacement(mbs, configuration))
 
     def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray | None:
         """Displacement (k, 3) of the mesh of a bush against the housing, joint frame; None without one."""

@@ -15,6 +15,8 @@ import exudyn.graphics
 import numpy as np
 
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
+from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.status import Status
 
 if TYPE_CHECKING:
@@ -50,13 +52,15 @@ class FilmDisplay:
     def take(self) -> None:
         """Store what is drawn of the film that was evaluated last; asked for after every accepted step."""
         model: Any = self.element.model
-        if not hasattr(model, "P"):
+        film: SolvedFilm | None = getattr(self.element.latest, "film", None)
+        if film is None:
             return
-        self.pressure = model.P * model.pressure_scale
-        self.bore = model.bore_fields().get("bore_displacement")
-        modes = getattr(getattr(model, "bore", None), "modes", None)
-        if modes is not None:
-            self.bush = np.tensordot(model.coordinates, modes.displacements, 1)
+        self.pressure = film.oil.P * film.scales.pressure
+        if film.bore is None:
+            return
+        self.bore = film.bore.displacement * model.bearing.radial_clearance
+        if isinstance(model.bore, ModalBore):
+            self.bush = np.tensordot(film.bore.coordinates, model.bore.modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Any]:
         """User function of Exudyn: the list of graphics data at the state that the renderer shows, in global coordinates."""

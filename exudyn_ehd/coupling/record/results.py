@@ -66,8 +66,7 @@ class JointResults:
             film = model.bearing.film
             grid = FiniteLength(n_theta=film.n_theta, n_z=film.n_z, stretch=film.stretch)
             model = build_model(dataclasses.replace(model.bearing, film=grid))
-            model.evaluate(trial.motion)
-            return film_fields(model, time)
+            return film_fields(model.evaluate(trial.motion), time)
         return self.element.fields(self.mbs, time, configuration)
 
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:

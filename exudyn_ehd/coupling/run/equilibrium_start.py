@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
@@ -89,7 +89,7 @@ def _memory(model: Any, motion: np.ndarray, result: EquilibriumResult) -> Histor
     evaluation = model.evaluate(whole, settled)
     if first is None or evaluation.status is not Status.CONVERGED:
         return first
-    last = model.history()
+    last = evaluation.history()
     temperature = first.temperature if settled is None else settled.temperature
     return dataclasses.replace(
         first, mass=last.mass, deflection=last.deflection, temperature=temperature, density=last.density

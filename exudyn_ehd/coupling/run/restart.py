@@ -15,7 +15,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 

@@ -12,7 +12,8 @@ from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Case, Finding, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.rigid import MOTION_SIZE, BearingModel
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import FilmError, InputError, Status
 
 __all__ = ["Audit", "Finding", "audit_record", "audit_states"]
@@ -136,7 +137,7 @@ def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[Film
     assert indicator.without is not None
     plain = build_study_model(indicator.without(model.bearing), float(model.grid.x[0]))
     # a history serves both: a model without an effect does not read what belongs to it; a rigid bore has no coordinates
-    rigid = not plain.bore_fields()
+    rigid = not plain.flexible
     pairs = [(s, replace(s, motion=s.motion[:MOTION_SIZE]) if rigid else s) for s in states]
     both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
     if not both:

@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.evaluation import Evaluation
-from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import Status
 
 # Recorded steps that are run again before a state, so that a film that remembers has forgotten where they started.
@@ -29,7 +28,7 @@ class RecordedSteps:
     time : (n,) array
         s.
     motion : (n, 10) array
-        As in `exudyn_ehd.joint.model.rigid`.
+        As in `exudyn_ehd.joint.solved_film`.
     force : (n, 3) array
         N, on the journal.
     minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature, bore_displacement : (n,) arrays
@@ -90,7 +89,7 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
     intervals = np.diff(record.time)
     turns = 0.5 * (record.motion[1:, 8] + record.motion[:-1, 8]) * intervals
     spin = np.concatenate([[0.0], np.cumsum(turns)])
-    flexible = bool(model.bore_fields())
+    flexible = model.flexible
     motions = _differenced(record) if flexible else record.motion
     replayed = REPLAYED if model.remembers else 0
     states: list[FilmState] = []
@@ -181,31 +180,31 @@ class Sample:
 def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     """Evaluate a state and read its numbers; None if there is no film."""
     evaluation = state.evaluate(model)
-    if evaluation.status is not Status.CONVERGED:
+    film = evaluation.film
+    if film is None:
         return None
-    q, s, g, b = model.quantities(), model.solver, model.grid, model.bearing
-    pressure = model.P * model.pressure_scale
+    q, s, g, b, w = evaluation.quantities(), film.solver, film.grid, model.bearing, film.journal
+    pressure = film.oil.P * film.scales.pressure
     weight = g.weight / g.weight.sum()
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
     i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
     thermal = b.thermal
-    shape = model.shape()
     return Sample(
-        speed=math.hypot(g.reference_length * model.omega, model.axial_speed),
+        speed=math.hypot(g.reference_length * w.omega, w.axial_speed),
         minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
         peak_pressure=q["peak_pressure"],
         load=math.hypot(evaluation.wrench[0], evaluation.wrench[1]),
         contact_load=q["contact_load"],
         power_loss=q["power_loss"],
         flow=max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
-        viscosity=_smallest_viscosity(model),
+        viscosity=_smallest_viscosity(film),
         rise=0.0 if thermal is None else q["peak_temperature"] - thermal.supply_temperature,
         cavitated=float(np.sum(weight[~unbroken])),
         tension=float(np.sum(weight[pressure < TENSION])),
-        tilt_loss=tilt_loss(b, model.motion),
-        squeeze_share=squeeze_share(b, model.motion),
-        deflection=_deflection(model),
-        shape=0.0 if shape is None else float(np.ptp(shape)) * b.radial_clearance,
+        tilt_loss=tilt_loss(b, w.motion),
+        squeeze_share=squeeze_share(b, w.motion),
+        deflection=_deflection(film),
+        shape=_shape(film),
         columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
         rows=intervals_at_half(pressure[i], int(j)),
     )
@@ -216,7 +215,7 @@ def take_samples(model: BearingModel, states: Iterable[FilmState], record: Recor
     samples = []
     for state in states:
         sample = take_sample(model, state)
-        if sample is not None and record is not None and state.recorded is not None and model.bore_fields():
+        if sample is not None and record is not None and state.recorded is not None and model.flexible:
             sample = _as_recorded(sample, record, state.recorded)
         if sample is not None:
             samples.append(sample)
@@ -236,14 +235,11 @@ def _as_recorded(sample: Sample, record: RecordedSteps, k: int) -> Sample:
     )
 
 
-def _largest(values: np.ndarray) -> float:
-    return float(np.abs(values).max())
-
-
-def _smallest_viscosity(model: BearingModel) -> float:
+def _smallest_viscosity(film: SolvedFilm) -> float:
     """Reference viscosity of the film, thinned by shear and heat but not thickened by pressure, Pa s."""
-    viscosity = model.pressure_scale * model.bearing.radial_clearance**2 / (12.0 * model.bearing.journal_radius**2)
-    return viscosity * (1.0 if model.ratio is None else min(1.0, float(model.ratio.min())))
+    b, ratio = film.parts.bearing, film.oil.ratio
+    viscosity = film.scales.pressure * b.radial_clearance**2 / (12.0 * b.journal_radius**2)
+    return viscosity * (1.0 if ratio is None else min(1.0, float(ratio.min())))
 
 
 def tilt_loss(bearing: JournalBearing, motion: np.ndarray) -> float:
@@ -288,9 +284,16 @@ def intervals_at_half(values: np.ndarray, peak: int) -> float:
     return width
 
 
-def _deflection(model: BearingModel) -> float:
+def _deflection(film: SolvedFilm) -> float:
     """Largest deflection of a liner or of a flexible bore, m."""
-    if model.liner_solver is not None:
-        return _largest(model.liner_solver.deflection) * model.bearing.radial_clearance
-    fields = model.bore_fields()
-    return _largest(fields["bore_displacement"]) if fields else 0.0
+    liner, bore, c = film.parts.liner, film.bore, film.parts.bearing.radial_clearance
+    if liner is not None:
+        return float(np.abs(liner.deflection).max()) * c
+    return 0.0 if bore is None else float(np.abs(bore.displacement).max()) * c
+
+
+def _shape(film: SolvedFilm) -> float:
+    """Largest height of profile and wear, of the undeformed surfaces, m."""
+    if film.extra is None or not film.extra.surfaces:
+        return 0.0
+    return float(np.ptp(np.sum(film.extra.surfaces, axis=0))) * film.parts.bearing.radial_clearance

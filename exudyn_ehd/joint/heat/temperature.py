@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,10 +16,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
-from exudyn_ehd.joint.seams import History
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
 STAGNANT = 1e-14
@@ -61,45 +57,46 @@ class LumpedTemperature:
         self.flow_capacity = oil.density * oil.specific_heat
         volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
         self.capacity = self.flow_capacity * volume + spec.capacity
-        self.temperature = math.nan
+        self._last = math.nan, 1.0
 
-    def initial_temperature(self, model: BearingModel) -> float:
+    def initial_temperature(self, shape: tuple[int, int]) -> float:
         """K, at the start of a motion."""
         return self.initial
 
-    def begin(self, model: BearingModel, history: History | None) -> None:
-        """Set the film's viscosity for the temperature at the start of the step."""
-        T = self.initial if history is None or history.temperature is None else float(history.temperature)
-        if self.temperature != T:
-            self.temperature = T
-            model.set_viscosity_ratio(float(viscosity_ratio(self.lubricant, T, self.reference)))
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """Viscosity over the reference at a temperature, K, that the whole film shares."""
+        if self._last[0] != temperature:
+            ratio = float(viscosity_ratio(self.lubricant, float(temperature), self.reference))
+            self._last = float(temperature), ratio
+        return self._last[1]
 
-    def _rates(self, model: BearingModel) -> tuple[float, float]:
-        """Heat, W, and heat capacity flow of the oil that leaves, W/K, of the last evaluation."""
-        heat, leaving = heat_and_leakage(model)
-        return heat, self.flow_capacity * model.flow_scale * leaving
+    def _rates(self, film: SolvedFilm) -> tuple[float, float]:
+        """Heat, W, and heat capacity flow of the oil that leaves, W/K, of a solved film."""
+        heat, leaving = heat_and_leakage(film)
+        return heat, self.flow_capacity * film.parts.flow_scale * leaving
 
-    def advance(self, model: BearingModel) -> float:
-        """Temperature at the end of the step that was evaluated last."""
-        if model.start[1] <= 0.0:
-            return self.temperature
-        heat, flow = self._rates(model)
-        store, G = self.capacity / model.start[1], self.spec.housing_conductance
-        rise = heat + flow * self.spec.supply_temperature + G * self.housing + store * self.temperature
+    def advance(self, film: SolvedFilm) -> float:
+        """Temperature at the end of a solved film's step."""
+        T = _number(film)
+        if film.step <= 0.0:
+            return T
+        heat, flow = self._rates(film)
+        store, G = self.capacity / film.step, self.spec.housing_conductance
+        rise = heat + flow * self.spec.supply_temperature + G * self.housing + store * T
         return rise / (store + flow + G)
 
-    def steady_temperature(self, model: BearingModel) -> float:
-        """Temperature in balance with the heat of the last evaluation; inf without a way out for the heat."""
-        heat, flow = self._rates(model)
+    def steady_temperature(self, film: SolvedFilm) -> float:
+        """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
+        heat, flow = self._rates(film)
         G = self.spec.housing_conductance
         if flow + G <= 0.0:
-            return math.inf if heat > 0.0 else self.temperature
+            return math.inf if heat > 0.0 else _number(film)
         return (heat + flow * self.spec.supply_temperature + G * self.housing) / (flow + G)
 
-    def balance(self, model: BearingModel, temperature: float) -> dict[str, float]:
+    def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
-        heat, flow = self._rates(model)
-        stored = self.capacity * (temperature - self.temperature) / model.start[1] if model.start[1] > 0.0 else 0.0
+        heat, flow = self._rates(film)
+        stored = self.capacity * (temperature - _number(film)) / film.step if film.step > 0.0 else 0.0
         return {
             "heat_in": heat,
             "carried_out": flow * (temperature - self.spec.supply_temperature),
@@ -107,9 +104,17 @@ class LumpedTemperature:
             "stored": stored,
         }
 
-    def quantities(self) -> dict[str, float]:
-        """Mean and largest temperature of the film that was evaluated last, K."""
-        return {"film_temperature": self.temperature, "peak_temperature": self.temperature}
+
+def _number(film: SolvedFilm) -> float:
+    """The one temperature of a film, K."""
+    assert film.temperature is not None
+    return float(film.temperature)
+
+
+def _field(film: SolvedFilm) -> np.ndarray:
+    """The temperature field of a film (n, m), K."""
+    assert film.temperature is not None
+    return np.asarray(film.temperature)
 
 
 class ViscosityField(FluxEffect):
@@ -168,50 +173,44 @@ class FilmTemperature:
         self.flow_capacity = oil.density * oil.specific_heat
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
-        self.temperature = np.zeros((0, 0))
-        self.start: np.ndarray | None = None
+        self._start: np.ndarray | None = None
+        self._last: np.ndarray | None = None
         self.number: np.ndarray | None = None
 
-    def initial_temperature(self, model: BearingModel) -> np.ndarray:
+    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m) array, K, at the start of a motion."""
-        if self.start is None:
-            self.start = np.full(model.grid.shape, float(self.initial))
-        return self.start
+        if self._start is None:
+            self._start = np.full(shape, float(self.initial))
+        return self._start
 
-    def begin(self, model: BearingModel, history: History | None) -> None:
-        """Set the film's viscosity field for the temperatures at the start of the step."""
-        known = history is not None and history.temperature is not None
-        T = np.asarray(history.temperature) if known else self.initial_temperature(model)  # type: ignore[union-attr]
-        if T is not self.temperature:
-            self.temperature = T
-            self.field.set(viscosity_ratio(self.lubricant, T, self.reference))
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """Bring the viscosity field to a temperature field, K; the film shares no other factor than 1."""
+        if temperature is not self._last:
+            self._last = np.asarray(temperature)
+            self.field.set(viscosity_ratio(self.lubricant, self._last, self.reference))
+        return 1.0
 
-    def advance(self, model: BearingModel) -> np.ndarray:
-        """Temperatures at the end of the step that was evaluated last (n, m)."""
-        if model.start[1] <= 0.0:
-            return self.temperature
-        return self._solve(model, model.start[1])[0]
+    def advance(self, film: SolvedFilm) -> np.ndarray:
+        """Temperatures at the end of a solved film's step (n, m)."""
+        return _field(film) if film.step <= 0.0 else self._solve(film, film.step)[0]
 
-    def steady_temperature(self, model: BearingModel) -> np.ndarray:
-        """Temperatures in balance with the heat of the last evaluation (n, m); not finite without a way out for the heat.
+    def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
+        """Temperatures in balance with the heat of a solved film (n, m); not finite without a way out for the heat.
 
-        The heat is taken to follow the viscosity, linearised at the temperatures of that evaluation, so that repeated use
-        converges where the heating is strong; the fixed point is that of the heat itself.
+        The heat is taken to follow the viscosity, linearised at the film's temperatures, so that repeated use converges where the
+        heating is strong; the fixed point is that of the heat itself.
         """
-        flows = OilFlows(model)
-        if (
-            self.transfer == 0.0
-            and flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
-            and self._heat(model).max() > 0.0
-        ):
-            return np.full(model.grid.shape, np.inf)
-        return self._solve(model, 0.0)[0]
+        flows = OilFlows(film)
+        stagnant = flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
+        if self.transfer == 0.0 and stagnant and self._heat(film).max() > 0.0:
+            return np.full(film.grid.shape, np.inf)
+        return self._solve(film, 0.0)[0]
 
-    def balance(self, model: BearingModel, temperature: np.ndarray) -> dict[str, float]:
+    def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
-        return self._solve(model, model.start[1], temperature)[1]
+        return self._solve(film, film.step, temperature)[1]
 
-    def _wall(self, model: BearingModel) -> tuple[float | np.ndarray, float | np.ndarray]:
+    def _wall(self, film: SolvedFilm) -> tuple[float | np.ndarray, float | np.ndarray]:
         """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K: floats, or (n, m) with a conductivity.
 
         A parabola across the film with mean T and the surfaces' s_1, s_2 passes ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the
@@ -220,61 +219,51 @@ class FilmTemperature:
         (U1, T1), (U2, T2) = self.walls
         if self.spec.conductivity is None or self.transfer == 0.0:
             return self.transfer, (U1 * T1 + U2 * T2) / max(self.transfer, 1e-300)
-        film = self.spec.conductivity / (model.bearing.radial_clearance * model.solver.H)
-        both = U1 * U2 + film * self.transfer
+        oil = self.spec.conductivity / (film.parts.bearing.radial_clearance * film.solver.H)
+        both = U1 * U2 + oil * self.transfer
         return (
-            12.0 * film * both / (U1 * U2 + 4.0 * film * self.transfer + 12.0 * film**2),
-            (0.5 * U1 * U2 * (T1 + T2) + film * (U1 * T1 + U2 * T2)) / both,
+            12.0 * oil * both / (U1 * U2 + 4.0 * oil * self.transfer + 12.0 * oil**2),
+            (0.5 * U1 * U2 * (T1 + T2) + oil * (U1 * T1 + U2 * T2)) / both,
         )
 
-    def _heat(self, model: BearingModel) -> np.ndarray:
+    def _heat(self, film: SolvedFilm) -> np.ndarray:
         """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
-        s, R = model.solver, model.grid.reference_length
-        area = s.area * R**2
-        speed = R * model.omega
-        ratio = 1.0 if model.ratio is None else model.ratio
-        couette = (
-            model.shear_scale
-            * (model.omega**2 + (model.axial_speed / R) ** 2)
-            * s.area
-            * R**2
-            * model.share()
-            * ratio
-            / s.H
-        )
-        contact = model.pressing
-        if contact is not None:
-            for k, effect in enumerate(model.effects.contacts):
-                g_theta, g_z, _ = model.slip(effect)
-                work = effect.friction_coefficient * (g_theta * speed + g_z * model.axial_speed)
-                couette = couette + work * contact.P[k] * area
-        flow_power = model.flow_scale * model.pressure_scale
-        heat = np.empty(model.grid.shape)
+        p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
+        ratio = 1.0 if film.oil.ratio is None else film.oil.ratio
+        speed2 = w.omega**2 + (w.axial_speed / R) ** 2
+        friction = film.scales.shear * speed2 * s.area * R**2 * film.share() * ratio / s.H
+        if film.pressing is not None:
+            area = s.area * R**2
+            for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
+                g_theta, g_z, _ = film.slip(transition)
+                friction = friction + coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * area
+        flow_power = p.flow_scale * film.scales.pressure
+        heat = np.empty(p.grid.shape)
         # The links' flows of a compressible film are mass flows, which dissipate the drop of the flow work.
-        drop = model.P if model.compressible is None else model.compressible.flow_work(model.P)
-        film_heat(drop, s.pressure, s.system.kx, s.system.kz, couette / flow_power, heat)
+        drop = film.oil.P if p.compressible is None else p.compressible.flow_work(film.oil.P)
+        film_heat(drop, s.pressure, s.system.kx, s.system.kz, friction / flow_power, heat)
         return heat * flow_power
 
     def _solve(
-        self, model: BearingModel, step: float, known: np.ndarray | None = None
+        self, film: SolvedFilm, step: float, known: np.ndarray | None = None
     ) -> tuple[np.ndarray, dict[str, float]]:
         """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
-        area, shape = model.solver.area, model.grid.shape
-        supply, old = self.spec.supply_temperature, self.temperature
-        scale = self.flow_capacity * model.flow_scale
-        heat, flows = self._heat(model), OilFlows(model)
+        area, shape = film.solver.area, film.grid.shape
+        supply, old = self.spec.supply_temperature, _field(film)
+        scale = self.flow_capacity * film.parts.flow_scale
+        heat, flows = self._heat(film), OilFlows(film)
         leaving = np.maximum(-flows.outside, 0.0)
         found, lost = np.maximum(flows.found, 0.0), np.maximum(-flows.found, 0.0)
         total_found, total_lost = float(found.sum()), float(lost.sum())
         back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
         weight = lost / total_lost if total_lost > 0.0 else lost
         store = area * flows.content / step if step > 0.0 else np.zeros(shape)
-        transfer, wall = self._wall(model)
-        walls = transfer * area * model.grid.reference_length**2 / scale
+        transfer, wall = self._wall(film)
+        walls = transfer * area * film.grid.reference_length**2 / scale
         if known is None:
             rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
             # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
-            thinning = self._thinning() * heat / scale if step == 0.0 else 0.0
+            thinning = self._thinning(old) * heat / scale if step == 0.0 else 0.0
             diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
             rhs = np.empty((2, *shape))
             rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
@@ -295,11 +284,9 @@ class FilmTemperature:
             "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
 
-    def _thinning(self) -> np.ndarray:
-        """-d ln(mu) / dT at the film's temperatures, 1/K (n, m)."""
-        thicker, thinner = (
-            viscosity_ratio(self.lubricant, self.temperature + d, self.reference) for d in (-0.05, 0.05)
-        )
+    def _thinning(self, T: np.ndarray) -> np.ndarray:
+        """-d ln(mu) / dT at temperatures T, 1/K (n, m)."""
+        thicker, thinner = (viscosity_ratio(self.lubricant, T + d, self.reference) for d in (-0.05, 0.05))
         return np.log(thicker / thinner) / 0.1
 
     def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:
@@ -318,7 +305,3 @@ class FilmTemperature:
         out = np.empty_like(x)
         out[:, self.order] = x
         return out.reshape(rhs.shape)
-
-    def quantities(self) -> dict[str, float]:
-        """Mean and largest temperature of the film that was evaluated last, K."""
-        return {"film_temperature": float(self.temperature.mean()), "peak_temperature": float(self.temperature.max())}

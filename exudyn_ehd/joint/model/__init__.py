@@ -11,6 +11,7 @@ impedance       fitted map
 rheology        oil laws
 surfaces        profile, roughness, contact
 film_laws       pressures of a film with oil laws
+loads           integrals and wrench of a solved film
 quantities      scalars of a state
 fields          fields of a state
 """

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from exudyn_ehd.joint.model.rigid import MOTION_SIZE, BearingModel
-from exudyn_ehd.status import Status
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 
 PATIENCE = 2.0
 MESSAGE = "exudyn_ehd: compiling the film's kernels; this happens once (10 to 20 s), later runs read them from numba's cache ..."
@@ -36,7 +36,7 @@ def compile_kernels(model: BearingModel) -> None:
     with announced():
         history = model.initial_history(motion)
         evaluation = model.evaluate(motion, history, 1.0)
-        if evaluation.status is Status.CONVERGED:
+        if evaluation.film is not None:
             evaluation.tangent()
             evaluation.quantities()
             evaluation.history()

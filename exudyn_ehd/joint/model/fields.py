@@ -1,4 +1,4 @@
-"""The fields of a film on its grid, taken out of a model after an evaluation."""
+"""The fields of a film on its grid, copied out of an evaluation."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.model.rigid import Evaluation, worn_depth
+from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 
 
@@ -39,7 +40,7 @@ class FilmFields(FilmPictures):
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.model.rigid`; with a flexible bore followed by its coordinates and rates.
+        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and rates.
     bearing : JournalBearing
     bush_displacement : (k, 3) array or None
         Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
@@ -63,33 +64,35 @@ class FilmFields(FilmPictures):
     bush_displacement: np.ndarray | None = None
 
 
-def grid_fields(model: BearingModel) -> dict[str, Any]:
-    """Copies of theta, z, pressure, gap, unbroken, fill and temperature of the last evaluation, by name."""
-    solver, grid = model.solver, model.grid
-    temperature = None if model.effects.thermal is None else model.effects.thermal.temperature
+def grid_fields(film: SolvedFilm) -> dict[str, Any]:
+    """Copies of theta, z, pressure, gap, unbroken, fill and temperature of a solved film, by name."""
+    film.require_current()
+    solver, grid, temperature = film.solver, film.grid, film.temperature
     return {
         "theta": grid.x.copy(),
         "z": grid.z * grid.reference_length,
-        "pressure": model.P * model.pressure_scale,
-        "gap": solver.H * model.bearing.radial_clearance,
+        "pressure": film.oil.P * film.scales.pressure,
+        "gap": solver.H * film.parts.bearing.radial_clearance,
         "unbroken": solver.work.active.copy(),
         "fill": solver.fill.copy() if solver.closure.conserves_mass else None,
         "temperature": temperature.copy() if isinstance(temperature, np.ndarray) else temperature,
     }
 
 
-def film_fields(model: BearingModel, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
-    """The film of the model's last evaluation."""
-    wear = model.effects.wear
+def film_fields(evaluation: Evaluation, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:
+    """The fields of an evaluation that found a film."""
+    film, wear = evaluation.film, evaluation.model.effects.wear
+    assert film is not None
+    c, contacts, bore = film.parts.bearing.radial_clearance, film.parts.contacts, film.bore
     return FilmFields(
         time=time,
-        **grid_fields(model),
-        bore_displacement=model.bore_fields().get("bore_displacement"),
-        contact_pressure=None if model.contact_fields is None else np.sum(model.contact_fields.P, axis=0),
-        wear_depth=None if wear is None else model.worn(wear) * model.bearing.radial_clearance,
-        force=model.wrench[:3].copy(),
-        moment=model.wrench[3:].copy(),
-        motion=model.motion.copy(),
-        bearing=model.bearing,
+        **grid_fields(film),
+        bore_displacement=None if bore is None else bore.displacement * c,
+        contact_pressure=None if contacts is None else np.sum(contacts.P, axis=0),
+        wear_depth=None if wear is None else worn_depth(wear, film) * c,
+        force=film.loads.wrench[:3].copy(),
+        moment=film.loads.wrench[3:].copy(),
+        motion=film.journal.motion.copy(),
+        bearing=film.parts.bearing,
         bush_displacement=bush_displacement,
     )

@@ -2,58 +2,43 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from exudyn_ehd.status import Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.solved_film import FilmParts, OilFields
 
 
-def apply_laws(model: BearingModel) -> Status:
-    """Pressure of ``model`` from the transformed one; viscosity ratio at the vertices with its derivatives to q, H and vx.
+def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> OilFields | None:
+    """Pressure and viscosity ratio of the film that ``parts.solver`` holds; None where its solution has no pressure.
 
-    NO_PRESSURE where the solution has no pressure, else CONVERGED.
+    ``pressure_scale`` in Pa.
     """
-    s, shape = model.solver, model.grid.shape
-    model.P = s.pressure
-    if model.effects.pressure_law is None and model.effects.shear_factor is not None:
-        if model.ratio is None or model.ratio_h is None or model.ratio_v is None:
-            model.ratio, model.ratio_h, model.ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-        model.effects.shear_factor.factor(s.H, s.vx, model.ratio, model.ratio_h, model.ratio_v)
-        return Status.CONVERGED
-    if (
-        model.compressible is not None
-        and model.compressible.law.viscosity is None
-        and model.effects.shear_factor is None
-    ):
-        model.P, model.P_q = np.empty(shape), np.empty(shape)
-        found = model.compressible.pressure_of_solution(model.P, model.P_q)
-        return Status.CONVERGED if found else Status.NO_PRESSURE
-    ratio, ratio_q = np.empty(shape), np.empty(shape)
-    ratio_h = ratio_v = s.nothing
-    model.P_q = None
-    if model.compressible is not None:
-        model.P, model.P_q = np.empty(shape), np.empty(shape)
-        if not model.compressible.viscosity(model.P, ratio, ratio_q, model.P_q):
-            return Status.NO_PRESSURE
-    elif model.effects.pressure_law is not None:
-        model.P = np.empty(shape)
-        if not model.effects.pressure_law.inverse(s.pressure * model.pressure_scale, model.P, ratio, ratio_q):
-            return Status.NO_PRESSURE
-        model.P /= model.pressure_scale
-        ratio_q *= model.pressure_scale
-        model.P_q = ratio
-    if model.effects.shear_factor is not None:
-        factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-        model.effects.shear_factor.factor(s.H, s.vx, factor, ratio_h, ratio_v)
-        if model.P_q is not None:
-            ratio_h *= ratio
-            ratio_v *= ratio
-            ratio_q *= factor
-            factor *= ratio
-        ratio = factor
-    model.ratio, model.ratio_q, model.ratio_h, model.ratio_v = ratio, ratio_q, ratio_h, ratio_v
-    return Status.CONVERGED
+    s, film, shape = parts.solver, parts.compressible, parts.grid.shape
+    law, shear = effects.pressure_law, effects.shear_factor
+    if law is None and shear is None:
+        return OilFields(s.pressure)
+    if law is None and shear is not None:
+        ratio, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+        shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
+        return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v)
+    P, ratio, ratio_q = np.empty(shape), np.empty(shape), np.empty(shape)
+    P_q = ratio
+    if film is not None:
+        P_q = np.empty(shape)
+        if film.law.viscosity is None and shear is None:
+            return OilFields(P, P_q) if film.pressure_of_solution(P, P_q) else None
+        if not film.viscosity(P, ratio, ratio_q, P_q):
+            return None
+    elif law is not None:
+        if not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q):
+            return None
+        P /= pressure_scale
+        ratio_q *= pressure_scale
+    if shear is None:
+        return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing)
+    factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+    shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+    ratio_h *= ratio
+    ratio_v *= ratio
+    ratio_q *= factor
+    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v)

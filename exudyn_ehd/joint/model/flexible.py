@@ -12,22 +12,28 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
-from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent, settle
-from exudyn_ehd.joint.bore.shapes import Bore
-from exudyn_ehd.joint.evaluation import Evaluation
-from exudyn_ehd.joint.model.rigid import MOTION_SIZE, BearingModel
-from exudyn_ehd.joint.seams import Effects, History
-from exudyn_ehd.joint.tangent.bore import elastic_tangent
-from exudyn_ehd.joint.tangent.elastic_product import TangentProduct
-from exudyn_ehd.joint.tangent.nodes import NodalProduct, nodal_tangent
-from exudyn_ehd.joint.tangent.traction import BoreForces, traction
+from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium, condensed_tangent
+from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.solved_film import (
+    MOTION_SIZE,
+    BoreState,
+    ContactFields,
+    ExtraGap,
+    History,
+    JournalMotion,
+    OilFields,
+    SolvedFilm,
+)
+from exudyn_ehd.joint.tangent.bore import TangentProduct, elastic_tangent
+from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
 from exudyn_ehd.status import Status
 
 # Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the usual meshes.
@@ -40,44 +46,70 @@ class ElasticEvaluation(Evaluation):
 
     Attributes
     ----------
-    bore_load : (k,) array
-        Q, N; nan if there is no film.
+    bore : BoreState
+    settling_steps : int
+        Newton trials of `ElasticBearingModel.evaluate_steady`.
     """
 
-    bore_load: np.ndarray = dataclasses.field(default_factory=lambda: np.zeros(0))
+    model: ElasticBearingModel = dataclasses.field(repr=False)
+    bore: BoreState = dataclasses.field(repr=False)
+    settling_steps: int = 0
+
+    @property
+    def bore_load(self) -> np.ndarray:
+        """Q (k,), N; nan if there is no film."""
+        return self.bore.load
+
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k); nan without a film."""
+        return self._tangent((1.0, 0.0), (0.0, 1.0))
 
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
-        """As `ElasticBearingModel.combined_tangent`; RuntimeError if the model has evaluated another state since."""
-        self._require_current()
-        model: Any = self._model
-        return model.combined_tangent(by_place, by_rate)
+        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k): what an integrator needs."""
+        return self._tangent((by_place, by_rate))
+
+    def _tangent(self, *combinations: tuple[float, float]) -> np.ndarray:
+        film, k = self._current(), self.bore.coordinates.size
+        if film is None:
+            return np.full((6 + k, MOTION_SIZE + k * len(combinations)), np.nan)
+        return elastic_tangent(film, self.model.bore, *combinations)
+
+    def steady_tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) with the bore following slowly, after `ElasticBearingModel.evaluate_steady`."""
+        return condensed_tangent(self.tangent(), self.model.elasticity, self.bore.coordinates)
 
     def tangent_product(self) -> TangentProduct:
-        """As `ElasticBearingModel.tangent_product`; RuntimeError if the model has evaluated another state since."""
-        self._require_current()
-        model: Any = self._model
-        return model.tangent_product()
+        """The tangent as an operator; there must be a film."""
+        return TangentProduct(self._found(), self.model.bore)
 
     def nodal_forces(self, forces: BoreForces) -> np.ndarray:
-        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N; RuntimeError as above."""
-        self._require_current()
-        model: Any = self._model
-        shear = traction(model, forces)
+        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N; there must be a film."""
+        shear = traction(self._found(), forces)
         nodal = forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
-        nodal[:, :2] += self.bore_load.reshape(-1, 2)
+        nodal[:, :2] += self.bore.load.reshape(-1, 2)
         return nodal
 
     def nodal_tangent(self, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
-        """As `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; RuntimeError as above."""
-        self._require_current()
-        model: Any = self._model
-        return nodal_tangent(model, forces)
+        """As `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
+        return nodal_tangent(self._found(), self._nodes(), forces)
 
     def nodal_product(self, forces: BoreForces) -> NodalProduct:
-        """The tangent of wrench and nodal forces as an operator; RuntimeError as above."""
-        self._require_current()
-        model: Any = self._model
-        return NodalProduct(model, forces)
+        """The tangent of wrench and nodal forces as an operator; there must be a film."""
+        return NodalProduct(self._found(), self._nodes(), forces)
+
+    def quantities(self) -> dict[str, float]:
+        """As `Evaluation.quantities`, and ``bore_displacement`` (m, largest)."""
+        largest = float(np.max(np.abs(self.bore.displacement))) * self.model.bearing.radial_clearance
+        return super().quantities() | {"bore_displacement": largest}
+
+    def _found(self) -> SolvedFilm:
+        film = self._current()
+        assert film is not None
+        return film
+
+    def _nodes(self) -> NodalBore:
+        assert isinstance(self.model.bore, NodalBore)
+        return self.model.bore
 
 
 class BoreTerm:
@@ -95,7 +127,7 @@ class BoreTerm:
 def end_load(bore: Callable[[FilmGrid], Bore], grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
     """What the film's weights lack in the bore's loads (k,) of the ends' pressure, N.
 
-    The weights are made for pressures that vanish at the ends; a pressure that does not meets there the part of the bore that gives way most,
+    The weights are made for pressures that vanish at the ends; a pressure that does not meets there the part of the bore that yields most,
     which few vertices can't integrate (8 % in the displacement with 12 intervals). The pressure is therefore split into
     ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are integrated by Gauss points, and a rest
     that vanishes at the ends. The first part has neither force nor moment on the journal.
@@ -142,6 +174,8 @@ class ElasticBearingModel(BearingModel):
         As in `BearingModel`.
     """
 
+    flexible = True
+
     def __init__(
         self,
         bearing: JournalBearing,
@@ -155,116 +189,84 @@ class ElasticBearingModel(BearingModel):
         term = BoreTerm()
         effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
         super().__init__(bearing, start_angle=start_angle, effects=effects)
-        self.term = term
+        self._term = term
         self.bore = bore(self.grid)
         self.elasticity = elasticity
-        self.coordinates = np.zeros(self.bore.size)
-        self.bore_load = np.zeros(self.bore.size)
-        self.end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
-        self.settling_steps = 0
-        R = self.grid.reference_length
-        self.area = self.grid.weight * R**2
-        # SI units of the scaled motion
-        self.motion_scale = np.concatenate((self.pose_scale, self.pose_scale, (0.5, 0.5 / R)))
+        self._coordinates = np.zeros(self.bore.size)
+        self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
+        self._end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
+        self._area = self.grid.weight * self.grid.reference_length**2
 
-    def _set_motion(self, motion: np.ndarray) -> None:
+    def _journal(self, motion: np.ndarray) -> JournalMotion:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
-        motion = np.asarray(motion, dtype=float)
-        k = self.bore.size
+        motion, k = np.asarray(motion, dtype=float), self.bore.size
         if motion.size == MOTION_SIZE:
             motion = np.concatenate((motion, np.zeros(2 * k)))
-        super()._set_motion(motion)
-        scaled = self.motion[MOTION_SIZE:] / self.bearing.radial_clearance
-        self.coordinates = self.motion[MOTION_SIZE : MOTION_SIZE + k]
-        self.rates = self.motion[MOTION_SIZE + k :]
-        self.term.displacement, self.term.rate = self.bore.displacements(scaled[:k], scaled[k:])
+        journal = super()._journal(motion)
+        self._coordinates = journal.motion[MOTION_SIZE : MOTION_SIZE + k]
+        scaled = journal.motion[MOTION_SIZE:] / self.bearing.radial_clearance
+        self._term.displacement, self._term.rate = self.bore.displacements(scaled[:k], scaled[k:])
+        return journal
 
-    def shape(self) -> np.ndarray | None:
-        """As `BearingModel.shape`: without the bore's displacement."""
-        fields = [field for field in self.gap_fields if field is not self.term.displacement]
-        return np.sum(fields, axis=0) if fields else None
-
-    def _add_gap_terms(self, history: History | None) -> float:
+    def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
         s, g = self.solver, self.grid
         fields = [term.field(history) for term in self.effects.gap_terms]
-        self.gap_fields = fields
-        self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-        if self.extra_slope_x is None or self.extra_slope_z is None:
-            self.extra_slope_x, self.extra_slope_z = np.empty(g.shape), np.empty(g.shape)
-        return float(
-            add_gap(
-                self.extra, self.term.rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, self.extra_slope_x, self.extra_slope_z
-            )
+        height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+        # the bore's own term is the last
+        extra = ExtraGap(height, *self._slopes, fields[:-1])
+        smallest = add_gap(height, self._term.rate, g.width_x[0], g.z, s.H, s.HF, s.H_t, *self._slopes)
+        return float(smallest), extra
+
+    def _bore_state(self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None) -> BoreState:
+        k = self.bore.size
+        load = np.full(k, np.nan)
+        if oil is not None:
+            load = self.bore.load(self._pressure_field(oil, pressing))
+            if self._end_load is not None:
+                load += self._end_load
+        motion = journal.motion
+        return BoreState(
+            motion[MOTION_SIZE : MOTION_SIZE + k], motion[MOTION_SIZE + k :], self._term.displacement, load
         )
 
-    def _loads(self) -> np.ndarray:
-        wrench = super()._loads()
-        self.bore_load = self.bore.load(self.pressure_field())
-        if self.end_load is not None:
-            self.bore_load += self.end_load
-        return wrench
-
-    def pressure_field(self) -> np.ndarray:
+    def _pressure_field(self, oil: OilFields, pressing: ContactFields | None) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
-        field = self.P * self.area
-        field *= self.pressure_scale
-        if self.pressing is not None:
-            for P in self.pressing.P:
-                field += P * self.area
+        field = oil.P * self._area
+        field *= self.scales.pressure
+        if pressing is not None:
+            for P in pressing.P:
+                field += P * self._area
         return field
+
+    def _result(
+        self,
+        status: Status,
+        journal: JournalMotion,
+        wrench: np.ndarray,
+        iterations: int,
+        minimum_gap: float,
+        film: SolvedFilm | None,
+    ) -> ElasticEvaluation:
+        bore = self._bore_state(journal, None, None) if film is None or film.bore is None else film.bore
+        return ElasticEvaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self, bore)
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
         """Evaluate the film; ``motion`` (10 + 2 k,) as in the module's docstring, the rest as in `BearingModel`."""
-        base = super().evaluate(motion, history, step, spin)
-        if base.status is not Status.CONVERGED:
-            self.bore_load = np.full(self.bore.size, np.nan)
-        return ElasticEvaluation(
-            base.status, base.motion, base.wrench, base.iterations, base._model, base._serial, self.bore_load
-        )
+        evaluation = super().evaluate(motion, history, step, spin)
+        assert isinstance(evaluation, ElasticEvaluation)
+        return evaluation
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
-        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0; the rest as for `evaluate`."""
-        return settle(self, motion, history, step, spin)
+        """Evaluate at a motion (10,) with the bore in equilibrium under the film, q_t = 0; the rest as for `evaluate`.
 
-    def tangent(self, slow_motion: bool = False) -> np.ndarray:
-        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of the last evaluation; nan without a film."""
-        if self.status is not Status.CONVERGED:
-            k = self.bore.size
-            return np.full((6 + k, MOTION_SIZE + 2 * k), np.nan)
-        return elastic_tangent(self, (1.0, 0.0), (0.0, 1.0))
-
-    def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
-        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k): what an integrator needs."""
-        if self.status is not Status.CONVERGED:
-            k = self.bore.size
-            return np.full((6 + k, MOTION_SIZE + k), np.nan)
-        return elastic_tangent(self, (by_place, by_rate))
-
-    def tangent_product(self) -> TangentProduct:
-        """The tangent of the last evaluation, which must have found a film, as an operator."""
-        return TangentProduct(self)
-
-    def bore_fields(self) -> dict[str, np.ndarray]:
-        """Displacement (n, m) and coordinates (k,) of the bore, m."""
-        return {
-            "bore_displacement": self.term.displacement * self.bearing.radial_clearance,
-            "bore_coordinates": self.coordinates.copy(),
-        }
-
-    def steady_tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) with the bore following slowly, after `evaluate_steady`."""
-        return condensed_tangent(self)
-
-    def power_loss(self) -> float:
-        """Of film and contacts as in `BearingModel`, W; what the film does to the bore leaves the film."""
-        return super().power_loss() - float(self.bore_load @ self.rates)
-
-    def quantities(self) -> dict[str, float]:
-        """Scalars of the last evaluation as in `BearingModel`, and ``bore_displacement`` (m, largest)."""
-        out = super().quantities()
-        out["bore_displacement"] = float(np.max(np.abs(self.term.displacement))) * self.bearing.radial_clearance
-        return out
+        Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
+        """
+        start = self._coordinates.copy()
+        evaluation, found, steps = bore_equilibrium(self, motion, (history, step, spin), start)
+        if not found and evaluation.film is not None:
+            return dataclasses.replace(evaluation, status=Status.NOT_CONVERGED, film=None, settling_steps=steps)
+        return dataclasses.replace(evaluation, settling_steps=steps)

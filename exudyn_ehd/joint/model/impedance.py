@@ -17,7 +17,7 @@ _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_
 
 
 class ImpedanceEvaluation:
-    """One evaluation; see `exudyn_ehd.joint.evaluation.Evaluation`."""
+    """One evaluation; see `exudyn_ehd.joint.model.rigid.Evaluation`."""
 
     __slots__ = ("_model", "_tangent", "iterations", "motion", "status", "wrench")
 

@@ -1,22 +1,27 @@
-"""Scalars of the state that a bearing model has evaluated last: gap, peak, friction, losses and flows, in SI units."""
+"""Scalars of a solved film: gap, peak, friction, losses and flows, in SI units."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.film import loads
 from exudyn_ehd.film.reynolds.gap import largest_eccentricity
-from exudyn_ehd.status import Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.heat.power import contact_torque, friction_torque, power_loss
+from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
-def quantities(model: BearingModel) -> dict[str, float]:
-    """Scalars of the last evaluation.
+def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
+    """``eccentricity_ratio`` and ``largest_eccentricity_ratio`` of a scaled pose (4,); see `quantities`."""
+    return {
+        "eccentricity_ratio": math.hypot(pose[0], pose[1]),
+        "largest_eccentricity_ratio": float(largest_eccentricity(pose, parts.half_length)),
+    }
+
+
+def quantities(film: SolvedFilm) -> dict[str, float]:
+    """Scalars of a solved film.
 
     The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it presses out,
 
@@ -43,112 +48,85 @@ def quantities(model: BearingModel) -> dict[str, float]:
         ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K), with a liner or a flexible
         bore ``bore_displacement`` (m, the largest).
     """
+    p, w = film.parts, film.journal
+    R = p.grid.reference_length
+    torque_scale = film.scales.shear * R**2
+    angle, z = minimum_place(film)
+    lower, upper = leakages(film)
+    poiseuille = 6.0 * film.loads.s_theta
+    load = film.pressing.integrals.sum(axis=0) * R**2 if film.pressing is not None else np.zeros(5)
+    peak, peak_angle, _ = refined_peak(film)
+    friction = contact_torque(film)
     out = {
-        "minimum_gap": model.minimum_gap,
-        "eccentricity_ratio": math.hypot(model.pose[0], model.pose[1]),
-        "largest_eccentricity_ratio": float(largest_eccentricity(model.pose, model.half_length)),
-    }
-    if model.status is not Status.CONVERGED:
-        return out
-    out["minimum_gap_angle"], out["minimum_gap_z"] = minimum_place(model)
-    R = model.grid.reference_length
-    torque_scale = model.shear_scale * R**2
-    lower, upper = leakages(model)
-    poiseuille = 6.0 * model.s_theta
-    load = model.pressing.integrals.sum(axis=0) * R**2 if model.pressing is not None else np.zeros(5)
-    peak, peak_angle, _ = refined_peak(model)
-    out |= {
+        "minimum_gap": film.minimum_gap,
+        **eccentricities(p, w.pose),
+        "minimum_gap_angle": angle,
+        "minimum_gap_z": z,
         "peak_pressure": peak,
         "peak_angle": peak_angle % (2.0 * math.pi),
-        "friction_torque": friction_torque(model),
-        "friction_torque_unbroken": -torque_scale * (model.omega * model.couette_unbroken - poiseuille),
-        "friction_torque_bush": -float(model.wrench[5]),
-        "power_loss": model.power_loss(),
-        "leakage": model.flow_scale * (lower + upper),
-        "leakage_lower": model.flow_scale * lower,
-        "leakage_upper": model.flow_scale * upper,
+        "friction_torque": friction_torque(film),
+        "friction_torque_unbroken": -torque_scale * (w.omega * film.loads.couette_unbroken - poiseuille),
+        "friction_torque_bush": -float(film.loads.wrench[5]),
+        "power_loss": power_loss(film),
+        "leakage": p.flow_scale * (lower + upper),
+        "leakage_lower": p.flow_scale * lower,
+        "leakage_upper": p.flow_scale * upper,
         "contact_load": math.hypot(load[0], load[1]),
-        "contact_torque": contact_torque(model),
-        "contact_power_loss": 0.0
-        - contact_torque(model) * model.omega
-        - float(model.contact_wrench[2]) * model.axial_speed,
-        "peak_contact_pressure": 0.0 if model.pressing is None else max(float(p.max()) for p in model.pressing.P),
+        "contact_torque": friction,
+        "contact_power_loss": 0.0 - friction * w.omega - float(film.loads.contact[2]) * w.axial_speed,
+        "peak_contact_pressure": 0.0 if film.pressing is None else max(float(f.max()) for f in film.pressing.P),
     }
-    if model.supply is not None:
-        out["supply_flow"] = float(supply_flows(model).sum())
-    if model.effects.thermal is not None:
-        out |= model.effects.thermal.quantities()
-    if model.liner_solver is not None:
-        out["bore_displacement"] = float(np.abs(model.liner_solver.deflection).max()) * model.bearing.radial_clearance
+    if p.supply is not None:
+        out["supply_flow"] = float(supply_flows(film).sum())
+    if film.temperature is not None:
+        out["film_temperature"] = float(np.mean(film.temperature))
+        out["peak_temperature"] = float(np.max(film.temperature))
+    if p.liner is not None:
+        out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
     return out
 
 
-def power_loss(model: BearingModel) -> float:
-    """Mechanical power that the last evaluation's film and contacts keep, W; see `quantities`."""
-    bx, by, x_t, y_t, bx_t, by_t = model.motion[2:8].tolist()
-    fx, fy, fz, mx, my, _ = model.wrench.tolist()
-    along = fz + bx * fx + by * fy  # a tilted journal slides along its own axis, not along z
-    power = fx * x_t + fy * y_t - mx * by_t + my * bx_t
-    power += friction_torque(model) * model.omega
-    power += along * model.axial_speed
-    if model.liner_solver is not None:
-        power += model.liner_solver.stored_power() * model.pressure_scale * model.flow_scale
-    return -power
-
-
-def friction_torque(model: BearingModel) -> float:
-    """Friction of film and contacts on the journal about its own axis, Nm."""
-    torque_scale = model.shear_scale * model.grid.reference_length**2
-    return -torque_scale * (model.omega * model.couette - 6.0 * model.s_theta) + contact_torque(model)
-
-
-def supply_flows(model: BearingModel) -> np.ndarray:
+def supply_flows(film: SolvedFilm) -> np.ndarray:
     """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
-    if model.supply is None:
+    p = film.parts
+    if p.supply is None:
         return np.zeros(0)
-    return model.supply.flows(model.solver.inflow()) * model.bearing.radial_clearance * model.grid.reference_length**2
+    return p.supply.flows(p.solver.inflow()) * p.bearing.radial_clearance * p.grid.reference_length**2
 
 
-def contact_torque(model: BearingModel) -> float:
-    """Contact friction on the journal about its own axis, Nm."""
-    if model.pressing is None:
-        return 0.0
-    x, y, bx, by = model.motion[:4].tolist()
-    fx, fy, _, mx, my, mz = model.contact_wrench.tolist()
-    return mz - (x * fy - y * fx - bx * mx - by * my)
-
-
-def leakages(model: BearingModel) -> tuple[float, float]:
+def leakages(film: SolvedFilm) -> tuple[float, float]:
     """Scaled flows out of the lower and the upper end; times ``flow_scale`` in m3/s."""
-    s, g = model.solver, model.grid
+    s, g = film.solver, film.grid
     if not g.link_z.any():
         return 0.0, 0.0
     if s.closure.conserves_mass:
         inflow = s.inflow()
         return -float(inflow[:, 0].sum()), -float(inflow[:, -1].sum())
     fx, fz, rate = s.couette_flows()
-    full = s.work.active if model.supply is None else np.logical_or.reduce([s.work.active, *model.supply.masks])
+    full = (
+        s.work.active if film.parts.supply is None else np.logical_or.reduce([s.work.active, *film.parts.supply.masks])
+    )
     return loads.end_flows(s.pressure, s.system.kz, fz, fx, rate, g.width_x, g.width_z, s.squeeze, full)
 
 
-def minimum_place(model: BearingModel) -> tuple[float, float]:
+def minimum_place(film: SolvedFilm) -> tuple[float, float]:
     """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.
 
     Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a profile, wear or
     an elastic bore the vertex of the smallest gap.
     """
-    R, half = model.grid.reference_length, model.half_length
-    if model.effects.gap_terms or model.liner_solver is not None:
-        i, j = divmod(int(np.argmin(model.solver.H)), model.grid.z.size)
-        return float(model.grid.x[i] % (2.0 * math.pi)), float(model.grid.z[j] * R)
-    x, y, bx, by = model.pose.tolist()
+    R, half = film.grid.reference_length, film.parts.half_length
+    if film.extra is not None or film.parts.liner is not None:
+        i, j = divmod(int(np.argmin(film.solver.H)), film.grid.z.size)
+        return float(film.grid.x[i] % (2.0 * math.pi)), float(film.grid.z[j] * R)
+    x, y, bx, by = film.journal.pose.tolist()
     # |e|^2 at either end differs by 4 half (x bx + y by)
     lean = x * bx + y * by
     end = math.copysign(half, lean) if lean != 0.0 or bx != 0.0 or by != 0.0 else 0.0
     return math.atan2(y + end * by, x + end * bx) % (2.0 * math.pi), end * R
 
 
-def refined_peak(model: BearingModel) -> tuple[float, float, float]:
+def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-    peak, theta, z = loads.refined_peak(model.P, model.grid.x, model.grid.z, True)
-    return peak * model.pressure_scale, theta, z * model.grid.reference_length
+    peak, theta, z = loads.refined_peak(film.oil.P, film.grid.x, film.grid.z, True)
+    return peak * film.scales.pressure, theta, z * film.grid.reference_length

@@ -12,7 +12,7 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
-from exudyn_ehd.joint.seams import FluxEffect, PressureLaw, ShearFactor, ThermalEffect
+from exudyn_ehd.joint.seams import FluxEffect, PressureLaw, ShearFactor, ShearProduct, ThermalEffect
 from exudyn_ehd.status import InputError
 
 
@@ -35,26 +35,6 @@ class Rheology:
     shear_factor: ShearFactor | None = None
     thermal: ThermalEffect | None = None
     density: CompressibleLaw | None = None
-
-
-class ProductFactor:
-    """Product of two shear factors."""
-
-    def __init__(self, first: ShearFactor, second: ShearFactor) -> None:
-        self.first, self.second = first, second
-
-    def factor(
-        self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> None:
-        """Product rule for the ratio and its derivatives to H and vx."""
-        r, r_h, r_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
-        self.first.factor(H, vx, r, r_h, r_v)
-        self.second.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
-        ratio_h_out *= r
-        ratio_h_out += r_h * ratio_out
-        ratio_v_out *= r
-        ratio_v_out += r_v * ratio_out
-        ratio_out *= r
 
 
 def collect_rheology(bearing: JournalBearing) -> Rheology:
@@ -87,7 +67,7 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     if isinstance(thermal, LumpedThermal):
         return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing), density)
     field = ViscosityField()
-    product = field if factor is None else ProductFactor(field, factor)
+    product = field if factor is None else ShearProduct(field, factor)
     return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field), density)
 
 

@@ -1,11 +1,7 @@
 """One lubricated bearing between two rigid surfaces as a pure function of its relative motion.
 
-Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in it is
-
-    motion = [x, y, bx, by, dx/dt, dy/dt, dbx/dt, dby/dt, omega, w]
-
-with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w. The wrench acts on
-the journal, moment about O; the housing receives exactly the opposite about the same point.
+Frame and motion as in `exudyn_ehd.joint.solved_film`. The wrench acts on the journal, moment about O; the housing receives exactly the opposite
+about the same point.
 
 Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)`` reads the history
 at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
@@ -14,18 +10,12 @@ at the start of the step and the time since, and ``evaluation.history()`` is the
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from operator import is_
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.loads import (
-    couette_integral,
-    couette_integral_fill,
-    couette_integral_ratio,
-    pressure_integrals,
-    slope_integrals,
-)
 from exudyn_ehd.film.models import film_grid, film_solver, liner_film_solver
 from exudyn_ehd.film.reynolds.gap import add_to_gap, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
@@ -33,17 +23,92 @@ from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.liner import LinerFilmSolver
 from exudyn_ehd.film.supply import SupplyMap
-from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench, couette_integral_law
-from exudyn_ehd.joint.buffers import ContactFields, LimiterFields
-from exudyn_ehd.joint.evaluation import Evaluation
-from exudyn_ehd.joint.model.film_laws import apply_laws
-from exudyn_ehd.joint.model.quantities import power_loss, quantities, refined_peak, supply_flows
-from exudyn_ehd.joint.seams import Contact, Effects, History, Wear
-from exudyn_ehd.joint.tangent.drag import drag_integrals
+from exudyn_ehd.joint.model.film_laws import oil_fields
+from exudyn_ehd.joint.model.loads import film_loads
+from exudyn_ehd.joint.model.quantities import eccentricities, quantities
+from exudyn_ehd.joint.seams import Effects, Wear
+from exudyn_ehd.joint.solved_film import (
+    MOTION_SIZE,
+    BoreState,
+    ContactFields,
+    Evaluations,
+    ExtraGap,
+    FilmParts,
+    History,
+    JournalMotion,
+    LimiterFields,
+    OilFields,
+    Scales,
+    SolvedFilm,
+)
 from exudyn_ehd.joint.tangent.wrench import wrench_tangent
 from exudyn_ehd.status import Status
 
-MOTION_SIZE = 10
+
+@dataclass(eq=False)
+class Evaluation:
+    """One film evaluation.
+
+    Attributes
+    ----------
+    status : Status
+    motion : (10,) array
+    wrench : (6,) array
+        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film.
+    iterations : int
+        Linear solves spent.
+    minimum_gap : float
+        m; nan if the motion is not finite.
+    film : SolvedFilm or None
+        None with a ``status`` other than CONVERGED. What is asked of it raises RuntimeError if the model has evaluated another state since.
+    """
+
+    status: Status
+    motion: np.ndarray
+    wrench: np.ndarray
+    iterations: int
+    minimum_gap: float
+    film: SolvedFilm | None = field(repr=False)
+    model: BearingModel = field(repr=False)
+
+    def tangent(self, slow_motion: bool = False) -> np.ndarray:
+        """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
+
+        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes nothing.
+        """
+        film = self._current()
+        return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
+
+    def steady_tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows."""
+        return self.tangent()
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
+        film = self._current()
+        if film is None:
+            return {"minimum_gap": self.minimum_gap} | eccentricities(
+                self.model.parts, self.motion[:4] * self.model.parts.pose_scale
+            )
+        return quantities(film)
+
+    def history(self) -> History | None:
+        """What the bearing remembers if this state is accepted; None without effects that remember.
+
+        Raises
+        ------
+        RuntimeError
+            If there is no film.
+        """
+        film = self._current()
+        if film is None:
+            raise RuntimeError(f"Evaluation.history: {self.status.name}, without a film there is no history to keep.")
+        return self.model.next_history(film)
+
+    def _current(self) -> SolvedFilm | None:
+        if self.film is not None:
+            self.film.require_current()
+        return self.film
 
 
 class BearingModel:
@@ -57,94 +122,43 @@ class BearingModel:
     effects : Effects
     """
 
+    flexible = False
+
     def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
-        R, c = bearing.journal_radius, bearing.radial_clearance
         self.bearing = bearing
         self.effects = Effects() if effects is None else effects
-        self.grid = film_grid(
-            bearing.film, R, bearing.length, start_angle=start_angle, open_ring=isinstance(bearing.inlet, MaximumGap)
-        )
-        self.supply = SupplyMap(bearing.supply, self.grid) if bearing.supply else None
-        self.needs_spin = self.supply is not None and self.supply.rotating
-        self.liner_solver: LinerFilmSolver | CompliantFilmSolver | None = None
-        if self.effects.liner is not None:
-            self.liner_solver = liner_film_solver(
-                self.grid,
-                bearing.cavitation,
-                squeeze=bearing.squeeze,
-                contact=next(iter(self.effects.contacts), None),
-                limiter=self.effects.limiter,
-                flux_effects=self.effects.flux,
-                oil=self.effects.pressure_law,
-            )
-        self.solver = self.liner_solver or film_solver(
-            bearing.film, self.grid, bearing.cavitation, squeeze=bearing.squeeze, flux_effects=self.effects.flux,
-            density=self.effects.density,
-        )  # fmt: skip
-        self.compressible = self.solver if isinstance(self.solver, CompressibleFilmSolver) else None
-        self.cos_x, self.sin_x = np.cos(self.grid.x), np.sin(self.grid.x)
-        self.cos_f, self.sin_f = np.cos(self.grid.x_face), np.sin(self.grid.x_face)
-        self.half_length = 0.5 * bearing.length / R
-        self.pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
-        shape = self.grid.shape
-        self.contact_fields = ContactFields(shape, self.effects.contacts) if self.effects.contacts else None
-        self.limiter_fields: LimiterFields | None = None
-        # a liner's contact and film gap come out of its film solve
-        self.compliant = self.liner_solver if isinstance(self.liner_solver, CompliantFilmSolver) else None
-        if self.effects.limiter is not None and self.compliant is None:
-            self.limiter_fields = LimiterFields(shape)
-        if self.compliant is not None and self.contact_fields is not None:
-            self.contact_fields.P, self.contact_fields.slope = (
-                [self.compliant.contact_pressure],
-                [self.compliant.contact_slope],
-            )
-        # The same, if the surfaces were close enough for them to act in the last evaluation.
-        self.pressing: ContactFields | None = None
-        self.limited: LimiterFields | None = None
-        self.extra: np.ndarray | None = None
-        self.extra_link: np.ndarray | None = None
-        self.extra_slope_x: np.ndarray | None = None
-        self.extra_slope_z: np.ndarray | None = None
-        self.ratio: np.ndarray | None = None
-        self.ratio_q: np.ndarray | None = None
-        self.ratio_h: np.ndarray | None = None
-        self.ratio_v: np.ndarray | None = None
-        self.P_q: np.ndarray | None = None
-        self.flow_scale = c * R**2
-        if self.effects.pressure_law is not None:
-            self.known = self.effects.pressure_law.transform(
-                np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
-            )
-        self.known_ends = np.array(bearing.end_pressures)
-        self.set_viscosity_ratio(1.0)
+        self.parts = p = _film_parts(bearing, self.effects, start_angle)
+        self.grid, self.solver = p.grid, p.solver
+        self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
-        self.remembers_density = (
-            self.remembers_mass and self.compressible is not None and self.effects.thermal is not None
-        )
+        self.remembers_density = self.remembers_mass and p.compressible is not None and self.effects.thermal is not None
         self.remembers_deflection = self.effects.liner is not None and bearing.squeeze
         self.remembers = self.remembers_mass or self.remembers_deflection
         self.remembers = self.remembers or self.effects.thermal is not None or self.effects.wear is not None
-        self.start: tuple[History | None, float] = (None, 0.0)
-        self.gap_fields: list[np.ndarray] = []
-        self.serial = 0
-        self.status = Status.NOT_FINITE
-        self.integrals = np.zeros(4)
+        self._known = np.array([*bearing.end_pressures, bearing.cavitation.cavity_pressure])
+        self._scale = p.motion_scale[:8]
+        self._gap_fields: list[np.ndarray] = []
+        self._extra: ExtraGap | None = None
+        self._extra_link = np.zeros((0, 0))
+        self._set_viscosity(1.0)
 
-    def set_viscosity_ratio(self, ratio: float) -> None:
+    def _set_viscosity(self, ratio: float) -> None:
         """Scale the film to ``ratio`` times the lubricant's reference viscosity (one temperature for the whole film)."""
-        b = self.bearing
+        b, p, law = self.bearing, self.parts, self.effects.pressure_law
         mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
-        self.pressure_scale = 12.0 * mu * R**2 / c**2
-        self.force_scale = self.pressure_scale * R**2
-        self.shear_scale = mu * R**2 / c
-        self.end_pressures = self.known_ends / self.pressure_scale
-        self.cavity_pressure = b.cavitation.cavity_pressure / self.pressure_scale
-        if self.liner_solver is not None and self.effects.liner is not None:
-            self.liner_solver.beta = self.effects.liner.compliance * self.pressure_scale / c
-        if self.compliant is not None:
-            self.compliant.pressure_scale = self.pressure_scale
-        if self.compressible is not None:
-            self.compressible.pressure_scale = self.pressure_scale
+        pressure = 12.0 * mu * R**2 / c**2
+        known = self._known / pressure
+        self.viscosity_ratio = ratio
+        self.scales = Scales(pressure, pressure * R**2, mu * R**2 / c, known[:2], float(known[2]))
+        # what the solver is told: the transformed pressures of a pressure law
+        prescribed = known if law is None else law.transform(self._known) / pressure
+        self._prescribed: list[float] = prescribed.tolist()
+        if p.liner is not None and self.effects.liner is not None:
+            p.liner.beta = self.effects.liner.compliance * pressure / c
+        if p.compliant is not None:
+            p.compliant.pressure_scale = pressure
+        if p.compressible is not None:
+            p.compressible.pressure_scale = pressure
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""
@@ -155,9 +169,9 @@ class BearingModel:
         if not self.remembers:
             return None
         thermal = self.effects.thermal
-        temperature = None if thermal is None else thermal.initial_temperature(self)
-        self._set_motion(motion)
-        self._set_gap(None)
+        temperature = None if thermal is None else thermal.initial_temperature(self.grid.shape)
+        self.parts.evaluations.count += 1
+        self._set_gap(self._journal(motion), None)
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
         mass = self.solver.H.copy() if self.remembers_mass else None
@@ -166,45 +180,21 @@ class BearingModel:
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
         """Scaled deflection of the steady film at this motion; None if there is no such film."""
-        if self.evaluate(motion).status is not Status.CONVERGED or self.liner_solver is None:
-            return None
-        return self.liner_solver.deflection
+        liner = self.parts.liner
+        return None if self.evaluate(motion).film is None or liner is None else liner.deflection
 
-    def history(self) -> History | None:
-        """History after the last evaluation.
-
-        Raises
-        ------
-        RuntimeError
-            If that evaluation found no film.
-        """
-        if self.status is not Status.CONVERGED:
-            raise RuntimeError(
-                f"BearingModel.history: the last evaluation ended with {self.status.name}; there is no history to keep."
-            )
+    def next_history(self, film: SolvedFilm) -> History | None:
+        """History at the end of a solved film's step."""
         if not self.remembers:
             return None
-        mass = self.solver.content if self.remembers_mass else None
-        wear = None if self.effects.wear is None else self.worn(self.effects.wear)
-        deflection = None
-        if self.remembers_deflection and self.liner_solver is not None:
-            deflection = self.liner_solver.deflection
-        thermal = self.effects.thermal
-        temperature = None if thermal is None else thermal.advance(self)
-        density = None
-        if self.remembers_density and self.compressible is not None:
-            density = self.compressible.rho.copy()
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
-
-    def worn(self, wear: Wear) -> np.ndarray:
-        """Scaled wear depth after the last evaluation."""
-        assert self.contact_fields is not None
-        history, step = self.start
-        speed = math.hypot(self.grid.reference_length * self.omega, self.axial_speed)
-        pressure, *others = self.contact_fields.P
-        for other in others:
-            pressure = pressure + other
-        return wear.grown(None if history is None else history.wear, pressure, speed, step)
+        p, effects = self.parts, self.effects
+        return History(
+            mass=self.solver.content if self.remembers_mass else None,
+            wear=None if effects.wear is None else worn_depth(effects.wear, film),
+            deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
+            temperature=None if effects.thermal is None else effects.thermal.advance(film),
+            density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
+        )
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -214,7 +204,7 @@ class BearingModel:
         Parameters
         ----------
         motion : (10,) array
-            Relative motion in the joint frame, SI units; see the module's docstring.
+            Relative motion in the joint frame, SI units; see `exudyn_ehd.joint.solved_film`.
         history : History, optional
             At the last accepted step; None asks for the steady film.
         step : float
@@ -228,184 +218,127 @@ class BearingModel:
         Evaluation
             With ``status`` other than CONVERGED the wrench is nan.
         """
-        self.serial += 1
-        self.start = (history, step)
-        self._set_motion(motion)
-        if self.effects.thermal is not None:
-            self.effects.thermal.begin(self, history)
-        self.iterations = 0
-        if self.supply is not None and self.supply.turn(spin):
+        p, c = self.parts, self.bearing.radial_clearance
+        p.evaluations.count += 1
+        journal = self._journal(motion)
+        temperature = self._set_temperature(history)
+        if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
-        self.status = self._solve(history, step)
-        self.wrench = self._loads() if self.status is Status.CONVERGED else np.full(6, np.nan)
-        return Evaluation(self.status, self.motion, self.wrench, self.iterations, self, self.serial)
+        # a sum is finite only if all its terms are
+        if not math.isfinite(sum(journal.motion.tolist())):
+            return self._result(Status.NOT_FINITE, journal, _no_wrench(), 0, math.nan, None)
+        smallest, extra, pressing, limited = self._set_gap(journal, history)
+        if smallest <= 0.0 and not self.effects.contacts and p.liner is None:
+            return self._result(Status.NO_FILM, journal, _no_wrench(), 0, c * smallest, None)
+        status, iterations = self._solve(journal, history, step)
+        oil = oil_fields(p, self.effects, self.scales.pressure) if status is Status.CONVERGED else None
+        if oil is None:
+            status = Status.NO_PRESSURE if status is Status.CONVERGED else status
+            return self._result(status, journal, _no_wrench(), iterations, c * smallest, None)
+        if p.liner is not None:
+            smallest = p.liner.smallest_gap()
+            if p.compliant is not None and p.contacts is not None:
+                pressing = p.contacts if smallest < p.contacts.presses_below else None
+        loads = film_loads(p, self.scales, journal, oil, extra, pressing)
+        film = SolvedFilm(
+            p, self.grid, self.solver, self.scales, journal, history, step, temperature, extra, pressing, limited, oil, loads,
+            c * smallest, self._bore_state(journal, oil, pressing), p.evaluations.count,
+        )  # fmt: skip
+        return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
 
-    def _set_motion(self, motion: np.ndarray) -> None:
-        self.motion = np.array(motion, dtype=float)
-        self.pose = self.motion[:4] * self.pose_scale
-        self.rate = self.motion[4:8] * self.pose_scale
-        self.omega, self.axial_speed = float(self.motion[8]), float(self.motion[9])
+    def _result(
+        self,
+        status: Status,
+        journal: JournalMotion,
+        wrench: np.ndarray,
+        iterations: int,
+        minimum_gap: float,
+        film: SolvedFilm | None,
+    ) -> Evaluation:
+        return Evaluation(status, journal.motion, wrench, iterations, minimum_gap, film, self)
 
-    def _set_gap(self, history: History | None) -> float:
-        """Gaps of the present motion into the film solver; returns the smallest true gap, scaled."""
-        s, z = self.solver, self.grid.z
-        rigid_gap(self.pose, self.cos_x, self.sin_x, z, 1.0, s.H)
-        rigid_gap(self.pose, self.cos_f, self.sin_f, z, 1.0, s.HF)
+    def _bore_state(
+        self, journal: JournalMotion, oil: OilFields | None, pressing: ContactFields | None
+    ) -> BoreState | None:
+        """A flexible bore under this film; None for a rigid one."""
+        return None
+
+    def _journal(self, motion: np.ndarray) -> JournalMotion:
+        motion = np.array(motion, dtype=float)
+        scaled = motion[:8] * self._scale
+        return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
+
+    def _set_temperature(self, history: History | None) -> float | np.ndarray | None:
+        """Bring the viscosity to the temperature at the start of the step, which comes back."""
+        thermal = self.effects.thermal
+        if thermal is None:
+            return None
+        temperature = None if history is None else history.temperature
+        if temperature is None:
+            temperature = thermal.initial_temperature(self.grid.shape)
+        ratio = thermal.set_viscosity(temperature)
+        if ratio != self.viscosity_ratio:
+            self._set_viscosity(ratio)
+        return temperature
+
+    def _set_gap(
+        self, journal: JournalMotion, history: History | None
+    ) -> tuple[float, ExtraGap | None, ContactFields | None, LimiterFields | None]:
+        """Gaps of a motion into the film solver; returns the smallest, scaled, with the record's fields of these names."""
+        s, p, z = self.solver, self.parts, self.grid.z
+        rigid_gap(journal.pose, p.cos_x, p.sin_x, z, 1.0, s.H)
+        rigid_gap(journal.pose, p.cos_f, p.sin_f, z, 1.0, s.HF)
         if s.squeeze:
-            rigid_gap(self.rate, self.cos_x, self.sin_x, z, 0.0, s.H_t)
-        smallest = 1.0 - float(largest_eccentricity(self.pose, self.half_length))
+            rigid_gap(journal.rate, p.cos_x, p.sin_x, z, 0.0, s.H_t)
+        smallest = 1.0 - float(largest_eccentricity(journal.pose, p.half_length))
+        extra = None
         if self.effects.gap_terms:
-            smallest = self._add_gap_terms(history)
-        if self.compliant is not None:
-            return smallest
-        if self.contact_fields is not None:
-            self._set_contacts(self.contact_fields, smallest)
-        self.limited = None
-        if self.effects.limiter is not None and smallest < self.effects.limiter.limits_below:
-            self.limited = f = self.limiter_fields
+            smallest, extra = self._add_gap_terms(history)
+        if p.compliant is not None:
+            return smallest, extra, None, None
+        pressing = None if p.contacts is None else self._press(p.contacts, smallest)
+        limiter, limited = self.effects.limiter, None
+        if limiter is not None and smallest < limiter.limits_below:
+            limited = f = p.limiter
             assert f is not None
-            self.effects.limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
-        return smallest
+            limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
+        return smallest, extra, pressing, limited
 
-    def _set_contacts(self, f: ContactFields, smallest: float) -> None:
-        """Pressures of the contacts at the true gap."""
+    def _press(self, f: ContactFields, smallest: float) -> ContactFields | None:
+        """Pressures of the contacts at the true gap; None where the surfaces are too far apart for any."""
         if smallest < f.presses_below:
-            self.pressing = f
+            f.acting = True
             for k, contact in enumerate(self.effects.contacts):
                 contact.pressure(self.solver.H, f.P[k], f.slope[k])
-        elif self.pressing is not None:
-            self.pressing = None
+            return f
+        if f.acting:
             f.clear()
+        return None
 
-    def _add_gap_terms(self, history: History | None) -> float:
+    def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
         """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
-        s, g = self.solver, self.grid
+        s, g, extra = self.solver, self.grid, self._extra
         fields = [term.field(history) for term in self.effects.gap_terms]
-        if self.extra is None or self.extra_link is None or not all(map(is_, fields, self.gap_fields)):
-            self.gap_fields = fields
-            self.extra = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
-            self.extra_link, self.extra_slope_x, self.extra_slope_z = (np.empty(g.shape) for _ in range(3))
-            gap_slopes(self.extra, g.width_x[0], g.z, self.extra_link, self.extra_slope_x, self.extra_slope_z)
-        return float(add_to_gap(self.extra, self.extra_link, s.H, s.HF))
+        if extra is None or not all(map(is_, fields, self._gap_fields)):
+            height = fields[0] if len(fields) == 1 else np.sum(fields, axis=0)
+            self._gap_fields, self._extra_link = fields, np.empty(g.shape)
+            self._extra = extra = ExtraGap(height, np.empty(g.shape), np.empty(g.shape), fields)
+            gap_slopes(height, g.width_x[0], g.z, self._extra_link, extra.slope_x, extra.slope_z)
+        return float(add_to_gap(extra.height, self._extra_link, s.H, s.HF)), extra
 
-    def _solve(self, history: History | None, step: float) -> Status:
-        if not all(map(math.isfinite, self.motion.tolist())):
-            return Status.NOT_FINITE
-        self.minimum_gap = self.bearing.radial_clearance * self._set_gap(history)
-        if self.minimum_gap <= 0.0 and not self.effects.contacts and self.liner_solver is None:
-            return Status.NO_FILM
-        ends, cavity = self.end_pressures, self.cavity_pressure
-        law = self.effects.pressure_law
-        if law is not None:
-            known = self.known / self.pressure_scale
-            ends, cavity = known[:2], float(known[2])
+    def _solve(self, journal: JournalMotion, history: History | None, step: float) -> tuple[Status, int]:
+        """Solve for the gaps in the solver's buffers, with the known pressures."""
+        p, law = self.parts, self.effects.pressure_law
         P = self.solver.pressure
-        P[:, 0], P[:, -1] = ends
-        if self.supply is not None:
-            fed = self.supply.pressures()
-            self.supply.prescribe((fed if law is None else law.transform(fed)) / self.pressure_scale, P)
+        P[:, 0], P[:, -1], cavity = self._prescribed
+        if p.supply is not None:
+            fed = p.supply.pressures()
+            p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
         mass = history.mass if history is not None and self.remembers_mass else None
-        if self.liner_solver is not None:
-            self.liner_solver.delta_old = None if history is None else history.deflection
-        status, self.iterations = self.solver.solve(
-            0.5 * self.omega, 0.5 * self.axial_speed / self.grid.reference_length, cavity, mass, step
-        )
-        if status is Status.CONVERGED and (law is not None or self.effects.shear_factor is not None):
-            status = apply_laws(self)
-        elif status is Status.CONVERGED:
-            self.P = self.solver.pressure
-        if status is Status.CONVERGED and self.liner_solver is not None:
-            smallest = self.liner_solver.smallest_gap()
-            self.minimum_gap = self.bearing.radial_clearance * smallest
-            if self.compliant is not None and self.contact_fields is not None:
-                self.pressing = self.contact_fields if smallest < self.contact_fields.presses_below else None
-        return status
-
-    def share(self) -> np.ndarray:
-        """Share of a full film's shear that acts at each vertex (n, m)."""
-        s = self.solver
-        if s.closure.conserves_mass:
-            return s.fill
-        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
-
-    def _couette(self) -> tuple[float, float]:
-        s, g = self.solver, self.grid
-        if self.ratio is not None and s.closure.conserves_mass:
-            return couette_integral_ratio(s.H, g.weight, self.ratio, s.fill, s.fill >= 1.0)
-        if self.ratio is not None:
-            return couette_integral_law(s.H, g.weight, self.ratio, s.work.active, g.fixed, s.closure.cavity_shear)
-        if s.closure.conserves_mass:
-            return couette_integral_fill(s.H, g.weight, s.fill)
-        return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
-
-    def _loads(self) -> np.ndarray:
-        s, g = self.solver, self.grid
-        pressure_integrals(self.P, g.weight, self.cos_x, self.sin_x, g.z, self.integrals)
-        self.extra_theta = self.extra_z = 0.0
-        if self.extra_slope_x is not None and self.extra_slope_z is not None:
-            self.extra_theta, self.extra_z = slope_integrals(self.P, g.weight, self.extra_slope_x, self.extra_slope_z)
-        if self.liner_solver is not None:
-            # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
-            self.extra_z += (
-                math.pi * self.liner_solver.beta * float(self.end_pressures[1] ** 2 - self.end_pressures[0] ** 2)
-            )
-        if self.effects.uneven_drag:
-            drag = drag_integrals(self)
-            self.extra_theta += drag[0]
-            self.extra_z += drag[1]
-        self.couette, self.couette_unbroken = self._couette()
-        x, y, bx, by = self.pose.tolist()
-        sc, ss, szc, szs = self.integrals.tolist()
-        self.s_theta = x * ss - y * sc + bx * szs - by * szc + self.extra_theta
-        self.s_z = -(bx * sc + by * ss) + self.extra_z
-        # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven drag
-        # pulls the journal by as much as it holds the bore back.
-        R, fs = g.reference_length, self.force_scale
-        ends, (lower, upper) = 0.0, self.end_pressures.tolist()
-        if lower != 0.0 or upper != 0.0:
-            ends = upper * _ring_integral(s.H[:, -1]) - lower * _ring_integral(s.H[:, 0])
-        wrench = np.array(
-            [
-                -fs * sc,
-                -fs * ss,
-                -self.shear_scale
-                * (self.axial_speed * self.couette + 6.0 * R * (self.s_z - 2.0 * self.extra_z - ends)),
-                fs * R * szs,
-                -fs * R * szc,
-                -self.shear_scale * R**2 * (self.omega * self.couette + 6.0 * (self.s_theta - 2.0 * self.extra_theta)),
-            ]
-        )
-        self.contact_wrench = np.zeros(6)
-        if self.pressing is not None:
-            self._add_contacts(self.pressing, wrench)
-        return wrench
-
-    def _add_contacts(self, f: ContactFields, wrench: np.ndarray) -> None:
-        """Add the contacts' pressures and friction to ``wrench`` (6,); their friction stays in ``contact_wrench``."""
-        g, R = self.grid, self.grid.reference_length
-        for k, (friction, transition) in enumerate(f.friction):
-            contact_wrench(
-                f.P[k], g.weight, self.cos_x, self.sin_x, g.z, self.motion, friction, transition, R, f.integrals[k],
-                self.contact_wrench, wrench,
-            )  # fmt: skip
-
-    def slip(self, contact: Contact) -> tuple[float, float, np.ndarray]:
-        """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
-        R = self.grid.reference_length
-        v, w = R * self.omega, self.axial_speed
-        size = math.sqrt(v * v + w * w + contact.transition_speed**2)
-        a, b = v / size, w / size
-        slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
-        return a, b, slope
-
-    def tangent(self, slow_motion: bool = False) -> np.ndarray:
-        """d wrench / d motion (6, 10) of the last evaluation; nan without a film.
-
-        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes nothing.
-        """
-        if self.status is not Status.CONVERGED:
-            return np.full((6, MOTION_SIZE), np.nan)
-        return wrench_tangent(self, slow_motion)
+        if p.liner is not None:
+            p.liner.delta_old = None if history is None else history.deflection
+        along = 0.5 * journal.axial_speed / self.grid.reference_length
+        return self.solver.solve(0.5 * journal.omega, along, cavity, mass, step)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -413,35 +346,74 @@ class BearingModel:
         """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it. The rest as for `evaluate`."""
         return self.evaluate(motion, history, step, spin)
 
-    def shape(self) -> np.ndarray | None:
-        """Scaled height of profile and wear (n, m), of undeformed surfaces, at the last evaluation; None for cylinders."""
-        return self.extra
 
-    def bore_fields(self) -> dict[str, np.ndarray]:
-        """Displacement and coordinates of a flexible bore by name; empty for a rigid one."""
-        return {}
-
-    def steady_tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) after `evaluate_steady`; a flexible bore follows."""
-        return self.tangent()
-
-    def quantities(self) -> dict[str, float]:
-        """Scalars of the last evaluation by name, SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        return quantities(self)
-
-    def power_loss(self) -> float:
-        """Mechanical power that the last evaluation's film and contacts keep, W; see `exudyn_ehd.joint.model.quantities.quantities`."""
-        return power_loss(self)
-
-    def supply_flows(self) -> np.ndarray:
-        """What every area of ``bearing.supply`` feeds into the film, m3/s; empty without supply."""
-        return supply_flows(self)
-
-    def refined_peak(self) -> tuple[float, float, float]:
-        """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-        return refined_peak(self)
+def _no_wrench() -> np.ndarray:
+    return np.full(6, np.nan)
 
 
-def _ring_integral(row: np.ndarray) -> float:
-    """Integral over the circumference of a row of vertex values."""
-    return float(row.sum() * (2.0 * math.pi / row.size))
+def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
+    """Scaled wear depth at the end of a solved film's step."""
+    contacts, history = film.parts.contacts, film.history
+    assert contacts is not None
+    speed = math.hypot(film.grid.reference_length * film.journal.omega, film.journal.axial_speed)
+    pressure, *others = contacts.P
+    for other in others:
+        pressure = pressure + other
+    return wear.grown(None if history is None else history.wear, pressure, speed, film.step)
+
+
+def _film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
+    """Grid, solver and buffers of a bearing with its effects."""
+    R, c = bearing.journal_radius, bearing.radial_clearance
+    open_ring = isinstance(bearing.inlet, MaximumGap)
+    grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring)
+    supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
+    liner: LinerFilmSolver | CompliantFilmSolver | None = None
+    if effects.liner is not None:
+        liner = liner_film_solver(
+            grid,
+            bearing.cavitation,
+            squeeze=bearing.squeeze,
+            contact=next(iter(effects.contacts), None),
+            limiter=effects.limiter,
+            flux_effects=effects.flux,
+            oil=effects.pressure_law,
+        )
+    solver = liner or film_solver(
+        bearing.film,
+        grid,
+        bearing.cavitation,
+        squeeze=bearing.squeeze,
+        flux_effects=effects.flux,
+        density=effects.density,
+    )
+    # contact and film gap on a liner come out of its film solve
+    compliant = liner if isinstance(liner, CompliantFilmSolver) else None
+    contacts = None
+    if effects.contacts:
+        friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
+        contacts = ContactFields(grid.shape, friction, max(f.presses_below for f in effects.contacts))
+        if compliant is not None:
+            contacts.P, contacts.slope = [compliant.contact_pressure], [compliant.contact_slope]
+    pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
+    return FilmParts(
+        bearing=bearing,
+        grid=grid,
+        solver=solver,
+        liner=liner,
+        compliant=compliant,
+        compressible=solver if isinstance(solver, CompressibleFilmSolver) else None,
+        supply=supply,
+        contacts=contacts,
+        limiter=LimiterFields(grid.shape) if effects.limiter is not None and compliant is None else None,
+        cos_x=np.cos(grid.x),
+        sin_x=np.sin(grid.x),
+        cos_f=np.cos(grid.x_face),
+        sin_f=np.sin(grid.x_face),
+        half_length=0.5 * bearing.length / R,
+        pose_scale=pose_scale,
+        motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),
+        flow_scale=c * R**2,
+        uneven_drag=effects.uneven_drag,
+        evaluations=Evaluations(),
+    )

@@ -14,7 +14,8 @@ from exudyn_ehd.film.surfaces.average_gap import AverageGap
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
-from exudyn_ehd.joint.seams import Contact, FluxEffect, GapLimiter, GapTerm, History, ShearFactor, Wear
+from exudyn_ehd.joint.seams import Contact, FluxEffect, GapLimiter, GapTerm, ShearFactor, Wear
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import InputError
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, evaluate_at, history_at, require_oil, result_at
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
 
@@ -103,10 +103,10 @@ def equilibrium(
     motion[:2] = first_guess(bearing, omega, force, b)
     tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * bearing.reference_force(omega) / size)
     start = motion[:2].copy()
-    count, residual, tangent = _newton(model, motion, force, tolerance)
+    count, residual, evaluation, tangent = _newton(model, motion, force, tolerance)
     if residual > tolerance:
         motion[:2] = start
-        more, residual, tangent = _creep(model, motion, force, tolerance)
+        more, residual, evaluation, tangent = _creep(model, motion, force, tolerance)
         count += more
     if residual > tolerance:
         raise FilmError(
@@ -115,7 +115,7 @@ def equilibrium(
             "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film may carry "
             "no such load at any position: look at ehd.steady(...) around there."
         )
-    K, C = -tangent[:2, :2], -_rate_tangent(model, tangent)[:2, 4:6]
+    K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
     ratio, mass = whirl_threshold(K, C, abs(omega))
     film = result_at(model, motion, "equilibrium")
     return EquilibriumResult(
@@ -134,37 +134,39 @@ def equilibrium(
 
 def _newton(
     model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
-) -> tuple[int, float, np.ndarray]:
-    """Newton's method from ``motion`` (changed in place): steps, unbalance over load, tangent at the end."""
+) -> tuple[int, float, Evaluation, np.ndarray]:
+    """Newton's method from ``motion`` (changed in place): steps, unbalance over load, film and tangent at the end."""
     size = float(np.hypot(*force))
     count, residual = 0, math.inf
-    wrench = evaluate_at(model, motion, "equilibrium")
-    tangent = model.steady_tangent()
+    evaluation, _ = evaluate_at(model, motion, "equilibrium")
+    tangent = evaluation.steady_tangent()
     while count < LARGEST_LOAD_STEPS:
         count += 1
-        unbalance = wrench[:2] + force
+        unbalance = evaluation.wrench[:2] + force
         residual = float(np.max(np.abs(unbalance))) / size
         if residual <= tolerance:
             break
         try:
-            wrench = _move(model, motion, _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance)))
+            evaluation = _move(
+                model, motion, _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
+            )
         except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
             break
-        tangent = model.steady_tangent()
-    return count, residual, tangent
+        tangent = evaluation.steady_tangent()
+    return count, residual, evaluation, tangent
 
 
 def _creep(
     model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
-) -> tuple[int, float, np.ndarray]:
+) -> tuple[int, float, Evaluation, np.ndarray]:
     """As `_newton`, by way of the journal's creep: a viscous resistance r holds it back, which falls as the unbalance does.
 
     ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure where Newton's
     method jumps over a film that starves or touches.
     """
     size = float(np.hypot(*force))
-    unbalance = evaluate_at(model, motion, "equilibrium")[:2] + force
-    tangent = model.steady_tangent()
+    evaluation, _ = evaluate_at(model, motion, "equilibrium")
+    unbalance, tangent = evaluation.wrench[:2] + force, evaluation.steady_tangent()
     resistance, count = 10.0 * size / model.bearing.radial_clearance, 1
     while count < LARGEST_CREEP_STEPS and float(np.max(np.abs(unbalance))) > tolerance * size:
         try:
@@ -177,27 +179,28 @@ def _creep(
         motion[:2] += _limited_step(model, motion, step)
         count += 1
         try:
-            trial = evaluate_at(model, motion, "equilibrium")[:2] + force
+            evaluation, _ = evaluate_at(model, motion, "equilibrium")
+            trial = evaluation.wrench[:2] + force
         except FilmError:
             trial = np.full(2, math.inf)
         if float(np.hypot(*trial)) < float(np.hypot(*unbalance)):
-            unbalance, tangent = trial, model.steady_tangent()
+            unbalance, tangent = trial, evaluation.steady_tangent()
             resistance /= 5.0
         else:
             motion[:2] = base
             resistance *= 4.0
-    evaluate_at(model, motion, "equilibrium")
-    return count, float(np.max(np.abs(unbalance))) / size, tangent
+    evaluation, _ = evaluate_at(model, motion, "equilibrium")
+    return count, float(np.max(np.abs(unbalance))) / size, evaluation, tangent
 
 
-def _rate_tangent(model: BearingModel, tangent: np.ndarray) -> np.ndarray:
+def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
     """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner; see `equilibrium`."""
-    if model.liner_solver is not None:
-        return model.tangent(slow_motion=True)
+    model = evaluation.model
+    if model.parts.liner is not None:
+        return evaluation.tangent(slow_motion=True)
     if not model.remembers_mass:
         return tangent
-    model.evaluate(model.motion, model.history())
-    return model.steady_tangent()
+    return model.evaluate(evaluation.motion, evaluation.history()).steady_tangent()
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
@@ -225,22 +228,22 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
     return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
-def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> Evaluation:
     """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
     motion[:2] += step
-    if hasattr(model, "bore"):
+    if model.flexible:
         for _ in range(STEP_HALVINGS):
             evaluation = model.evaluate_steady(motion, history_at(model, motion, "equilibrium"))
             if evaluation.status is Status.CONVERGED:
-                return evaluation.wrench
+                return evaluation
             step = 0.5 * step
             motion[:2] -= step
-    return evaluate_at(model, motion, "equilibrium")
+    return evaluate_at(model, motion, "equilibrium")[0]
 
 
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
-    if model.effects.contacts or hasattr(model, "bore"):
+    if model.effects.contacts or model.flexible:
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))
     c, half = model.bearing.radial_clearance, 0.5 * model.bearing.length

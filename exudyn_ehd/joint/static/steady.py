@@ -13,8 +13,9 @@ from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import grid_fields
-from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
@@ -24,7 +25,7 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 @dataclass(frozen=True, eq=False)
 class SteadyResult(FilmPictures):
-    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.model.rigid`; SI units.
+    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
 
     Attributes
     ----------
@@ -61,7 +62,7 @@ class SteadyResult(FilmPictures):
         Of a flexible bore, m.
     bearing : JournalBearing
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.model.rigid`; with a flexible bore followed by its coordinates and rates.
+        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and rates.
     """
 
     theta: np.ndarray
@@ -185,29 +186,27 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History |
         return history
     at_rest = motion.copy()
     at_rest[4:8] = 0.0
-    evaluate_at(model, at_rest, where)
-    content = model.history()
+    content = evaluate_at(model, at_rest, where)[0].history()
     assert content is not None
     return replace(content, temperature=None if history is None else history.temperature)
 
 
-def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> np.ndarray:
-    """Wrench (6,) of the steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
+def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Evaluation, SolvedFilm]:
+    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
     evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
-    if evaluation.status is not Status.CONVERGED:
-        gap = evaluation.quantities().get("minimum_gap", math.nan)
+    if evaluation.film is None:
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {gap:.3g} m: {advice(evaluation.status, model.bearing)}"
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: {advice(evaluation.status, model.bearing)}"
         )
-    return evaluation.wrench
+    return evaluation, evaluation.film
 
 
 def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
     """The steady film at ``motion``; `FilmError` as by `evaluate_at`."""
-    wrench = evaluate_at(model, motion, where)
-    q = model.quantities()
-    peak, angle, _ = model.refined_peak()
+    evaluation, film = evaluate_at(model, motion, where)
+    q, wrench, bore = evaluation.quantities(), evaluation.wrench, film.bore
+    peak, angle, _ = refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])
     reference = model.bearing.reference_force(motion[8])
     eccentric = math.hypot(motion[0], motion[1]) > 0.0
@@ -216,7 +215,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResu
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
     return SteadyResult(
-        **grid_fields(model),
+        **grid_fields(film),
         force=wrench[:3].copy(),
         moment=wrench[3:].copy(),
         minimum_gap=q["minimum_gap"],
@@ -228,15 +227,16 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResu
         power_loss=q["power_loss"],
         leakage=q["leakage"],
         contact_load=q["contact_load"],
-        supply_flows=model.supply_flows(),
+        supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],
         contact_power_loss=q["contact_power_loss"],
         peak_contact_pressure=q["peak_contact_pressure"],
         sommerfeld_number=force / reference if reference > 0.0 else math.nan,
         attitude_angle=attitude,
-        status=model.status,
-        iterations=model.iterations,
-        **model.bore_fields(),
+        status=evaluation.status,
+        iterations=evaluation.iterations,
+        bore_displacement=None if bore is None else bore.displacement * model.bearing.radial_clearance,
+        bore_coordinates=None if bore is None else bore.coordinates.copy(),
         bearing=model.bearing,
-        motion=model.motion.copy(),
+        motion=evaluation.motion.copy(),
     )

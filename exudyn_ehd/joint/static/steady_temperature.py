@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.seams import History, ThermalEffect
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.joint.seams import ThermalEffect
+from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.status import FilmError
 
 # Largest change of temperature that counts as settled, as a share of the film's rise over its coldest source.
 SETTLED = 1e-11
@@ -45,7 +46,7 @@ def settle(model: BearingModel, motion: np.ndarray) -> History | None:
     thermal = model.effects.thermal
     if thermal is None:
         return None
-    start = thermal.initial_temperature(model)
+    start = thermal.initial_temperature(model.grid.shape)
     if isinstance(start, np.ndarray):
         return _settle_field(model, thermal, motion, start)
     return _settle_number(model, thermal, motion, float(start))
@@ -56,9 +57,8 @@ def _target(
 ) -> np.ndarray | None:
     """Temperature in balance with the heat of the film at T; None without a film."""
     # a flexible bore settles under the film of every temperature that is tried
-    if model.evaluate_steady(motion, History(temperature=T)).status is not Status.CONVERGED:
-        return None
-    return np.asarray(thermal.steady_temperature(model))
+    film = model.evaluate_steady(motion, History(temperature=T)).film
+    return None if film is None else np.asarray(thermal.steady_temperature(film))
 
 
 WAY_OUT = (

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.static.equilibrium import LOAD_TOLERANCE, first_guess
 from exudyn_ehd.status import FilmError, InputError, Status, require_number
 
@@ -99,24 +98,24 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     order = np.argsort(-values)
     position = first_guess(bearing, float(values[order[0]]), force, np.zeros(2))
     last = float(values[order[0]])
-    rows: list[dict[str, Any]] = [{}] * values.size
+    rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
     for k in order:
-        position = _follow(model, position, last, float(values[k]), force)
-        last = float(values[k])
-        rows[k] = _row(model, last, size)
+        found = _follow(model, position, last, float(values[k]), force)
+        position, last = found.motion[:2], float(values[k])
+        rows[k] = _row(found, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)
 
 
-def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float, force: np.ndarray) -> np.ndarray:
-    """Equilibrium (2,) at ``speed`` from the one at ``last``, halving the way (in the logarithm) where Newton does not settle."""
+def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float, force: np.ndarray) -> Evaluation:
+    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where Newton does not settle."""
     target, halvings = speed, 0
     while True:
         found = _settle(model, position, target, force)
         if found is not None and target == speed:
             return found
         if found is not None:
-            position, last, target = found, target, speed
+            position, last, target = found.motion[:2], target, speed
             continue
         halvings += 1
         target = float(np.sqrt(last * target))
@@ -127,7 +126,7 @@ def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float
             )
 
 
-def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndarray) -> np.ndarray | None:
+def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndarray) -> Evaluation | None:
     """Newton's method with steps below a tenth of the clearance, halved while the unbalance grows; None if it does not settle."""
     size = float(np.hypot(*force))
     longest = 0.1 * model.bearing.radial_clearance
@@ -140,7 +139,7 @@ def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndar
         unbalance = evaluation.wrench[:2] + force
         error = float(np.hypot(*unbalance))
         if error < LOAD_TOLERANCE * size:
-            return motion[:2].copy()
+            return evaluation
         step = np.linalg.solve(evaluation.tangent()[:2, :2], -unbalance)
         step *= min(1.0, longest / (float(np.hypot(*step)) + 1e-300))
         base = motion[:2].copy()
@@ -157,9 +156,9 @@ def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndar
     return None
 
 
-def _row(model: BearingModel, speed: float, load: float) -> dict[str, Any]:
-    """Columns of the result at the model's last evaluation."""
-    q, b = model.quantities(), model.bearing
+def _row(evaluation: Evaluation, speed: float, load: float) -> dict[str, float | np.ndarray]:
+    """Columns of the result at one equilibrium."""
+    q, b = evaluation.quantities(), evaluation.model.bearing
     rough = b.asperity if b.asperity is not None else b.roughness
     torque = abs(q["friction_torque"])
     return {
@@ -174,5 +173,5 @@ def _row(model: BearingModel, speed: float, load: float) -> dict[str, Any]:
         "contact_power_loss": q["contact_power_loss"],
         "leakage": q["leakage"],
         "hersey": b.lubricant.viscosity * speed * 2.0 * b.journal_radius * b.length / load,
-        "position": model.motion[:2].copy(),
+        "position": evaluation.motion[:2].copy(),
     }

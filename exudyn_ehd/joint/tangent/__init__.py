@@ -2,10 +2,8 @@
 
 Module map
 ----------
-wrench           rigid bore
-bore             elastic bore by modes
-elastic_product  derivatives of the elastic bore's loads
-nodes            elastic bore by nodes
-traction         loads on the nodes of the bore
-drag             pull of the pressure gradient on the two surfaces
+wrench  rigid bore
+bore    flexible bore: wrench and loads on its shapes
+nodes   flexible bore: wrench and forces on its nodes, pressure and shear
+drag    pull of the pressure gradient on two unlike surfaces
 """

@@ -1,49 +1,50 @@
-"""Exact tangent of a film on a flexible bore: the journal's wrench and the bore's loads to motion, q and q_t.
+"""Exact tangent of a film on a flexible bore: the journal's wrench and the bore's loads to motion, q and q_t; as a matrix and as an operator.
 
-The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in one sweep over the
-factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point stencil on S, since the gap on a link is
-the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination of the derivatives to
-q and q_t, which costs as much as one of them.
+The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in one sweep over
+the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point stencil on S, since the gap on a
+link is the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination of the
+derivatives to q and q_t, which costs as much as one of them.
+
+What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta, delta_t) = 0 of the
+film's unknowns u,
+
+    A du = -(dr/dm dm + dr/d delta S dq + dr/d delta_t S dq_t),   dQ = S^T W du + (contacts);
+
+the six rows of the wrench are made once, by adjoint solves.
 """
 
 from __future__ import annotations
 
 import functools
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.sensitivity.bore_stencil import (
+    balance_change,
     gap_stencil,
     integral_weights,
     motion_columns,
     shear_fields,
     spread_gradient,
 )
+from exudyn_ehd.joint.bore.shapes import Bore
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
-from exudyn_ehd.joint.tangent.wrench import (
-    SIZE,
-    adjoint_rows,
-    shear_needs_adjoint,
-    swept_derivatives,
-    wrench_tangent,
-)
-
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, shear_needs_adjoint, swept_derivatives, wrench_tangent
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
 
 
-def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, float]) -> np.ndarray:
-    """Tangent of wrench and bore loads of the last evaluation of ``model``, SI units.
+def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, float]) -> np.ndarray:
+    """Tangent of wrench and bore loads of a solved film, SI units.
 
     Parameters
     ----------
-    model : ElasticBearingModel
+    film : SolvedFilm
+    bore : Bore
     combinations : pairs of float
         Factors (a, b), each of which asks for the k columns ``a d/dq + b d/dq_t``.
 
@@ -52,28 +53,30 @@ def elastic_tangent(model: ElasticBearingModel, *combinations: tuple[float, floa
     (6 + k, 10 + k * combinations) array
         d/d motion, then the combinations.
     """
-    k = model.bore.size
-    lam, count = _adjoints(model, whole=True)
-    balances = Balances(model)
+    k, size = bore.size, MOTION_SIZE
+    lam, count = _adjoints(film, bore, whole=True)
+    balances = Balances(film)
     gradient = balances.gradient(lam)
-    out = np.empty((6 + k, SIZE + k * len(combinations)))
-    out[:6, :SIZE] = wrench_tangent(model, gradient=np.negative(gradient[0, :, :count].T, order="C"))
-    weights, direct = wrench_weights(model)
+    out = np.empty((6 + k, size + k * len(combinations)))
+    out[:6, :size] = wrench_tangent(film, gradient=np.negative(gradient[0, :, :count].T, order="C"))
+    weights, direct = wrench_weights(film, bore)
     for i, (by_gap, by_rate) in enumerate(combinations):
-        block = out[:, SIZE + i * k : SIZE + (i + 1) * k]
-        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
+        block = out[:, size + i * k : size + (i + 1) * k]
+        by_bore = bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
         spread_gradient(
-            gradient, by_bore, model.bore.order, weights, direct, by_gap, model.force_scale, model.motion_scale, out[6:, :SIZE], block,
+            gradient, by_bore, bore.order, weights, direct, by_gap, film.scales.force, film.parts.motion_scale,
+            out[6:, :size], block,
         )  # fmt: skip
-        if model.pressing is not None:
-            _add_contact_loads(model, block[6:], by_gap)
-    if model.pressing is not None:
-        _add_contact_motion(model, out[6:, :4])
+        if film.pressing is not None:
+            contact = bore.product(contact_slope(film, film.pressing))
+            block[6:] += contact * (by_gap / film.parts.bearing.radial_clearance)
+    if film.pressing is not None:
+        out[6:, :4] -= _contact_columns(film, bore, film.pressing)
     return out
 
 
 class Balances:
-    """Derivatives of the film's balances at its unknowns for the last evaluation of ``model``.
+    """Derivatives of a film's balances at its unknowns.
 
     Attributes
     ----------
@@ -83,15 +86,15 @@ class Balances:
         To (scaled pose, scaled rates, vx, vz).
     """
 
-    def __init__(self, model: ElasticBearingModel) -> None:
-        work = model.solver.work
-        self.clearance = model.bearing.radial_clearance
+    def __init__(self, film: SolvedFilm) -> None:
+        p, work = film.parts, film.solver.work
+        self.clearance = p.bearing.radial_clearance
         self.places = work.order[: work.count]
-        self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(model)
-        links, self.motion = self.links, np.empty((work.count, SIZE))
+        self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(film)
+        d, self.motion = self.links, np.empty((work.count, MOTION_SIZE))
         motion_columns(
-            self.places, work.count, links.DX, links.DZ, links.SX, links.SZ, links.SZX, self.slope, self.by_rate, self.by_gap,
-            model.cos_x, model.sin_x, model.cos_f, model.sin_f, model.grid.z, self.motion,
+            self.places, work.count, d.DX, d.DZ, d.SX, d.SZ, d.SZX, self.slope, self.by_rate, self.by_gap,
+            p.cos_x, p.sin_x, p.cos_f, p.sin_f, p.grid.z, self.motion,
         )  # fmt: skip
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
@@ -100,136 +103,183 @@ class Balances:
 
     def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
-        count, c = len(self.places), self.clearance
+        count, c, d = len(self.places), self.clearance, self.links
         weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
         gap_stencil(
-            self.places, count, self.links.DX, self.links.DZ, self.slope, self.by_rate, self.by_gap, by_place / c,
-            by_rate / c, weight, vertices,
+            self.places, count, d.DX, d.DZ, self.slope, self.by_rate, self.by_gap, by_place / c, by_rate / c,
+            weight, vertices,
         )  # fmt: skip
         return weight, vertices
 
 
-def wrench_rows(model: ElasticBearingModel, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+class TangentProduct:
+    """Tangent of a solved film as an operator; valid until the model's next evaluation.
+
+    Attributes
+    ----------
+    wrench : (6, 10) array
+        d wrench / d motion.
+    wrench_place, wrench_rate : (6, k) arrays
+        d wrench / dq, / dq_t.
+    """
+
+    def __init__(self, film: SolvedFilm, bore: Bore) -> None:
+        self.film, self.bore = film, bore
+        balances = Balances(film)
+        self.wrench, self.wrench_place, self.wrench_rate = _wrench_rows(film, bore, balances)
+        self.motion = balances.motion * film.parts.motion_scale
+        self.by_place, self.vertices = balances.stencil(1.0, 0.0)
+        # the rate acts on a vertex's own storage alone
+        self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]
+        self.places = balances.places
+        self.weight = -film.scales.force * load_weights(film)
+        self.contact: np.ndarray | None = None
+        if film.pressing is not None:
+            self.contact = contact_slope(film, film.pressing) / film.parts.bearing.radial_clearance
+            self.contact_motion = -_contact_columns(film, bore, film.pressing)
+
+    def bore_load(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
+        """Change of the bore's loads (k,) with changes of motion (10,), q and q_t (k,).
+
+        Raises
+        ------
+        RuntimeError
+            If the model has evaluated another state since.
+        """
+        moved, residual = self.residual(motion, place, rate)
+        field = np.zeros(moved.shape)
+        field.reshape(-1)[self.places] = self.weight * residual
+        if self.contact is None:
+            return self.bore.load(field)
+        return self.bore.load(field + self.contact * moved) + self.contact_motion @ motion[:4]
+
+    def residual(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (n, m) of the bore, m, and minus the change (count,) of the film's unknowns."""
+        self.film.require_current()
+        moved, speed = self.bore.displacements(place, rate)
+        residual = np.empty(len(self.places))
+        balance_change(
+            self.motion,
+            self.by_place,
+            self.vertices,
+            self.by_rate,
+            motion,
+            moved.reshape(-1),
+            speed.reshape(-1),
+            residual,
+        )
+        self.film.solver.direct(residual)
+        return moved, residual
+
+
+def _wrench_rows(film: SolvedFilm, bore: Bore, balances: Balances) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """d wrench / d motion (6, 10), / dq and / dq_t (6, k): the upper rows of `elastic_tangent` alone."""
-    lam, count = _adjoints(model, whole=False)
-    weights, direct = wrench_weights(model)
-    by_place, by_rate = (
-        weights @ model.bore.project(*balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0))
-    )
-    wrench = wrench_tangent(model, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
+    lam, count = _adjoints(film, bore, whole=False)
+    weights, direct = wrench_weights(film, bore)
+    by_place, by_rate = (weights @ bore.project(*balances.stencil(*f), lam, count) for f in ((-1.0, 0.0), (0.0, -1.0)))
+    wrench = wrench_tangent(film, gradient=np.negative(balances.gradient(lam)[0, :, :count].T, order="C"))
     return wrench, by_place + direct, by_rate
 
 
-def load_weights(model: ElasticBearingModel) -> np.ndarray:
+def load_weights(film: SolvedFilm) -> np.ndarray:
     """Weight of every unknown (count,) in the scaled pressure integral over the bore."""
-    w = model.solver.work
+    w = film.solver.work
     weight = np.empty(w.count)
-    unknown_weights(w.order, w.count, model.grid.weight, w.active, weight)
-    if model.P_q is not None:
-        weight *= model.P_q.ravel()[w.order[: w.count]]
+    unknown_weights(w.order, w.count, film.grid.weight, w.active, weight)
+    if film.oil.P_q is not None:
+        weight *= film.oil.P_q.ravel()[w.order[: w.count]]
     return weight
 
 
-def _adjoints(model: ElasticBearingModel, whole: bool) -> tuple[np.ndarray, int]:
+def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:
     """Adjoint solutions as tiles of integrals, then k loads of the bore only if ``whole``, and the number of integrals."""
-    integrals = adjoint_rows(model)
+    integrals = adjoint_rows(film)
     count, unknowns = integrals.shape
-    lam = make_tiles(integrals, count + (model.bore.size if whole else 0))
+    lam = make_tiles(integrals, count + (bore.size if whole else 0))
     if whole:
-        model.bore.fill_rows(model.solver.work.order[:unknowns], load_weights(model), count, lam)
-    model.solver.adjoint_columns(lam)
+        bore.fill_rows(film.solver.work.order[:unknowns], load_weights(film), count, lam)
+    film.solver.adjoint_columns(lam)
     return lam, count
 
 
-def _direct(model: ElasticBearingModel, weights: np.ndarray) -> np.ndarray:
-    """What the wrench owes to q at fixed film pressure (6, k): gap, slopes and contacts."""
-    g = model.grid
-    # force and moment across the axis owe nothing to the gap
-    factors, rows = weights[2::3, 4:] / model.bearing.radial_clearance, np.empty((2, *g.shape))
-    couette, ends = couette_field(model), _end_field(model)
-    shear_fields(model.P, g.weight, g.width_x[0], g.z, couette, ends, factors, rows)
-    if model.effects.uneven_drag:
-        face, cell = drag_by_gap(model)
+def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the integrals of `adjoint_rows` in the wrench, and its derivative to q at fixed film pressure (6, k)."""
+    w, scales, weights = film.journal, film.scales, np.empty((6, 8))
+    integral_weights(w.pose, film.grid.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, weights)
+    direct = _direct(film, bore, weights)
+    return weights[:, :7] if shear_needs_adjoint(film) else weights[:, _WITHOUT_SHEAR], direct
+
+
+def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
+    """Derivative of the wrench to q at fixed film pressure (6, k): gap, slopes and contacts."""
+    g = film.grid
+    # force and moment across the axis do not depend on the gap
+    factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
+    shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
+    if film.parts.uneven_drag:
+        face, cell = drag_by_gap(film)
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))
         rows += factors[:, 2, None, None] * cell[1]
-    out = np.zeros((6, model.bore.size))
-    out[2::3] = model.bore.contract(rows)
-    return out if model.pressing is None else out + _contact_wrench(model)
+    out = np.zeros((6, bore.size))
+    out[2::3] = bore.contract(rows)
+    return out if film.pressing is None else out + _contact_wrench(film, bore, film.pressing)
 
 
-def couette_field(model: ElasticBearingModel) -> np.ndarray:
+def couette_field(film: SolvedFilm) -> np.ndarray:
     """dC/dH (n, m) with the true gap H, at fixed pressure and fill."""
-    s, g = model.solver, model.grid
-    if model.ratio is not None and model.ratio_h is not None:
-        field = g.weight * model.share() / s.H * (model.ratio_h - model.ratio / s.H)
+    s, g, oil = film.solver, film.grid, film.oil
+    if oil.ratio is not None and oil.ratio_h is not None:
+        field = g.weight * film.share() / s.H * (oil.ratio_h - oil.ratio / s.H)
     elif s.closure.conserves_mass:
         field = -g.weight * s.fill / s.H**2
     else:
         field = np.empty(g.shape)
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, field)
-    return field if model.limited is None else field * model.limited.slope
+    return field if film.limited is None else field * film.limited.slope
 
 
-def _end_field(model: ElasticBearingModel) -> np.ndarray:
+def _end_field(film: SolvedFilm) -> np.ndarray:
     """Gradient (n, m) of the ends' pressure force to the true gap."""
-    if not model.end_pressures.any():
-        return model.solver.nothing
-    field = np.zeros(model.grid.shape)
-    step = model.grid.width_x[0]
-    field[:, -1] = model.end_pressures[1] * step
-    field[:, 0] = -model.end_pressures[0] * step
-    return field if model.limited is None else field * model.limited.slope
+    ends, step = film.scales.ends, film.grid.width_x[0]
+    if not ends.any():
+        return film.solver.nothing
+    field = np.zeros(film.grid.shape)
+    field[:, -1] = ends[1] * step
+    field[:, 0] = -ends[0] * step
+    return field if film.limited is None else field * film.limited.slope
 
 
-def wrench_weights(model: ElasticBearingModel) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the integrals of `adjoint_rows` in the wrench, and what the wrench owes to q at fixed film pressure (6, k)."""
-    weights, shear = np.empty((6, 8)), shear_needs_adjoint(model)
-    integral_weights(
-        model.pose, model.grid.reference_length, model.force_scale, model.shear_scale, model.omega, model.axial_speed, weights
-    )  # fmt: skip
-    direct = _direct(model, weights)
-    return weights[:, :7] if shear else weights[:, _WITHOUT_SHEAR], direct
-
-
-def _contact_wrench(model: ElasticBearingModel) -> np.ndarray:
+def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
     """Gradient (6, k) of the contacts' wrench, pressures and friction, to q."""
-    g, R = model.grid, model.grid.reference_length
-    f = model.pressing
-    assert f is not None
-    out = np.zeros((6, model.bore.size))
-    x, y, bx, by = model.motion[:4].tolist()
+    p, g, R = film.parts, film.grid, film.grid.reference_length
+    out = np.zeros((6, bore.size))
+    x, y, bx, by = film.journal.motion[:4].tolist()
     theta, axial = friction_rows(R)
-    for i, contact in enumerate(model.effects.contacts):
-        slope = f.slope[i] * g.weight * R**2
-        cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
+    for (friction, transition), by_gap in zip(f.friction, f.slope, strict=True):
+        slope = by_gap * g.weight * R**2
+        cos, sin = slope * p.cos_x[:, None], slope * p.sin_x[:, None]
         fields = np.stack([cos, sin, cos * g.z, sin * g.z, slope])
-        rows = model.bore.contract(fields) / model.bearing.radial_clearance
+        rows = bore.contract(fields) / p.bearing.radial_clearance
         c, s, zc, zs, _ = rows
         out += np.stack([-c, -s, 0.0 * c, R * zs, -R * zc, y * c - x * s + R * (by * zc - bx * zs)])
-        if contact.friction_coefficient > 0.0:
-            g_theta, g_z, _ = model.slip(contact)
-            out += contact.friction_coefficient * (g_theta * theta + g_z * axial) @ rows
+        if friction > 0.0:
+            g_theta, g_z, _ = film.slip(transition)
+            out += friction * (g_theta * theta + g_z * axial) @ rows
     return out
 
 
-def contact_slope(model: ElasticBearingModel) -> np.ndarray:
+def contact_slope(film: SolvedFilm, f: ContactFields) -> np.ndarray:
     """Change of the contacts' force at every vertex with the scaled gap (n, m), N."""
-    f, g = model.pressing, model.grid
-    assert f is not None
+    g = film.grid
     return np.sum(f.slope, axis=0) * g.weight * g.reference_length**2
 
 
-def _add_contact_motion(model: ElasticBearingModel, block: np.ndarray) -> None:
-    """Add the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
-    slope, z = contact_slope(model), model.grid.z
-    cos, sin = slope * model.cos_x[:, None], slope * model.sin_x[:, None]
-    block -= model.bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * model.pose_scale
-
-
-def _add_contact_loads(model: ElasticBearingModel, block: np.ndarray, by_gap: float) -> None:
-    """Add ``by_gap`` times the gradient of the contacts' part of the bore's loads to q, (k, k)."""
-    block += model.bore.product(contact_slope(model)) * (by_gap / model.bearing.radial_clearance)
+def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
+    """Minus the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
+    slope, z, p = contact_slope(film, f), film.grid.z, film.parts
+    cos, sin = slope * p.cos_x[:, None], slope * p.sin_x[:, None]
+    return bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale
 
 
 @functools.cache

@@ -1,76 +1,78 @@
-"""Drag of a pressure gradient on unequally rough surfaces, of a bearing model; see `exudyn_ehd.film.loads`."""
+"""Drag of a pressure gradient on unequally rough surfaces, and its derivatives; see `exudyn_ehd.film.loads`."""
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
-
-if TYPE_CHECKING:
-    from exudyn_ehd.film.reynolds.links import LinkFlux
-    from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
-    from exudyn_ehd.joint.model.rigid import BearingModel
-
-
-def drag_integrals(model: BearingModel) -> tuple[float, float]:
-    """E_x and E_z of the last solution."""
-    f, g = _flux(model), model.grid
-    return drag_sums(model.P, f.cx, model.solver.HF, f.cz, f.gap_z, g.width_x, g.width_z, g.link_x, g.link_z)
+from exudyn_ehd.film.reynolds.links import LinkFlux
+from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
-def add_drag_rows(model: BearingModel, rows: np.ndarray) -> None:
+def drag_integrals(parts: FilmParts, P: np.ndarray) -> tuple[float, float]:
+    """E_x and E_z of the film that ``parts.solver`` holds, with its pressure P (n, m)."""
+    s, g = parts.solver, parts.grid
+    f = _flux(s)
+    return drag_sums(P, f.cx, s.HF, f.cz, f.gap_z, g.width_x, g.width_z, g.link_x, g.link_z)
+
+
+def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
     """Add the weights of the unknown pressures in E_x and E_z to ``rows`` (2, count)."""
-    f, g, w = _flux(model), model.grid, model.solver.work
-    drag_rhs(
-        w.order, w.count, w.active, f.cx, model.solver.HF, f.cz, f.gap_z, g.width_x, g.width_z, g.link_x, g.link_z, rows
-    )
+    s, g = film.solver, film.grid
+    f, w = _flux(s), s.work
+    drag_rhs(w.order, w.count, w.active, f.cx, s.HF, f.cz, f.gap_z, g.width_x, g.width_z, g.link_x, g.link_z, rows)
 
 
-def drag_by_gap(model: BearingModel) -> tuple[np.ndarray, np.ndarray]:
+def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
     """Gradients at fixed pressure to the true gap: of E_x on the links i -> i+1 (1, n, m), of E_x and E_z at the vertices (2, n, m).
 
     On a liner: to the gap of the undeformed surfaces, whose contact follows.
     """
-    limited, film, ones = model.limited, model.compliant, model.solver.ones
-    if film is None:
-        slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
-        face, cell = _slopes(model, slope, face_slope)
+    if film.parts.compliant is None:
+        face, cell = _slopes(film, *_gap_slopes(film))
         return face[None], np.stack((np.zeros_like(cell), cell))
-    c = film.columns
-    face, cell = _slopes(model, ones, c.link)
+    c = film.parts.compliant.columns
+    face, cell = _slopes(film, film.solver.ones, c.link)
     return face[None], np.stack((_ends(face) * c.D_r, cell * c.H_r))
 
 
-def add_drag_by_pose(model: BearingModel, gradient: np.ndarray) -> None:
+def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
-    if model.compliant is not None:
-        face, cell = drag_by_gap(model)
-        contract_pose(face, model.cos_f, model.sin_f, model.grid.z, gradient[:1, :4])
-        contract_pose(cell[1:], model.cos_x, model.sin_x, model.grid.z, gradient[1:, :4])
-        contract_pose(cell[:1], model.cos_x, model.sin_x, model.grid.z, gradient[:1, :4])
+    p, g = film.parts, film.grid
+    if p.compliant is not None:
+        face, cell = drag_by_gap(film)
+        contract_pose(face, p.cos_f, p.sin_f, g.z, gradient[:1, :4])
+        contract_pose(cell[1:], p.cos_x, p.sin_x, g.z, gradient[1:, :4])
+        contract_pose(cell[:1], p.cos_x, p.sin_x, g.z, gradient[:1, :4])
         return
-    f, g, ones, limited = _flux(model), model.grid, model.solver.ones, model.limited
-    slope, face_slope = (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+    f = _flux(film.solver)
+    slope, face_slope = _gap_slopes(film)
     drag_pose_gradient(
-        model.P, f.cx_h, f.cz_h, slope, face_slope, g.width_x, g.width_z, g.link_x, g.link_z, model.cos_x, model.sin_x,
-        model.cos_f, model.sin_f, g.z, gradient,
+        film.oil.P, f.cx_h, f.cz_h, slope, face_slope, g.width_x, g.width_z, g.link_x, g.link_z,
+        p.cos_x, p.sin_x, p.cos_f, p.sin_f, g.z, gradient,
     )  # fmt: skip
 
 
-def drag_by_deflection(model: BearingModel, film: CompliantFilmSolver) -> np.ndarray:
+def drag_by_deflection(film: SolvedFilm, liner: CompliantFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
-    face, cell = _slopes(model, film.ones, film.columns.link)
-    return np.stack((_ends(face) * film.deflection_by_pressure, cell * film.gap_by_pressure))
+    face, cell = _slopes(film, liner.ones, liner.columns.link)
+    return np.stack((_ends(face) * liner.deflection_by_pressure, cell * liner.gap_by_pressure))
 
 
-def _slopes(model: BearingModel, slope: np.ndarray, face_slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _gap_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """d(film gap)/d(true gap) at the vertices and on the links i -> i+1 of a rigid bore."""
+    ones, limited = film.solver.ones, film.limited
+    return (ones, ones) if limited is None else (limited.slope, limited.face_slope)
+
+
+def _slopes(film: SolvedFilm, slope: np.ndarray, face_slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Gradients of E_x on the links i -> i+1 and of E_z at the vertices (n, m), times the gaps' slopes there."""
-    f, g = _flux(model), model.grid
+    f, g = _flux(film.solver), film.grid
     face, cell = np.empty(g.shape), np.empty(g.shape)
-    drag_gap_slopes(model.P, f.cx_h, f.cz_h, slope, face_slope, g.width_x, g.width_z, g.link_x, g.link_z, face, cell)
+    drag_gap_slopes(film.oil.P, f.cx_h, f.cz_h, slope, face_slope, g.width_x, g.width_z, g.link_x, g.link_z, face, cell)
     return face, cell
 
 
@@ -79,7 +81,6 @@ def _ends(face: np.ndarray) -> np.ndarray:
     return 0.5 * (face + np.roll(face, 1, axis=0))
 
 
-def _flux(model: BearingModel) -> LinkFlux:
-    flux = model.solver.flux
-    assert flux is not None
-    return flux
+def _flux(solver: FilmSolver) -> LinkFlux:
+    assert solver.flux is not None
+    return solver.flux

@@ -1,29 +1,216 @@
-"""Exact tangent of the forces of a film on the nodes of a bore, pressure and shear, as matrix and as operator.
+"""Forces of a film on the nodes of a bore, pressure and shear, and their exact tangent as matrix and as operator.
 
-As in `elastic_tangent`, with rows of three forces per node in place of the loads on the radial displacements: the weights of the film's
-unknowns in them are ``E^T`` times the vertex forces' derivatives (`traction.TractionChange`), and one adjoint solve each gives their gradients.
+On the bore act, per area, in the directions of theta and z of the undeformed bore,
+
+    t_theta = mu U / h share - h / 2 dp/dx - p d(delta)/dx + friction of contacts,
+
+the last but one the pressure on the slope of what departs from a cylinder (delta: displacement, profile, wear); t_z likewise. Sums
+over the vertices times area are, to the differences that stand for the slopes, the bearing's own friction torque and axial force,
+whose parts are summed by parts (`exudyn_ehd.film.loads`); uneven drag between rough surfaces is left to what spreads the difference.
+What the deformed bore's directions would change is smaller by the bore's slope, displacement over radius.
+
+The tangent has rows of three forces per node in place of the loads on the radial displacements of `exudyn_ehd.joint.tangent.bore`:
+the weights of the film's unknowns in them are ``E^T`` times the vertex forces' derivatives (`TractionChange`), and one adjoint solve
+each gives their gradients.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
-from scipy.sparse import diags
+from scipy.sparse import csr_matrix, diags, vstack
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
-from exudyn_ehd.joint.tangent.bore import Balances, wrench_weights
-from exudyn_ehd.joint.tangent.elastic_product import TangentProduct
-from exudyn_ehd.joint.tangent.traction import BoreForces, TractionChange
-from exudyn_ehd.joint.tangent.wrench import SIZE, adjoint_rows, wrench_tangent
+from exudyn_ehd.joint.bore.shapes import NodalBore
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
+from exudyn_ehd.joint.tangent.bore import (
+    Balances,
+    TangentProduct,
+    contact_slope,
+    couette_field,
+    load_weights,
+    wrench_weights,
+)
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, wrench_tangent
 
-if TYPE_CHECKING:
-    from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+
+class BoreForces:
+    """Nodal forces of vertex forces on a nodal bore: E^T (f_r, f_theta, f_z).
+
+    Parameters
+    ----------
+    values : csr matrix (n m, nodes)
+        Shape functions at the film's vertices.
+    grid : FilmGrid
+    """
+
+    def __init__(self, values: csr_matrix, grid: FilmGrid) -> None:
+        self.transposed = values.T.tocsr()
+        self.count = values.shape[1]
+        self.cos = np.repeat(np.cos(grid.x), grid.shape[1])
+        self.sin = np.repeat(np.sin(grid.x), grid.shape[1])
+        self.slope_x, self.slope_z = slope_matrices(grid)
+
+    def nodal(self, forces: np.ndarray) -> np.ndarray:
+        """Forces (nodes, 3) of vertex forces (3, n m), joint frame."""
+        f, t, z = forces
+        return self.transposed @ np.column_stack((self.cos * f - self.sin * t, self.sin * f + self.cos * t, z))
+
+    def rows(self, forces: list[csr_matrix]) -> csr_matrix:
+        """E^T (3 nodes, r) of three sparse maps (n m, r) to vertex forces; rows by direction x, y, z."""
+        f, t, z = forces
+        cos, sin = diags(self.cos), diags(self.sin)
+        along = (cos @ f - sin @ t, sin @ f + cos @ t, z)
+        return vstack([self.transposed @ part for part in along]).tocsr()
+
+    def by_node(self, rows: np.ndarray) -> np.ndarray:
+        """Rows (3 nodes, ...) of `rows` as (nodes, 3, ...)."""
+        return rows.reshape(3, self.count, *rows.shape[1:]).swapaxes(0, 1)
 
 
-def nodal_tangent(model: ElasticBearingModel, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
-    """Tangent of wrench and nodal forces of the last evaluation, SI units.
+def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
+    """Slopes in theta and scaled z of fields (n m,): the differences of `exudyn_ehd.film.sensitivity.bore_stencil.gap_slopes`."""
+    n, m = grid.shape
+    at = np.arange(n * m).reshape(n, m)
+    half = np.full(n * m, 0.5 / grid.width_x[0])
+    nxt, prv = np.roll(at, -1, axis=0).ravel(), np.roll(at, 1, axis=0).ravel()
+    rows = np.tile(at.ravel(), 2)
+    along = csr_matrix((np.concatenate((half, -half)), (rows, np.concatenate((nxt, prv)))), shape=(n * m, n * m))
+    line = np.asarray(np.gradient(np.eye(m), grid.z, axis=0))
+    j, k = np.nonzero(line)
+    across = csr_matrix((np.tile(line[j, k], n), (at[:, j].ravel(), at[:, k].ravel())), shape=(n * m, n * m))
+    return along, across
+
+
+def traction(film: SolvedFilm, forces: BoreForces) -> np.ndarray:
+    """Forces of a solved film and its contacts along theta and z on the bore at every vertex (2, n m), N."""
+    g, R, w = film.grid, film.grid.reference_length, film.journal
+    P, H, W = film.oil.P.ravel(), film.solver.H.ravel(), g.weight.ravel()
+    couette = _density(film) / R
+    slope_x, slope_z = _extra_slopes(film)
+    out = np.empty((2, P.size))
+    out[0] = R * w.omega * couette - 6.0 * W * (H * (forces.slope_x @ P) + 2.0 * P * slope_x)
+    out[1] = w.axial_speed * couette - 6.0 * W * (H * (forces.slope_z @ P) + 2.0 * P * slope_z)
+    out *= film.scales.shear * R
+    if film.pressing is not None:
+        for (friction, transition), P_c in zip(film.pressing.friction, film.pressing.P, strict=True):
+            a, b, _ = film.slip(transition)
+            weight = friction * R**2 * W * P_c.ravel()
+            out[0] += a * weight
+            out[1] += b * weight
+    return out
+
+
+class TractionChange:
+    """Derivatives of all vertex forces (3, n m) on the bore (radial, theta, z) of a solved film, SI units.
+
+    Attributes
+    ----------
+    gap : (3, n m) array
+        To the true gap at the same vertex, scaled.
+    slope : (n m,) array
+        Of the force along theta to the bore's scaled slope in theta, and along z to that in z.
+    speed : (3, n m, 2) array
+        To omega and w.
+    """
+
+    def __init__(self, film: SolvedFilm, forces: BoreForces) -> None:
+        g, R, s, w, oil = film.grid, film.grid.reference_length, film.solver, film.solver.work, film.oil
+        self.forces = forces
+        P, H, W = oil.P.ravel(), s.H.ravel(), g.weight.ravel()
+        scale = film.scales.shear * R
+        speeds = np.array([film.journal.omega, film.journal.axial_speed / R])
+        self.places = w.order[: w.count]
+        active = w.active.ravel()[self.places]
+        # of pressure and of the density of Couette shear to the unknown at their vertex
+        self.pressure = np.where(active, 1.0 if oil.P_q is None else oil.P_q.ravel()[self.places], 0.0)
+        couette = self._share_slope(film, active) * (scale * W / H)[self.places]
+        self.couette = speeds[:, None] * couette
+        self.load = load_weights(film) * film.scales.force
+        self.by_slope = -6.0 * scale * W * H
+        self.by_pressure = -12.0 * scale * W * np.stack(_extra_slopes(film))
+        self.gap, self.speed = np.zeros((3, P.size)), np.zeros((3, P.size, 2))
+        self.slope = -12.0 * scale * W * P
+        limited = np.ones(P.size) if film.limited is None else film.limited.slope.ravel()
+        for c, along in enumerate((forces.slope_x, forces.slope_z)):
+            self.gap[1 + c] = scale * (speeds[c] * couette_field(film).ravel() - 6.0 * W * limited * (along @ P))
+        density = scale * _density(film)
+        self.speed[1, :, 0] = density
+        self.speed[2, :, 1] = density / R
+        if oil.ratio_v is not None:
+            # the shear factor knows the scaled speed omega / 2
+            thinning = 0.5 * scale * W / H * (film.share() * oil.ratio_v).ravel()
+            self.speed[1:, :, 0] += speeds[:, None] * thinning
+        if film.pressing is not None:
+            self._add_contacts(film, film.pressing)
+
+    @staticmethod
+    def _share_slope(film: SolvedFilm, active: np.ndarray) -> np.ndarray:
+        """Derivative of share times viscosity ratio to the unknown at its vertex (count,)."""
+        at = film.solver.work.order[: active.size]
+        by_pressure = np.zeros(at.size) if film.oil.ratio_q is None else film.oil.ratio_q.ravel()[at]
+        by_fill = np.zeros(at.size)
+        if film.solver.closure.conserves_mass:
+            by_fill = np.ones(at.size) if film.oil.ratio is None else film.oil.ratio.ravel()[at]
+        return np.where(active, by_pressure, by_fill)
+
+    def _add_contacts(self, film: SolvedFilm, fields: ContactFields) -> None:
+        area = film.grid.reference_length**2 * film.grid.weight.ravel()
+        self.gap[0] += contact_slope(film, fields).ravel()
+        for (coefficient, transition), P, slope in zip(fields.friction, fields.P, fields.slope, strict=True):
+            a, b, by_speed = film.slip(transition)
+            for c, direction in enumerate((a, b)):
+                friction = coefficient * area
+                self.gap[1 + c] += direction * friction * slope.ravel()
+                self.speed[1 + c] += np.outer(friction * P.ravel(), by_speed[c])
+
+    def by_unknown(self) -> list[csr_matrix]:
+        """Derivatives of the three vertex forces to the unknowns, each (n m, count)."""
+        size, count = self.slope.size, self.places.size
+
+        def at_own(values: np.ndarray) -> csr_matrix:
+            return csr_matrix((values, (self.places, np.arange(count))), shape=(size, count))
+
+        pressure = at_own(self.pressure)
+        out = [at_own(self.load)]
+        for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
+            own = at_own(self.couette[c] + self.by_pressure[c][self.places] * self.pressure)
+            out.append(diags(self.by_slope) @ (along @ pressure) + own)
+        return out
+
+    def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
+        """Change (3, n m) of the vertex forces.
+
+        With changes of the unknowns (count,), of the scaled gap and of the bore's scaled displacement ``moved`` (n m,), and of the
+        speeds (2,).
+        """
+        out = self.gap * gap + self.speed @ speed
+        pressure = np.zeros(gap.size)
+        pressure[self.places] = self.pressure * unknowns
+        for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
+            out[1 + c] += (
+                self.by_slope * (along @ pressure) + self.by_pressure[c] * pressure + self.slope * (along @ moved)
+            )
+            out[1 + c, self.places] += self.couette[c] * unknowns
+        out[0, self.places] += self.load * unknowns
+        return out
+
+
+def _density(film: SolvedFilm) -> np.ndarray:
+    """W share ratio / H (n m,)."""
+    field = film.grid.weight * film.share() / film.solver.H
+    return (field if film.oil.ratio is None else field * film.oil.ratio).ravel()
+
+
+def _extra_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Slopes of what departs from a cylinder (n m,); a flexible bore always does."""
+    assert film.extra is not None
+    return film.extra.slope_x.ravel(), film.extra.slope_z.ravel()
+
+
+def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
+    """Tangent of wrench and nodal forces of a solved film, SI units.
 
     Returns
     -------
@@ -31,28 +218,27 @@ def nodal_tangent(model: ElasticBearingModel, forces: BoreForces) -> tuple[np.nd
     nodal : (nodes, 3, 10 + 2 k) array
         d/d motion, then d/dq and d/dq_t.
     """
-    k, rows = model.bore.size, 3 * forces.count
-    change, balances = TractionChange(model, forces), Balances(model)
-    integrals = adjoint_rows(model)
+    k, rows, size = bore.size, 3 * forces.count, MOTION_SIZE
+    change, balances = TractionChange(film, forces), Balances(film)
+    integrals = adjoint_rows(film)
     count, unknowns = integrals.shape
     lam = make_tiles(integrals, count + rows)
     loads = np.ascontiguousarray(forces.rows(change.by_unknown()).T.toarray())
     put_rows(loads, np.arange(unknowns), np.ones(unknowns), count, lam)
-    model.solver.adjoint_columns(lam)
-    gradient = -balances.gradient(lam).transpose(0, 2, 1).reshape(-1, SIZE)
-    wrench, nodal = np.empty((6, SIZE + 2 * k)), np.empty((rows, SIZE + 2 * k))
-    wrench[:, :SIZE] = wrench_tangent(model, gradient=gradient[:count])
-    nodal[:, :SIZE] = gradient[count : count + rows] * model.motion_scale + _by_motion(model, forces, change)
-    weights, direct = wrench_weights(model)
-    c = model.bearing.radial_clearance
+    film.solver.adjoint_columns(lam)
+    gradient = -balances.gradient(lam).transpose(0, 2, 1).reshape(-1, size)
+    wrench, nodal = np.empty((6, size + 2 * k)), np.empty((rows, size + 2 * k))
+    wrench[:, :size] = wrench_tangent(film, gradient=gradient[:count])
+    nodal[:, :size] = gradient[count : count + rows] * film.parts.motion_scale + _by_motion(film, forces, change)
+    weights, direct = wrench_weights(film, bore)
+    c = film.parts.bearing.radial_clearance
     gaps = [diags(field) for field in change.gap]
     slope = diags(change.slope)
     gaps[1:] = [gap + slope @ along for gap, along in zip(gaps[1:], (forces.slope_x, forces.slope_z), strict=True)]
-    shapes = model.bore.shapes  # type: ignore[attr-defined]
-    at_once = (forces.rows(gaps) @ shapes).toarray() / c
+    at_once = (forces.rows(gaps) @ bore.shapes).toarray() / c
     for i, (by_gap, by_rate) in enumerate(((1.0, 0.0), (0.0, 1.0))):
-        part = slice(SIZE + i * k, SIZE + (i + 1) * k)
-        by_bore = model.bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + rows)
+        part = slice(size + i * k, size + (i + 1) * k)
+        by_bore = bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + rows)
         wrench[:, part] = weights @ by_bore[:count] + by_gap * direct
         nodal[:, part] = by_bore[count:] + by_gap * at_once
     return wrench, forces.by_node(nodal)
@@ -61,10 +247,10 @@ def nodal_tangent(model: ElasticBearingModel, forces: BoreForces) -> tuple[np.nd
 class NodalProduct(TangentProduct):
     """The same as an operator, one film solve per product; valid until the model's next evaluation."""
 
-    def __init__(self, model: ElasticBearingModel, forces: BoreForces) -> None:
-        super().__init__(model)
-        self.forces, self.change = forces, TractionChange(model, forces)
-        self.columns = _pose_columns(model) * model.pose_scale
+    def __init__(self, film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> None:
+        super().__init__(film, bore)
+        self.forces, self.change = forces, TractionChange(film, forces)
+        self.columns = _pose_columns(film) * film.parts.pose_scale
 
     def nodal_forces(self, motion: np.ndarray, place: np.ndarray, rate: np.ndarray) -> np.ndarray:
         """Change (nodes, 3) with changes of motion (10,), q and q_t (k,).
@@ -75,28 +261,28 @@ class NodalProduct(TangentProduct):
             If the model has evaluated another state since.
         """
         moved, residual = self.residual(motion, place, rate)
-        scaled = moved.ravel() / self.model.bearing.radial_clearance
+        scaled = moved.ravel() / self.film.parts.bearing.radial_clearance
         gap = scaled - self.columns @ motion[:4]
         forces = self.change.vertex_forces(-residual, gap, scaled, motion[8:])
         return self.forces.nodal(forces)
 
 
-def _pose_columns(model: ElasticBearingModel) -> np.ndarray:
+def _pose_columns(film: SolvedFilm) -> np.ndarray:
     """Minus dH / d(scaled pose) (n m, 4)."""
-    z = model.grid.z
-    cos, sin = np.repeat(model.cos_x, z.size), np.repeat(model.sin_x, z.size)
-    heights = np.tile(z, model.cos_x.size)
+    p, z = film.parts, film.grid.z
+    cos, sin = np.repeat(p.cos_x, z.size), np.repeat(p.sin_x, z.size)
+    heights = np.tile(z, p.cos_x.size)
     return np.column_stack((cos, sin, cos * heights, sin * heights))
 
 
-def _by_motion(model: ElasticBearingModel, forces: BoreForces, change: TractionChange) -> np.ndarray:
+def _by_motion(film: SolvedFilm, forces: BoreForces, change: TractionChange) -> np.ndarray:
     """Derivatives (3 nodes, 10) to the motion at fixed unknowns; rows by direction as in `BoreForces.rows`."""
-    vertex = np.zeros((SIZE, *change.gap.shape))
-    columns = _pose_columns(model) * model.pose_scale
+    vertex = np.zeros((MOTION_SIZE, *change.gap.shape))
+    columns = _pose_columns(film) * film.parts.pose_scale
     for j in range(4):
         vertex[j] = -change.gap * columns[:, j]
     vertex[8], vertex[9] = change.speed[:, :, 0], change.speed[:, :, 1]
-    out = np.zeros((3 * forces.count, SIZE))
+    out = np.zeros((3 * forces.count, MOTION_SIZE))
     for j in (0, 1, 2, 3, 8, 9):
         out[:, j] = forces.nodal(vertex[j]).T.ravel()
     return out

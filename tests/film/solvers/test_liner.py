@@ -264,7 +264,7 @@ def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
     model = bearing_on_liner(closure, 1e8, 0.005, 64, 16)
     evaluation = model.evaluate(np.array([1.9e-5, 4.4e-6, 0, 0, 0, 0, 0, 0, 0, -0.57]))
     assert evaluation.status is ehd.Status.CONVERGED
-    assert np.abs(model.solver.pressure).max() * model.liner_solver.beta < 1e-10
+    assert np.abs(model.solver.pressure).max() * model.solver.beta < 1e-10
     assert np.all(np.isfinite(evaluation.tangent()))
 
 

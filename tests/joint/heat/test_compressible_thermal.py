@@ -11,7 +11,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.steady_temperature import settle
 
 R, L, C = 0.025, 0.05, 25e-6
@@ -52,9 +52,10 @@ def run(model, motion=MOTION, steps=4):
     """History after some steps, and the largest defect of the heat balance."""
     history, worst = model.initial_history(motion), 0.0
     for _ in range(steps):
-        assert model.evaluate(motion, history, STEP).status is ehd.Status.CONVERGED
-        history = model.history()
-        worst = max(worst, defect(model.effects.thermal.balance(model, history.temperature)))
+        evaluation = model.evaluate(motion, history, STEP)
+        assert evaluation.status is ehd.Status.CONVERGED
+        history = evaluation.history()
+        worst = max(worst, defect(model.effects.thermal.balance(evaluation.film, history.temperature)))
     return history, worst
 
 
@@ -68,8 +69,7 @@ def test_heat_in_is_carried_out_conducted_and_stored(thermal, cavitation, pressu
     assert worst < 1e-8
     assert np.all(np.isfinite(history.temperature))
     settled = settle(model, REST)
-    model.evaluate(REST, settled)
-    balance = model.effects.thermal.balance(model, settled.temperature)
+    balance = model.effects.thermal.balance(model.evaluate(REST, settled).film, settled.temperature)
     assert balance["stored"] == 0.0
     assert defect(balance) < 1e-8
 
@@ -80,8 +80,8 @@ def test_flows_are_the_mass_flows_of_the_solved_film(cavitation, step):
     """The flows that carry heat balance the mass at every vertex of the unbroken film; 1e-11 of the flow: the film's own accuracy."""
     model = make(FIELD, cavitation=cavitation)
     history, _ = run(model)
-    model.evaluate(MOTION, history if step else None, step)
-    s, flows = model.solver, OilFlows(model)
+    evaluation = model.evaluate(MOTION, history if step else None, step)
+    s, flows = model.solver, OilFlows(evaluation.film)
     assert s.rho.max() > 1.02
     gain = flows.x - np.roll(flows.x, 1, axis=0) + flows.z + s.area * flows.rate
     gain[:, 1:] -= flows.z[:, :-1]
@@ -92,21 +92,21 @@ def test_flows_are_the_mass_flows_of_the_solved_film(cavitation, step):
     assert np.abs(gain[inside]).max() < 1e-11 * size
     if cavitation.conserves_mass:
         np.testing.assert_allclose(flows.outside, s.inflow(), atol=1e-12 * size)
-        out = model.quantities()
-        lost = -flows.outside.sum(axis=0) * model.flow_scale
+        out = evaluation.quantities()
+        lost = -flows.outside.sum(axis=0) * model.parts.flow_scale
         assert out["leakage_lower"] == pytest.approx(lost[0], rel=1e-9)
         assert out["leakage_upper"] == pytest.approx(lost[-1], rel=1e-9)
         if step:
             # the rate is that of the mass which the history keeps
-            np.testing.assert_allclose(flows.rate, (model.history().mass - history.mass) / step, rtol=1e-12)
+            np.testing.assert_allclose(flows.rate, (evaluation.history().mass - history.mass) / step, rtol=1e-12)
 
 
-def dissipation(model):
+def dissipation(film):
     """Heat of shear, and of the links' volume flows times their drop of pressure, W."""
-    s, g = model.solver, model.grid
-    h, p, rho = s.H * C, model.P * model.pressure_scale, s.rho
-    mu = model.pressure_scale * C**2 / (12.0 * R**2) * (1.0 if model.ratio is None else model.ratio)
-    shear = np.sum(mu * ((R * MOTION[8]) ** 2 + MOTION[9] ** 2) / h * model.share() * g.weight * R**2)
+    s, g, ratio = film.solver, film.grid, film.oil.ratio
+    h, p, rho = s.H * C, film.oil.P * film.scales.pressure, s.rho
+    mu = film.scales.pressure * C**2 / (12.0 * R**2) * (1.0 if ratio is None else ratio)
+    shear = np.sum(mu * ((R * MOTION[8]) ** 2 + MOTION[9] ** 2) / h * film.share() * g.weight * R**2)
     q = s.pressure
     flow_x = s.system.kx * (np.roll(q, -1, 0) - q) / (0.5 * (np.roll(rho, -1, 0) + rho))
     flow_z = s.system.kz[:, :-1] * np.diff(q, axis=1) / (0.5 * (rho[:, 1:] + rho[:, :-1]))
@@ -125,8 +125,8 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
     for n_theta, n_z in ((48, 8), (96, 16)):
         film = ehd.FiniteLength(n_theta=n_theta, n_z=n_z)
         model = make(LUMPED, SOFT, BARUS, cavitation=cavitation, film=film, end_pressures=(2e7, 1e7))
-        model.evaluate(MOTION)
-        left.append(abs(heat_and_leakage(model)[0] / dissipation(model) - 1.0))
+        made = model.evaluate(MOTION).film
+        left.append(abs(heat_and_leakage(made)[0] / dissipation(made) - 1.0))
     assert left[0] < 0.013
     assert left[1] < 0.5 * left[0]
 
@@ -141,9 +141,9 @@ def test_lumped_heat_is_the_dissipated_power_while_the_film_is_compressed(law):
         history, motion, worst = model.initial_history(MOTION), MOTION.copy(), 0.0
         for _ in range(6):
             motion[:4] += STEP * MOTION[4:8]
-            model.evaluate(motion, history, STEP)
-            worst = max(worst, abs(heat_and_leakage(model)[0] / dissipation(model) - 1.0))
-            history = model.history()
+            evaluation = model.evaluate(motion, history, STEP)
+            worst = max(worst, abs(heat_and_leakage(evaluation.film)[0] / dissipation(evaluation.film) - 1.0))
+            history = evaluation.history()
         left.append(worst)
     assert left[0] < 0.013  # as above
     assert left[1] < 0.5 * left[0]
@@ -154,9 +154,9 @@ def test_field_heat_is_the_dissipated_power():
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):
         model = make(FIELD, pressure_law=BARUS, film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
-        model.evaluate(MOTION)
-        heat = model.effects.thermal.balance(model, model.effects.thermal.temperature)["heat_in"]
-        left.append(abs(heat / dissipation(model) - 1.0))
+        made = model.evaluate(MOTION).film
+        heat = model.effects.thermal.balance(made, made.temperature)["heat_in"]
+        left.append(abs(heat / dissipation(made) - 1.0))
     assert left[0] < 0.002
     assert left[1] < 0.3 * left[0]
 

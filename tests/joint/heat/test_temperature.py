@@ -11,7 +11,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.seams import History
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.steady_temperature import settle
 
 R, L, C = 0.025, 0.05, 25e-6
@@ -53,9 +53,10 @@ def run(model, at, step, steps, history=None):
     history = model.initial_history(at) if history is None else history
     worst = 0.0
     for _ in range(steps):
-        assert model.evaluate(at, history, step).status is ehd.Status.CONVERGED
-        history = model.history()
-        worst = max(worst, defect(model.effects.thermal.balance(model, history.temperature)))
+        evaluation = model.evaluate(at, history, step)
+        assert evaluation.status is ehd.Status.CONVERGED
+        history = evaluation.history()
+        worst = max(worst, defect(model.effects.thermal.balance(evaluation.film, history.temperature)))
     return history, worst
 
 
@@ -185,8 +186,7 @@ def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
         return
     at = motion(0.6)
     settled = settle(model, at)
-    model.evaluate(at, settled)
-    balance = model.effects.thermal.balance(model, settled.temperature)
+    balance = model.effects.thermal.balance(model.evaluate(at, settled).film, settled.temperature)
     assert balance["stored"] == 0.0
     assert defect(balance) < BALANCE
 
@@ -215,9 +215,10 @@ def test_field_heat_is_the_mechanical_power():
             )
         )  # fmt: skip
         at = motion(0.6, vx=2e-3, vy=-3e-3)
-        model.evaluate(at)
-        heat = model.effects.thermal.balance(model, model.effects.thermal.temperature)["heat_in"]
-        errors.append(abs(heat / model.quantities()["power_loss"] - 1.0))
+        evaluation = model.evaluate(at)
+        film = evaluation.film
+        heat = model.effects.thermal.balance(film, film.temperature)["heat_in"]
+        errors.append(abs(heat / evaluation.quantities()["power_loss"] - 1.0))
     assert errors[0] < 0.015  # second order on 48 x 8
     assert errors[1] < 0.2 * errors[0]
 
@@ -245,12 +246,10 @@ def test_a_rejected_step_leaves_nothing_behind():
     for thermal in (ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)):
         model = build_model(bearing(thermal))
         history, _ = run(model, motion(0.5), 1e-4, 3)
-        model.evaluate(motion(0.6), history, 1e-4)
-        first = np.array(model.history().temperature)
-        model.evaluate(motion(0.8), model.history(), 3e-4)
-        model.history()
-        model.evaluate(motion(0.6), history, 1e-4)
-        np.testing.assert_array_equal(model.history().temperature, first)
+        after = model.evaluate(motion(0.6), history, 1e-4).history()
+        first = np.array(after.temperature)
+        model.evaluate(motion(0.8), after, 3e-4).history()
+        np.testing.assert_array_equal(model.evaluate(motion(0.6), history, 1e-4).history().temperature, first)
 
 
 def test_equilibrium_is_settled():

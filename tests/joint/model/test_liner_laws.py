@@ -158,9 +158,10 @@ def test_heat_of_a_film_on_a_liner_is_kept(closure):
     for _ in range(20):
         at = at.copy()
         at[0] += at[4] * 2e-4
-        assert model.evaluate(at, history, 2e-4).status is ehd.Status.CONVERGED
-        history = model.history()
-        b = model.effects.thermal.balance(model, history.temperature)
+        evaluation = model.evaluate(at, history, 2e-4)
+        assert evaluation.status is ehd.Status.CONVERGED
+        history = evaluation.history()
+        b = model.effects.thermal.balance(evaluation.film, history.temperature)
         left = b["heat_in"] - b["carried_out"] - b["conducted"] - b["stored"]
         assert abs(left) < 1e-8 * max(abs(v) for v in b.values())
     assert history.temperature.max() > 325.0

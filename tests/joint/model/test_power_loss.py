@@ -32,32 +32,31 @@ CLOSURES = {
 MOTION = np.array([0.4 * C, -0.5 * C, 1e-4, -2e-4, 1e-3, -2e-3, 3e-3, 1e-2, SPEED, 0.05])
 
 
-def heat_and_work(model):
+def heat_and_work(film):
     """Heat of shear and of pressure flow, and the work on oil and ends, W; in SI units, link by link."""
-    s, g, w = model.solver, model.grid, MOTION[9]
-    h, p = s.H * C, s.pressure * model.pressure_scale
-    shear = np.sum(MU * ((R * SPEED) ** 2 + w**2) / h * model.share() * g.weight * R**2)
-    unit = C * R**2 / model.pressure_scale  # flow per pressure of a scaled conductance
+    s, g, w = film.solver, film.grid, MOTION[9]
+    h, p = s.H * C, s.pressure * film.scales.pressure
+    shear = np.sum(MU * ((R * SPEED) ** 2 + w**2) / h * film.share() * g.weight * R**2)
+    unit = C * R**2 / film.scales.pressure  # flow per pressure of a scaled conductance
     flow = unit * (np.sum(s.system.kx * (np.roll(p, -1, 0) - p) ** 2))
     flow += unit * np.sum(s.system.kz[:, :-1] * np.diff(p, axis=1) ** 2)
-    pc = model.bearing.cavitation.cavity_pressure
+    pc = film.parts.bearing.cavitation.cavity_pressure
     pc = pc if np.isfinite(pc) else 0.0
-    outflow = -Exchange(model).outside * C * R**2
+    outflow = -Exchange(film).outside * C * R**2
     work = np.sum((p - pc) * outflow) - pc * np.sum(s.area * R**2 * s.H_t * C)
     work -= w * np.sum(p[:, -1] * h[:, -1] - p[:, 0] * h[:, 0]) * g.width_x[0] * R
     return float(shear + flow), float(work)
 
 
 def moving(bore, closure, ends, n_theta, n_z):
-    """Model after an evaluation in which bore and journal move, and its power loss, W."""
+    """A film under a bore and a journal that move, and its power loss, W."""
     bearing = ehd.JournalBearing(
         journal_radius=R, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), bush=BORES[bore],
         film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure, end_pressures=ends,
     )  # fmt: skip
     model, motion, history, step = build_model(bearing), MOTION, None, 0.0
     if bore in ("modal", "nodal"):
-        model.evaluate_steady(motion)
-        q = model.coordinates
+        q = model.evaluate_steady(motion).bore.coordinates
         motion = np.concatenate((motion, q, 50.0 * q))
     elif bore == "liner":
         history = model.initial_history(motion)
@@ -66,12 +65,13 @@ def moving(bore, closure, ends, n_theta, n_z):
             # every gap full of oil before the step, in which the surfaces' approach and the liner's rate are those of the film
             s = model.solver
             history = dataclasses.replace(history, mass=s.H - step * s.H_t - 0.01 * s.deflection)
-    return model, model.evaluate(motion, history, step).quantities()["power_loss"]
+    evaluation = model.evaluate(motion, history, step)
+    return evaluation.film, evaluation.quantities()["power_loss"]
 
 
 def balance(bore, closure, ends, n_theta, n_z):
-    model, loss = moving(bore, closure, ends, n_theta, n_z)
-    heat, work = heat_and_work(model)
+    film, loss = moving(bore, closure, ends, n_theta, n_z)
+    heat, work = heat_and_work(film)
     return abs(loss - heat - work) / heat
 
 
@@ -117,7 +117,7 @@ def test_power_into_a_liner_by_contact(contact):
         law = model.effects.contacts[0]
         gaps = [model.solver.true_gap.copy()]
         loss = model.evaluate(after, history, step).quantities()["power_loss"]
-        stored = model.solver.stored_power() * model.pressure_scale * model.flow_scale
+        stored = model.solver.stored_power() * model.scales.pressure * model.parts.flow_scale
         gaps.append(model.solver.true_gap.copy())
         p, slope = np.empty_like(gaps[0]), np.empty_like(gaps[0])
         energy = np.zeros_like(p)
@@ -133,7 +133,7 @@ def test_power_into_a_liner_by_contact(contact):
 @pytest.mark.parametrize(("bore", "closure"), PAIRS)
 def test_heat_of_a_film_leaves_out_the_work_on_oil_ends_and_vapour(closure, bore):
     """The thermal effects' heat and leakage in one pass, against fields; 1e-9: rounding of cancelling sums."""
-    model, loss = moving(bore, CLOSURES[closure][0], (1e6, 5e5), 48, 8)
-    heat, leaving = heat_and_leakage(model)
-    assert leaving == pytest.approx(Exchange(model).leaving, rel=1e-12)
-    assert heat == pytest.approx(loss - heat_and_work(model)[1], rel=1e-9)
+    film, loss = moving(bore, CLOSURES[closure][0], (1e6, 5e5), 48, 8)
+    heat, leaving = heat_and_leakage(film)
+    assert leaving == pytest.approx(Exchange(film).leaving, rel=1e-12)
+    assert heat == pytest.approx(loss - heat_and_work(film)[1], rel=1e-9)

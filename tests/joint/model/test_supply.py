@@ -9,6 +9,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.quantities import supply_flows
 
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams()]
 GRID = ehd.FiniteLength(n_theta=48, n_z=8)
@@ -27,9 +28,9 @@ def _ids(closure):
 def test_prescribed_pressure(make_bearing, closure):
     model = build_model(make_bearing(film=GRID, cavitation=closure, supply=SUPPLY))
     history = model.initial_history(MOTION)
-    assert model.evaluate(MOTION, history, 1e-4).status is ehd.Status.CONVERGED
-    for mask, area in zip(model.supply.masks, SUPPLY, strict=True):
-        np.testing.assert_allclose(model.P[mask] * model.pressure_scale, area.pressure, rtol=1e-14)
+    film = model.evaluate(MOTION, history, 1e-4).film
+    for mask, area in zip(film.parts.supply.masks, SUPPLY, strict=True):
+        np.testing.assert_allclose(film.oil.P[mask] * film.scales.pressure, area.pressure, rtol=1e-14)
 
 
 @pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
@@ -116,7 +117,7 @@ def test_absent_supply_is_absent(make_bearing, monkeypatch):
     model = build_model(make_bearing(film=GRID))
     evaluation = model.evaluate(MOTION, spin=3.0)
     assert not model.needs_spin and "supply_flow" not in evaluation.quantities()
-    assert model.supply_flows().size == 0
+    assert supply_flows(evaluation.film).size == 0
 
 
 def test_area_at_the_end_pressure_in_a_film_at_rest_changes_nothing(make_bearing):
@@ -124,9 +125,9 @@ def test_area_at_the_end_pressure_in_a_film_at_rest_changes_nothing(make_bearing
     area = ehd.AxialGroove(angle=0.4, width_angle=0.5, pressure=1e5)
     model = build_model(make_bearing(film=GRID, supply=(area,), end_pressures=(1e5, 1e5)))
     motion = np.zeros(10)
-    model.evaluate(motion)
-    np.testing.assert_allclose(model.P * model.pressure_scale, 1e5, rtol=1e-12)
-    assert abs(model.quantities()["supply_flow"]) < 1e-18
+    evaluation = model.evaluate(motion)
+    np.testing.assert_allclose(evaluation.film.oil.P * model.scales.pressure, 1e5, rtol=1e-12)
+    assert abs(evaluation.quantities()["supply_flow"]) < 1e-18
 
 
 def test_steady_film_without_oil_is_refused(make_bearing):

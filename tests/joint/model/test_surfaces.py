@@ -30,14 +30,14 @@ def at(eps, angle=0.0, speed=SPEED, axial=0.0, tilt=(0.0, 0.0)):
 
 
 def contact_only(motion, **options):
-    """Wrench of the contact alone: with friction and film minus the film, at a vanishing viscosity."""
+    """The contact alone, with friction, under a film of a vanishing viscosity."""
     model = build_model(bearing(lubricant=ehd.Lubricant(viscosity=1e-12), asperity=ASPERITY, **options))
-    return model, model.evaluate(motion).wrench
+    return model.evaluate(motion)
 
 
-def brute_force(model, motion):
+def brute_force(film, motion):
     """Wrench of the contact by a loop over vertices: pressure along -e_r, friction against the slip, moments about O."""
-    g, f = model.grid, model.contact_fields
+    g, f = film.grid, film.pressing
     v = np.array([R * motion[8], motion[9]])
     slip = v / math.sqrt(float(v @ v) + ASPERITY.transition_speed**2)
     F, M = np.zeros(3), np.zeros(3)
@@ -60,32 +60,32 @@ def normal_wrench(integrals, motion):
     return np.array([-sc, -ss, 0.0, R * szs, -R * szc, y * sc - x * ss + R * (by * szc - bx * szs)])
 
 
-def plain_contact(model, contact, P, motion):
+def plain_contact(film, P, motion):
     """Integrals (5,), friction (6,) and whole wrench (6,) of contact pressures P (n, m) in arrays: the plain reference of the kernels."""
-    g = model.grid
-    basis = np.stack([model.cos_x[:, None] + 0 * g.z, model.sin_x[:, None] + 0 * g.z])
+    p, g = film.parts, film.grid
+    basis = np.stack([p.cos_x[:, None] + 0 * g.z, p.sin_x[:, None] + 0 * g.z])
     basis = np.concatenate([basis, basis * g.z, np.ones((1, *g.shape))])
     integrals = np.sum(basis * (P * g.weight), axis=(1, 2))
     theta, axial = friction_rows(R)
-    a, b, _ = model.slip(contact)
-    drag = contact.friction_coefficient * R**2 * (a * theta + b * axial) @ integrals
+    ((friction, transition),) = film.pressing.friction
+    a, b, _ = film.slip(transition)
+    drag = friction * R**2 * (a * theta + b * axial) @ integrals
     return basis, integrals, drag, drag + normal_wrench(integrals * R**2, motion)
 
 
-def plain_contact_tangent(model, contact, P, slope, motion):
+def plain_contact_tangent(film, P, slope, motion):
     """Gradient (6, 10) of `plain_contact`'s wrench for pressures with ``slope`` (n, m) in the scaled gap."""
-    basis, integrals, _, _ = plain_contact(model, contact, P, motion)
-    grads = -np.einsum("aij,bij,ij->ab", basis, basis[:4], slope * model.grid.weight) * (R**2 * model.pose_scale)
+    basis, integrals, _, _ = plain_contact(film, P, motion)
+    grads = -np.einsum("aij,bij,ij->ab", basis, basis[:4], slope * film.grid.weight) * (R**2 * film.parts.pose_scale)
     out = np.zeros((6, 10))
     out[:, :4] = np.stack([normal_wrench(column, motion) for column in grads.T], axis=1)
     c, s, zc, zs, _ = integrals * R**2
     out[5, :4] += (-s, c, -R * zs, R * zc)
     theta, axial = friction_rows(R)
-    a, b, by_speed = model.slip(contact)
-    out[:, :4] += contact.friction_coefficient * (a * theta + b * axial) @ grads
-    out[:, 8:] += (
-        contact.friction_coefficient * R**2 * np.stack([theta @ integrals, axial @ integrals], axis=1) @ by_speed
-    )
+    ((friction, transition),) = film.pressing.friction
+    a, b, by_speed = film.slip(transition)
+    out[:, :4] += friction * (a * theta + b * axial) @ grads
+    out[:, 8:] += friction * R**2 * np.stack([theta @ integrals, axial @ integrals], axis=1) @ by_speed
     return out
 
 
@@ -96,13 +96,12 @@ def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
     """Both kernels add to what is there and do what the array formulas do, to rounding."""
     asperity = replace(ASPERITY, friction_coefficient=friction)
     motion = at(0.98, 0.4, speed, axial=0.5, tilt=tilt)
-    model = build_model(bearing(asperity=asperity))
-    assert model.evaluate(motion).status is ehd.Status.CONVERGED
-    f, g, contact = model.contact_fields, model.grid, model.effects.contacts[0]
-    _, integrals, drag, wrench = plain_contact(model, contact, f.P[0], motion)
+    film = build_model(bearing(asperity=asperity)).evaluate(motion).film
+    f, g, p = film.pressing, film.grid, film.parts
+    _, integrals, drag, wrench = plain_contact(film, f.P[0], motion)
     found, drag_out, wrench_out = np.empty(5), np.ones(6), np.ones(6)
-    arrays = (g.weight, model.cos_x, model.sin_x, g.z, motion)
-    contact_wrench(f.P[0], *arrays, friction, contact.transition_speed, R, found, drag_out, wrench_out)
+    arrays = (g.weight, p.cos_x, p.sin_x, g.z, motion)
+    contact_wrench(f.P[0], *arrays, friction, asperity.transition_speed, R, found, drag_out, wrench_out)
     np.testing.assert_allclose(found, integrals, rtol=1e-12, atol=1e-13 * integrals[4])
     size = integrals[4] * R**2
     scale = np.array([size, size, size, R * size, R * size, R * size])
@@ -110,9 +109,9 @@ def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
     np.testing.assert_allclose((wrench_out - 1.0) / scale, wrench / scale, atol=1e-12)
     tangent = np.zeros((6, 10))
     contact_tangent(
-        f.slope[0], *arrays, model.pose_scale, friction, contact.transition_speed, R, found, np.empty((5, 4)), tangent
+        f.slope[0], *arrays, p.pose_scale, friction, asperity.transition_speed, R, found, np.empty((5, 4)), tangent
     )
-    expected = plain_contact_tangent(model, contact, f.P[0], f.slope[0], motion)
+    expected = plain_contact_tangent(film, f.P[0], f.slope[0], motion)
     columns = np.abs(expected).max(axis=0) + 1e-300
     np.testing.assert_allclose(tangent / columns, expected / columns, atol=1e-12)
 
@@ -122,9 +121,10 @@ def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
 def test_contact_wrench_point_by_point(speed, tilt):
     """Force and moment to rounding; the torque differs by e x F of the pressures, which act on the journal through its axis."""
     motion = at(0.98, 0.4, speed, axial=0.5, tilt=tilt)
-    model, wrench = contact_only(motion)
-    F, M = brute_force(model, motion)
-    normal = normal_wrench(model.contact_fields.integrals[0] * R**2, motion)
+    evaluation = contact_only(motion)
+    wrench, film = evaluation.wrench, evaluation.film
+    F, M = brute_force(film, motion)
+    normal = normal_wrench(film.pressing.integrals[0] * R**2, motion)
     x, y, bx, by = motion[:4]
     own = normal[5] - (x * normal[1] - y * normal[0] - bx * normal[3] - by * normal[4])
     assert own == pytest.approx(0.0, abs=1e-12 * R * np.abs(F).max())
@@ -163,7 +163,7 @@ def test_surfaces_that_part_and_meet_again(options):
         assert np.array_equal(evaluation.tangent(), fresh.tangent())
         assert evaluation.quantities() == fresh.quantities()
         assert (evaluation.quantities()["contact_load"] > 0.0) == (motion is touching)
-    assert not model.contact_fields.P[0].any()
+    assert not model.parts.contacts.P[0].any()
     smooth = build_model(bearing()).evaluate(apart)
     assert np.array_equal(evaluation.wrench, smooth.wrench) and np.array_equal(evaluation.tangent(), smooth.tangent())
 
@@ -171,9 +171,9 @@ def test_surfaces_that_part_and_meet_again(options):
 def test_coulomb_friction_above_the_transition_speed():
     """Torque mu_b R sum(p dA) in the limit of fast sliding; (v0/v)^2 / 2 = 3e-6 below it, e/R = 1e-3 from the lever arm."""
     motion = at(0.98)
-    model, _ = contact_only(motion)
-    normal = model.contact_fields.integrals[0, 4] * R**2
-    assert -model.quantities()["contact_torque"] == pytest.approx(0.08 * R * normal, rel=2e-3)
+    evaluation = contact_only(motion)
+    normal = evaluation.film.pressing.integrals[0, 4] * R**2
+    assert -evaluation.quantities()["contact_torque"] == pytest.approx(0.08 * R * normal, rel=2e-3)
 
 
 def test_contact_is_conservative():
@@ -214,7 +214,7 @@ def test_wear_grows_by_archard():
     assert start.wear.shape == model.grid.shape and not start.wear.any()
     after = model.evaluate(motion, start, step).history()
     speed = math.hypot(R * SPEED, 1.0)
-    np.testing.assert_allclose(after.wear * C, rate * model.contact_fields.P[0] * speed * step, rtol=1e-13)
+    np.testing.assert_allclose(after.wear * C, rate * model.parts.contacts.P[0] * speed * step, rtol=1e-13)
     assert not start.wear.any()
     accelerated = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=rate / 1e3, acceleration=1e3)))
     other = accelerated.evaluate(motion, accelerated.initial_history(motion), step).history()
@@ -274,10 +274,11 @@ def test_lobes_balance_the_torque():
     q = model.evaluate(at(0.0)).quantities()
     assert q["friction_torque"] == pytest.approx(-q["friction_torque_bush"], rel=1e-12)
     for motion in (at(0.5, 1.0), at(0.5, 2.0, tilt=(1e-4, 2e-4))):
-        f = model.evaluate(motion).wrench
+        evaluation = model.evaluate(motion)
+        f = evaluation.wrench
         x, y, bx, by = motion[:4]
         own = f[5] - (x * f[1] - y * f[0] - bx * f[3] - by * f[4])
-        assert model.quantities()["friction_torque"] == pytest.approx(own, rel=1e-12)
+        assert evaluation.quantities()["friction_torque"] == pytest.approx(own, rel=1e-12)
 
 
 def test_loss_of_a_lobed_film_is_that_of_viscous_flow():
@@ -285,7 +286,7 @@ def test_loss_of_a_lobed_film_is_that_of_viscous_flow():
     options = {"profile": ehd.OutOfRound(order=3, amplitude=4e-6), "cavitation": ehd.FullSommerfeld()}
     model = build_model(bearing(film=ehd.FiniteLength(n_theta=192, n_z=16), **options))
     q = model.evaluate(at(0.5)).quantities()
-    s, g, p = model.solver, model.grid, model.P * model.pressure_scale
+    s, g, p = model.solver, model.grid, model.solver.pressure * model.scales.pressure
     c, mu = C, 0.03
     shear = float(np.sum(mu * (R * SPEED) ** 2 / (s.H * c) * g.weight)) * R**2
     flow = (c**3 / (12 * mu)) * (
@@ -343,8 +344,8 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
     liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)
     model = build_model(bearing(bush=liner, cavitation=cavitation, lubricant=oil))
     steady, step = at(0.8, 0.3), 10.0
-    model.evaluate(steady)
-    damping, film_alone = model.tangent(slow_motion=True)[:, 4:8], model.tangent()[:, 4:8]
+    evaluation = model.evaluate(steady)
+    damping, film_alone = evaluation.tangent(slow_motion=True)[:, 4:8], evaluation.tangent()[:, 4:8]
     for k, v in ((0, 1e-9), (1, 1e-9), (2, 1e-7), (3, 1e-7)):
         force = []
         for sign in (1, -1):

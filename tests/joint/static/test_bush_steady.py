@@ -65,20 +65,20 @@ def test_uniform_pressure_opens_the_bore_as_lame_says_and_leaves_no_force(make):
     bearing = make_bearing(make(), end_pressures=(p, p), film=ehd.FiniteLength(n_theta=64, n_z=n_z))
     model = build_model(bearing)
     motion = np.zeros(10)
-    assert model.evaluate_steady(motion).status is ehd.Status.CONVERGED
-    assert np.allclose(model.P * model.pressure_scale, p, rtol=1e-9)
+    film = model.evaluate_steady(motion).film
+    assert np.allclose(film.oil.P * film.scales.pressure, p, rtol=1e-9)
     # plane strain with the outer surface held: u = B (1/r - r/b^2)
     E, nu, a, b = 2.1e11, 0.3, 0.03, 0.05
     lam, mu = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     expected = p / (2 * (lam + mu) / b**2 + 2 * mu / a**2) * (1 / a - a / b**2)
-    displacement = model.bore_fields()["bore_displacement"]
+    displacement = film.bore.displacement * C
     # the ends are free: a length of 3.3 thicknesses leaves 1.8 % at the mid-plane
     assert np.allclose(displacement[:, n_z // 2], expected, rtol=0.02)
     # around the bore it varies by the interpolation between 48 nodes
     assert np.allclose(displacement, displacement[:1], rtol=0, atol=1e-3 * expected)
-    assert np.abs(model.wrench).max() < 1e-9 * p * 2 * a * 0.066
+    assert np.abs(film.loads.wrench).max() < 1e-9 * p * 2 * a * 0.066
     if make is nodal:
-        assert np.abs(model.bore_load.reshape(-1, 2).sum(axis=0)).max() < 1e-9 * p * 2 * a * 0.066
+        assert np.abs(film.bore.load.reshape(-1, 2).sum(axis=0)).max() < 1e-9 * p * 2 * a * 0.066
 
 
 @pytest.mark.parametrize("n_z", [8, 24])
@@ -88,13 +88,13 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     bush = modal(tolerance=0.1)
     bearing = make_bearing(bush, end_pressures=(p, 0.0), film=ehd.FiniteLength(n_theta=64, n_z=n_z))
     model = build_model(bearing)
-    model.evaluate(np.zeros(10))
+    load = model.evaluate(np.zeros(10)).bore_load
     modes = bore_modes(bush)
     mesh = modes.mesh
     loads = pressure_loads(mesh.bore, len(mesh.nodes), [lambda theta, zeta: 0.5 * p * (1.0 - zeta)])[:, 0]
     expected = modes.displacements.reshape(modes.count, -1) @ loads
     # Gauss points on the curved faces against points on the cylinder, whose area differs by the chords' 1e-4
-    assert np.allclose(model.bore_load, expected, rtol=0, atol=3e-4 * np.abs(expected).max())
+    assert np.allclose(load, expected, rtol=0, atol=3e-4 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.Gumbel()], ids=["swift", "gumbel"])
@@ -159,10 +159,11 @@ def test_an_eccentricity_beyond_the_clearance_is_reached():
 
 def test_bore_settles_in_few_newton_steps():
     model = build_model(make_bearing(modal()))
-    model.evaluate_steady(np.array([0.8 * C, 0, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
+    evaluation = model.evaluate_steady(np.array([0.8 * C, 0, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
     # convex, from the undeformed bore: four steps near the solution and a few on the way
-    assert model.settling_steps <= 10
-    assert np.allclose(model.bore_load, model.elasticity.force(model.coordinates), rtol=0, atol=1e-6)
+    assert evaluation.settling_steps <= 10
+    held = model.elasticity.force(evaluation.bore.coordinates)
+    assert np.allclose(evaluation.bore_load, held, rtol=0, atol=1e-6)
 
 
 @pytest.mark.parametrize("make", [modal, nodal], ids=["modal", "nodal"])
@@ -199,8 +200,8 @@ def test_damping_is_that_of_a_bore_that_follows_slowly():
     h, v = 1e-4 * C, 1e-5
 
     def settled(x, y):
-        model.evaluate_steady(np.array([x, y, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
-        return model.coordinates.copy()
+        evaluation = model.evaluate_steady(np.array([x, y, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
+        return evaluation.bore.coordinates.copy()
 
     x, y = eq.position
     at_rest = settled(x, y)

@@ -65,10 +65,10 @@ def test_ridges_along_are_pulled_alike():
 def test_integrals_are_those_of_the_shear_flow_factor(share):
     """sigma phi_s times the pressure gradient by central differences at the vertices: 2 % of a second-order difference on this grid."""
     model = model_of(share, 96)
-    assert model.evaluate(at(0.5, axial=0.5)).status is ehd.Status.CONVERGED
-    g, P, t = model.grid, model.P, model.solver.H * C / SIGMA
+    film = model.evaluate(at(0.5, axial=0.5)).film
+    g, P, t = model.grid, film.oil.P, model.solver.H * C / SIGMA
     H = nominal_gap(t, 0.0)
-    found = drag.drag_integrals(model)
+    found = drag.drag_integrals(film.parts, P)
     carried = (2.0 * share - 1.0) * SIGMA / C * shear_flow_factor(H, 1 / 9)
     slope = (np.roll(P, -1, 0) - np.roll(P, 1, 0)) / (2.0 * g.width_x[0])
     assert found[0] == pytest.approx(-np.sum(carried * slope * g.weight), rel=0.02)
@@ -78,12 +78,12 @@ def test_integrals_are_those_of_the_shear_flow_factor(share):
     assert found[1] == pytest.approx(-np.sum(carried * across * g.weight), abs=0.02 * scale)
 
 
-def heat(model):
+def heat(film):
     """Heat of shear and pressure flow, W, link by link."""
-    s, g = model.solver, model.grid
-    p, unit = model.P * model.pressure_scale, C * R**2 / model.pressure_scale
-    speed2 = (R * model.omega) ** 2 + model.axial_speed**2
-    out = np.sum(MU * speed2 / (s.H * C) * model.share() * model.ratio * g.weight * R**2)
+    s, g = film.solver, film.grid
+    p, unit = film.oil.P * film.scales.pressure, C * R**2 / film.scales.pressure
+    speed2 = (R * film.journal.omega) ** 2 + film.journal.axial_speed**2
+    out = np.sum(MU * speed2 / (s.H * C) * film.share() * film.oil.ratio * g.weight * R**2)
     out += unit * np.sum(s.system.kx * (np.roll(p, -1, 0) - p) ** 2)
     return float(out + unit * np.sum(s.system.kz[:, :-1] * np.diff(p, axis=1) ** 2))
 
@@ -96,8 +96,8 @@ def test_power_becomes_heat_for_every_share(share, ends):
     left = []
     for n in (48, 96):
         model = model_of(share, n, end_pressures=ends)
-        model.evaluate(at(0.5, axial=0.0 if ends == (0.0, 0.0) else 0.3))
-        left.append(abs(heat_and_leakage(model)[0] / heat(model) - 1.0))
+        film = model.evaluate(at(0.5, axial=0.0 if ends == (0.0, 0.0) else 0.3)).film
+        left.append(abs(heat_and_leakage(film)[0] / heat(film) - 1.0))
     assert left[0] < 8e-4 and left[1] < 0.3 * left[0]
 
 
@@ -117,9 +117,8 @@ def test_a_rough_journal_is_pulled_along():
     """The pressure rises where the film is thick and falls where it is thin, where the rougher surface takes the larger share."""
     found = {}
     for share in (0.0, 1.0):
-        model = model_of(share)
-        model.evaluate(at(0.5))
-        found[share] = drag.drag_integrals(model)[0]
+        film = model_of(share).evaluate(at(0.5)).film
+        found[share] = drag.drag_integrals(film.parts, film.oil.P)[0]
     assert found[0.0] < 0.0 < found[1.0]
 
 
@@ -158,7 +157,7 @@ def test_equal_shares_call_nothing(monkeypatch):
 
     for name in ("drag_integrals", "add_drag_rows", "drag_by_gap", "add_drag_by_pose"):
         monkeypatch.setattr(f"exudyn_ehd.joint.tangent.drag.{name}", forbidden)
-    monkeypatch.setattr("exudyn_ehd.joint.model.rigid.drag_integrals", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.model.loads.drag_integrals", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.tangent.wrench.add_drag_rows", forbidden)
     monkeypatch.setattr("exudyn_ehd.joint.tangent.wrench.add_drag_by_pose", forbidden)
     model_of(0.5).evaluate(at(0.5)).tangent()

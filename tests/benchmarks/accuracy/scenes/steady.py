@@ -85,7 +85,7 @@ class SteadyScene:
                 raise InputError(f"SteadyScene.{name} must be below 1, got {getattr(self, name)!r}.")
 
     def motions(self) -> np.ndarray:
-        """Motions (directions, 10) as in `exudyn_ehd.joint.model.rigid`."""
+        """Motions (directions, 10) as in `exudyn_ehd.joint.solved_film`."""
         angles = self.start_direction + DEGREE * np.arange(self.directions)
         state = self.speed, self.eccentricity_ratio, self.tilt_ratio
         return np.array([motion_at(self.bearing, *state, angle) for angle in angles])
@@ -111,7 +111,7 @@ def _evaluate(model: Any, motion: np.ndarray) -> Any:
 
 
 def _tangent(model: Any, evaluation: Any) -> np.ndarray:
-    return evaluation.tangent() if isinstance(model, ImpedanceModel) else model.steady_tangent()
+    return evaluation.tangent() if isinstance(model, ImpedanceModel) else evaluation.steady_tangent()
 
 
 def motion_at(
@@ -145,10 +145,15 @@ def _sweep(model: Any, motions: np.ndarray) -> None:
         _tangent(model, _evaluate(model, motion))
 
 
+def _films(model: Any) -> int:
+    """Films that a model has solved; a map solves none."""
+    return 0 if isinstance(model, ImpedanceModel) else model.parts.evaluations.count
+
+
 def measure_motions(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarray], float, float]:
     """Quantities over the directions in the frame of the eccentricity, iterations and film evaluations per position."""
     columns: dict[str, list[Any]] = {}
-    iterations, before = 0, getattr(model, "serial", 0)
+    iterations, before = 0, _films(model)
     for motion in motions:
         evaluation = _evaluate(model, motion)
         if evaluation.status is not Status.CONVERGED:
@@ -158,13 +163,12 @@ def measure_motions(model: Any, motions: np.ndarray) -> tuple[dict[str, np.ndarr
         turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
         radial, tangential = turn @ evaluation.wrench[:2]
         tangent = _tangent(model, evaluation)
-        known = evaluation.quantities() if isinstance(model, ImpedanceModel) else model.quantities()
+        known = evaluation.quantities()
         row: dict[str, Any] = {"load": math.hypot(radial, tangential), "attitude": math.atan2(tangential, -radial)}
         row |= {name: known[key] for name, key in _FROM_MODEL.items() if key in known}
         row["stiffness"] = -turn @ tangent[:2, :2] @ turn.T
         row["damping"] = -turn @ tangent[:2, 4:6] @ turn.T
         for name, value in row.items():
             columns.setdefault(name, []).append(value)
-    # a map solves no film
-    films = getattr(model, "serial", 0) - before
+    films = _films(model) - before
     return {n: np.array(v) for n, v in columns.items()}, iterations / len(motions), films / len(motions)

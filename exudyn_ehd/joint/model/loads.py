@@ -1,0 +1,108 @@
+"""What a solved film does to the journal: integrals of pressure and shear, the wrench, and the friction of contacts."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.film.loads import (
+    couette_integral,
+    couette_integral_fill,
+    couette_integral_ratio,
+    pressure_integrals,
+    slope_integrals,
+)
+from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench, couette_integral_law
+from exudyn_ehd.joint.solved_film import (
+    ContactFields,
+    ExtraGap,
+    FilmParts,
+    JournalMotion,
+    Loads,
+    OilFields,
+    Scales,
+)
+from exudyn_ehd.joint.tangent.drag import drag_integrals
+
+_NO_CONTACT = np.zeros(6)
+
+
+def film_loads(
+    parts: FilmParts,
+    scales: Scales,
+    journal: JournalMotion,
+    oil: OilFields,
+    extra: ExtraGap | None,
+    pressing: ContactFields | None,
+) -> Loads:
+    """Loads of the film that ``parts.solver`` holds."""
+    s, g, P = parts.solver, parts.grid, oil.P
+    integrals = np.empty(4)
+    pressure_integrals(P, g.weight, parts.cos_x, parts.sin_x, g.z, integrals)
+    extra_theta = extra_z = 0.0
+    if extra is not None:
+        extra_theta, extra_z = slope_integrals(P, g.weight, extra.slope_x, extra.slope_z)
+    if parts.liner is not None:
+        # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
+        extra_z += math.pi * parts.liner.beta * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
+    if parts.uneven_drag:
+        drag = drag_integrals(parts, P)
+        extra_theta += drag[0]
+        extra_z += drag[1]
+    couette, couette_unbroken = _couette(parts, oil.ratio)
+    x, y, bx, by = journal.pose.tolist()
+    sc, ss, szc, szs = integrals.tolist()
+    s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta
+    s_z = -(bx * sc + by * ss) + extra_z
+    # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven
+    # drag pulls the journal by as much as it holds the bore back.
+    R, force = g.reference_length, scales.force
+    ends, (lower, upper) = 0.0, scales.ends.tolist()
+    if lower != 0.0 or upper != 0.0:
+        ends = upper * _ring_integral(s.H[:, -1]) - lower * _ring_integral(s.H[:, 0])
+    wrench = np.array(
+        [
+            -force * sc,
+            -force * ss,
+            -scales.shear * (journal.axial_speed * couette + 6.0 * R * (s_z - 2.0 * extra_z - ends)),
+            force * R * szs,
+            -force * R * szc,
+            -scales.shear * R**2 * (journal.omega * couette + 6.0 * (s_theta - 2.0 * extra_theta)),
+        ]
+    )
+    contact = _NO_CONTACT
+    if pressing is not None:
+        contact = np.zeros(6)
+        _add_contacts(parts, journal, pressing, contact, wrench)
+    return Loads(wrench, contact, integrals, couette, couette_unbroken, s_theta)
+
+
+def _couette(parts: FilmParts, ratio: np.ndarray | None) -> tuple[float, float]:
+    """Integrals of the Couette shear: of all of the film, and of its unbroken part."""
+    s, g = parts.solver, parts.grid
+    if s.closure.conserves_mass:
+        if ratio is None:
+            return couette_integral_fill(s.H, g.weight, s.fill)
+        return couette_integral_ratio(s.H, g.weight, ratio, s.fill, s.fill >= 1.0)
+    if ratio is None:
+        return couette_integral(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear)
+    return couette_integral_law(s.H, g.weight, ratio, s.work.active, g.fixed, s.closure.cavity_shear)
+
+
+def _add_contacts(
+    parts: FilmParts, journal: JournalMotion, f: ContactFields, friction_out: np.ndarray, wrench: np.ndarray
+) -> None:
+    """Add the contacts' pressures and friction to ``wrench`` (6,), their friction alone to ``friction_out`` (6,)."""
+    g = parts.grid
+    motion = journal.motion
+    for k, (friction, transition) in enumerate(f.friction):
+        contact_wrench(
+            f.P[k], g.weight, parts.cos_x, parts.sin_x, g.z, motion, friction, transition, g.reference_length,
+            f.integrals[k], friction_out, wrench,
+        )  # fmt: skip
+
+
+def _ring_integral(row: np.ndarray) -> float:
+    """Integral over the circumference of a row of vertex values."""
+    return float(row.sum() * (2.0 * math.pi / row.size))

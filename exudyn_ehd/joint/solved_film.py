@@ -1,0 +1,299 @@
+"""One solved film as a record: the state that went in, the fields that came out and the loads they make.
+
+Grouped by lifetime: `FilmParts` lasts as long as a model, `Scales` as long as a temperature, `SolvedFilm` until the next evaluation, because
+the film solver keeps links, factor and most fields in buffers of its own. Whatever reads a film takes this record and nothing else.
+
+Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in it is
+
+    motion = [x, y, bx, by, dx/dt, dy/dt, dbx/dt, dby/dt, omega, w]
+
+with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w.
+
+Fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by ``Scales.pressure``; contact pressures are in Pa.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
+from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner import LinerFilmSolver
+from exudyn_ehd.film.supply import SupplyMap
+
+# Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
+MOTION_SIZE = 10
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """What a bearing remembers between accepted steps; absent effects leave None.
+
+    Attributes
+    ----------
+    mass : (n, m) array or None
+        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
+    wear : (n, m) array or None
+        Scaled wear depth of the bore.
+    temperature : float, (n, m) array or None
+        Film temperature, K.
+    deflection : (n, m) array or None
+        Scaled deflection of an elastic liner.
+    density : (n, m) array or None
+        Density ratio of a compressible film (mass-conserving closures with a heat balance).
+    """
+
+    mass: np.ndarray | None = None
+    wear: np.ndarray | None = None
+    temperature: float | np.ndarray | None = None
+    deflection: np.ndarray | None = None
+    density: np.ndarray | None = None
+
+
+class ContactFields:
+    """Pressures of the contacts and their integrals; allocated only if there are contacts.
+
+    Parameters
+    ----------
+    shape : (int, int)
+    friction : list of (float, float)
+        Boundary friction coefficient and transition speed (m/s) of every contact.
+    presses_below : float
+        Scaled gap from which on no contact presses.
+
+    Attributes
+    ----------
+    P, slope : lists of (n, m) arrays
+        Pressure of every contact, Pa, and its derivative with respect to the scaled gap.
+    integrals : (contacts, 5) array
+        As `exudyn_ehd.film.surfaces.contact_wrench.contact_wrench` leaves them.
+    """
+
+    def __init__(self, shape: tuple[int, int], friction: list[tuple[float, float]], presses_below: float) -> None:
+        self.P = [np.zeros(shape) for _ in friction]
+        self.slope = [np.zeros(shape) for _ in friction]
+        self.integrals = np.zeros((len(friction), 5))
+        self.gradients = np.zeros((5, 4))
+        self.friction = friction
+        self.presses_below = presses_below
+        self.acting = False
+
+    def clear(self) -> None:
+        """No pressures."""
+        for known in (*self.P, *self.slope, self.integrals):
+            known[:] = 0.0
+        self.acting = False
+
+
+class LimiterFields:
+    """Derivatives of the film's gap to the true gap, at vertices and links, as `GapLimiter.limit` gives them."""
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self.slope, self.bend = np.zeros(shape), np.zeros(shape)
+        self.face_slope = np.zeros(shape)
+        self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
+
+
+class Evaluations:
+    """Counts the evaluations of a model, so that a record knows whether the buffers still are its own."""
+
+    count = 0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FilmParts:
+    """What stays the same from evaluation to evaluation.
+
+    Attributes
+    ----------
+    bearing : JournalBearing
+    grid : FilmGrid
+    solver : FilmSolver
+        Holds gaps, links, factor and active set of the last evaluation.
+    liner, compliant, compressible : film solvers or None
+        The same solver, if it is one of an elastic liner, of one with contacts or oil laws, or of a compressible film.
+    supply : SupplyMap or None
+    contacts, limiter : buffers or None
+    cos_x, sin_x, cos_f, sin_f : (n,) arrays
+        Of the angles of vertices and of links.
+    half_length : float
+        Half the bearing's length over the reference length.
+    pose_scale, motion_scale : (4,), (10,) arrays
+        Scaled pose per pose; (scaled pose, scaled rates, vx, vz) per motion.
+    flow_scale : float
+        m3/s per scaled flow.
+    uneven_drag : bool
+        Whether a pressure gradient pulls one surface more than the other; see `exudyn_ehd.film.loads`.
+    evaluations : Evaluations
+    """
+
+    bearing: JournalBearing
+    grid: FilmGrid
+    solver: FilmSolver
+    liner: LinerFilmSolver | CompliantFilmSolver | None
+    compliant: CompliantFilmSolver | None
+    compressible: CompressibleFilmSolver | None
+    supply: SupplyMap | None
+    contacts: ContactFields | None
+    limiter: LimiterFields | None
+    cos_x: np.ndarray
+    sin_x: np.ndarray
+    cos_f: np.ndarray
+    sin_f: np.ndarray
+    half_length: float
+    pose_scale: np.ndarray
+    motion_scale: np.ndarray
+    flow_scale: float
+    uneven_drag: bool
+    evaluations: Evaluations
+
+
+class Scales(NamedTuple):
+    """SI units of scaled quantities at the viscosity of one temperature, and the known pressures in them.
+
+    pressure, force, shear : Pa, N, and N s/m of Couette shear
+    ends : (2,) array, pressures at both ends
+    cavity : the cavity's pressure
+    """
+
+    pressure: float
+    force: float
+    shear: float
+    ends: np.ndarray
+    cavity: float
+
+
+class JournalMotion(NamedTuple):
+    """Motion (10,) in SI units, behind it a flexible bore's; scaled pose (4,) and rates (4,); spin, rad/s, and axial speed, m/s."""
+
+    motion: np.ndarray
+    pose: np.ndarray
+    rate: np.ndarray
+    omega: float
+    axial_speed: float
+
+
+class ExtraGap(NamedTuple):
+    """What the gap terms add to the gap (n, m), its slopes along theta and z, and the terms of the undeformed surfaces alone."""
+
+    height: np.ndarray
+    slope_x: np.ndarray
+    slope_z: np.ndarray
+    surfaces: list[np.ndarray]
+
+
+class BoreState(NamedTuple):
+    """A flexible bore: coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film."""
+
+    coordinates: np.ndarray
+    rates: np.ndarray
+    displacement: np.ndarray
+    load: np.ndarray
+
+
+class OilFields(NamedTuple):
+    """Pressure, and the viscosity ratio that shear sees; fields (n, m).
+
+    P : scaled pressure
+    P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
+    ratio : viscosity over the reference; None where that is one
+    ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
+    """
+
+    P: np.ndarray
+    P_q: np.ndarray | None = None
+    ratio: np.ndarray | None = None
+    ratio_q: np.ndarray | None = None
+    ratio_h: np.ndarray | None = None
+    ratio_v: np.ndarray | None = None
+
+
+class Loads(NamedTuple):
+    """What a film does to the journal.
+
+    wrench : (6,) array, N and Nm, force and moment about O, contacts included
+    contact : (6,) array, the friction of the contacts in it
+    integrals : (4,) array, scaled pressure times cos, sin, z cos, z sin
+    couette, couette_unbroken : scaled integrals of the Couette shear, of all of the film and of its unbroken part
+    s_theta : scaled integral of the pressure flow's shear along theta
+    """
+
+    wrench: np.ndarray
+    contact: np.ndarray
+    integrals: np.ndarray
+    couette: float
+    couette_unbroken: float
+    s_theta: float
+
+
+class SolvedFilm(NamedTuple):
+    """The film of one evaluation that found one; a tuple, because it is made in every evaluation.
+
+    Attributes
+    ----------
+    parts : FilmParts
+    grid, solver : FilmGrid, FilmSolver
+        Those of ``parts``; the solver's buffers hold gaps, links and factor of this film.
+    scales : Scales
+    journal : JournalMotion
+    history, step : History or None, float
+        At the start of the step, and the time since then, s.
+    temperature : float, (n, m) array or None
+        That the film was solved with, K.
+    extra : ExtraGap or None
+    pressing, limited : buffers or None
+        Those of ``parts``, if the surfaces were close enough for contacts and limiter to act.
+    oil : OilFields
+    loads : Loads
+    minimum_gap : float
+        m.
+    bore : BoreState or None
+        None for a rigid bore.
+    serial : int
+        ``parts.evaluations`` at this evaluation.
+    """
+
+    parts: FilmParts
+    grid: FilmGrid
+    solver: FilmSolver
+    scales: Scales
+    journal: JournalMotion
+    history: History | None
+    step: float
+    temperature: float | np.ndarray | None
+    extra: ExtraGap | None
+    pressing: ContactFields | None
+    limited: LimiterFields | None
+    oil: OilFields
+    loads: Loads
+    minimum_gap: float
+    bore: BoreState | None
+    serial: int
+
+    def require_current(self) -> None:
+        """Raise RuntimeError if the buffers belong to another evaluation by now."""
+        if self.parts.evaluations.count != self.serial:
+            raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
+
+    def share(self) -> np.ndarray:
+        """Share of a full film's shear that acts at each vertex (n, m)."""
+        s = self.solver
+        if s.closure.conserves_mass:
+            return s.fill
+        return np.where(s.work.active | self.grid.fixed, 1.0, s.closure.cavity_shear)
+
+    def slip(self, transition_speed: float) -> tuple[float, float, np.ndarray]:
+        """Regularised slip direction (theta, z) and its derivatives (2, 2) to (omega, w): v / sqrt(|v|^2 + v0^2)."""
+        R = self.grid.reference_length
+        v, w = R * self.journal.omega, self.journal.axial_speed
+        size = math.sqrt(v * v + w * w + transition_speed**2)
+        a, b = v / size, w / size
+        slope = np.array([[(1.0 - a * a) * R, -a * b], [-a * b * R, 1.0 - b * b]]) / size
+        return a, b, slope
