@@ -33,7 +33,7 @@ PAPER_GRID, PAPER_TOLERANCE = (80, 8), 1e-5
 CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 1e-7)), ((192, 48), (1e-5, 1e-7)))
 # Cavity pressure of the closures that are compared with the mass-conserving one, Pa gauge.
 CAVITY = -1e5
-SOLID = "elastic solid"
+SOLID, WINKLER = "elastic solid", "Winkler elements"
 BushLevel = tuple[MeshSize, float, Grid | None]
 # Mesh, tolerance and film are refined together: next to the ends a bore deflects within less than an interval of a
 # coarse film, and finer modes on such a film converge to something else.
@@ -185,7 +185,7 @@ def bush_ladder(
     films: Iterable[tuple[float, Grid]] = (),
     liner: bool = True,
 ) -> tuple[Setting, ...]:
-    """Rigid bore, liner by columns, modal bush by tolerance and mesh, nodal bush by mesh.
+    """Rigid bore, liner of Winkler elements, modal bush by tolerance and mesh, nodal bush by mesh.
 
     Parameters
     ----------
@@ -203,12 +203,12 @@ def bush_ladder(
     """
     out = [Setting(label="rigid", family="rigid", model="rigid")]
     if liner:
-        columns = ElasticLiner(
+        winkler = ElasticLiner(
             thickness=mesh(modal_mesh).thickness,
             youngs_modulus=material.youngs_modulus,
             poisson_ratio=material.poisson_ratio,
         )
-        out.append(Setting(label="columns", family="liner", model="columns", options={"bush": columns}))
+        out.append(Setting(label=WINKLER, family="liner", model=WINKLER, options={"bush": winkler}))
     for tolerance in tolerances:
         bush = ModalBush(mesh=mesh(modal_mesh), material=material, tolerance=tolerance, tilted=tilted)
         out.append(Setting(label=f"modal {tolerance:g}", family="modal", model=SOLID, options={"bush": bush}))
