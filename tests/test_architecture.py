@@ -182,6 +182,22 @@ def test_the_package_stays_small():
     assert code <= MOST_CODE
 
 
+def test_functions_of_bench_and_examples_are_short():
+    """At most 60 lines, docstrings apart, as in the package; files of the bench at most 300."""
+    bench, found = ROOT / "tests" / "benchmarks" / "accuracy", []
+    for path in [*bench.rglob("*.py"), *(ROOT / "examples").glob("*.py")]:
+        text = path.read_text(encoding="utf-8")
+        tree = ast.parse(text)
+        docs = _docstring_lines(tree)
+        if path.is_relative_to(bench) and len(text.splitlines()) - len(docs) > 300:
+            found.append(str(path))
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef):
+                own = set(range(node.lineno, node.end_lineno + 1)) - docs
+                found += [f"{path}: {node.name} has {len(own)} lines"] if len(own) > 60 else []
+    assert not found, "\n".join(found)
+
+
 def _named_in_readme():
     """Files and folders that the README names: in code, in links, in its commands."""
     text = (ROOT / "README.md").read_text(encoding="utf-8")
