@@ -49,8 +49,8 @@ class Periodic:
 class MaximumGap:
     """The film starts with ambient pressure on the line of maximum gap, as in the classical tables.
 
-    Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving one, so
-    that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
+    Only for prescribed positions (`steady`): the line is undefined for a concentric journal and jumps with a moving
+    one, so that a joint refuses it. At L/D = 1 and eccentricity ratio 0.1 it lowers the load by 2 % against `Periodic`.
     """
 
 
@@ -88,7 +88,7 @@ class JournalBearing:
     thermal : LumpedThermal, FilmEnergy or None
         Temperature of the film; None: isothermal.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
-        What gives way under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
+        What deflects under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -128,18 +128,22 @@ class JournalBearing:
         )
         require_number("JournalBearing.length", self.length, "m", above=0.0)
         require_number(
-            "JournalBearing.radial_clearance", self.radial_clearance, "m", above=0.0,
+            "JournalBearing.radial_clearance",
+            self.radial_clearance,
+            "m",
+            above=0.0,
             hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
-        )  # fmt: skip
+        )
         if self.journal_radius > LARGEST_RADIUS:
             raise InputError(
-                f"JournalBearing.journal_radius must be at most {LARGEST_RADIUS:g} m, got {self.journal_radius!r}; lengths are in metres, not "
-                "millimetres."
+                f"JournalBearing.journal_radius must be at most {LARGEST_RADIUS:g} m, got {self.journal_radius!r}; "
+                "lengths are in metres, not millimetres."
             )
         if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
             raise InputError(
-                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a thin film, got "
-                f"{self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, usual clearances a thousandth of the radius."
+                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
+                f"thin film, got {self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
+                "usual clearances a thousandth of the radius."
             )
         _require_type("lubricant", self.lubricant, (Lubricant,))
         _require_type("film", self.film, (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap))
@@ -163,7 +167,8 @@ class JournalBearing:
         ]:
             if max(map(abs, pressure)) > LARGEST_PRESSURE:
                 raise InputError(
-                    f"JournalBearing.{name}: pressures must be within +-{LARGEST_PRESSURE:g} Pa (gauge), got {pressure}; give them in Pa."
+                    f"JournalBearing.{name}: pressures must be within +-{LARGEST_PRESSURE:g} Pa (gauge), got "
+                    f"{pressure}; give them in Pa."
                 )
         if not isinstance(self.squeeze, bool):
             raise InputError(f"JournalBearing.squeeze must be True or False, got {self.squeeze!r}.")
@@ -202,8 +207,8 @@ class JournalBearing:
         check_supply(self.supply, self.journal_radius, self.length, self.film)
         if isinstance(self.inlet, MaximumGap):
             raise InputError(
-                "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its grooves; use "
-                "inlet=Periodic()."
+                "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "
+                "grooves; use inlet=Periodic()."
             )
         lowest, pc = min(area.pressure for area in self.supply), self.cavitation.cavity_pressure
         if pc > lowest:
@@ -220,8 +225,8 @@ class JournalBearing:
             lowest, edges = 0.0, "the ambient pressure (0 Pa) of inlet=MaximumGap()"
         if pc > lowest:
             raise InputError(
-                f"{type(self.cavitation).__name__}.cavity_pressure must not exceed {edges}, got {pc:g} Pa; all are gauge pressures, "
-                "lower the cavity pressure."
+                f"{type(self.cavitation).__name__}.cavity_pressure must not exceed {edges}, got {pc:g} Pa; all are "
+                "gauge pressures, lower the cavity pressure."
             )
 
     def _check_clearance(self) -> None:
@@ -234,8 +239,8 @@ class JournalBearing:
         if not SMALLEST_CLEARANCE_RATIO <= ratio <= LARGEST_CLEARANCE_RATIO:
             warnings.warn(
                 f"JournalBearing: the clearance ratio c/R is {ratio:.3g}, outside {SMALLEST_CLEARANCE_RATIO:g} to "
-                f"{LARGEST_CLEARANCE_RATIO:g}; radial_clearance is radial (bore radius - journal radius), not diametral, "
-                "and in metres.",
+                f"{LARGEST_CLEARANCE_RATIO:g}; radial_clearance is radial (bore radius - journal radius), not "
+                "diametral, and in metres.",
                 stacklevel=4,
             )
 
@@ -261,15 +266,16 @@ def advice(status: Status, bearing: object) -> str:
     """What to do about a failed evaluation of this bearing; `Status.advice` where the bearing changes nothing."""
     if status is Status.NO_FILM and isinstance(getattr(bearing, "bush", None), ElasticLiner):
         return (
-            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not give way: name "
-            "contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the liner too, or reduce the load or the "
-            "step size."
+            "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not "
+            "deflect: name contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the "
+            "liner too, or reduce the load or the step size."
         )
     law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
     if status is Status.NO_PRESSURE and isinstance(law, RoelandsPressure):
         return (
-            "the pressure runs away: with RoelandsPressure, too, no finite pressure carries a film that is pressed together as fast as here; "
-            "reduce loads and speeds of approach (initial velocities), check the law's coefficient, or name an elastic liner or bush."
+            "the pressure runs away: with RoelandsPressure, too, no finite pressure carries a film that is pressed "
+            "together as fast as here; reduce loads and speeds of approach (initial velocities), check the law's "
+            "coefficient, or name an elastic liner or bush."
         )
     return status.advice
 
@@ -295,8 +301,8 @@ def _check_temperatures(bearing: JournalBearing) -> None:
             viscosity = float(law.viscosity(value, bearing.lubricant.density))
         if not LEAST_VISCOSITY <= viscosity <= LARGEST_VISCOSITY:
             raise InputError(
-                f"JournalBearing.thermal.{field.name} = {value!r} K: the lubricant's {type(law).__name__} gives a viscosity of {viscosity:g} Pa s "
-                "there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
+                f"JournalBearing.thermal.{field.name} = {value!r} K: the lubricant's {type(law).__name__} gives a "
+                f"viscosity of {viscosity:g} Pa s there; temperatures are in kelvin, 0 degrees Celsius are 273.15 K."
             )
 
 
@@ -310,7 +316,8 @@ def _check_bush(bearing: JournalBearing) -> None:
     _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None)))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
-            f"JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got {type(bearing.film).__name__}(...)."
+            "JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got "
+            f"{type(bearing.film).__name__}(...)."
         )
     mesh = bearing.bush.mesh if isinstance(bearing.bush, ModalBush | ANCFBush) else None
     if not isinstance(mesh, HollowCylinder):
@@ -323,6 +330,6 @@ def _check_bush(bearing: JournalBearing) -> None:
         )
     if mesh.length < bearing.length * (1.0 - 1e-9):
         raise InputError(
-            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m, got HollowCylinder.length "
-            f"= {mesh.length:g} m."
+            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m, got "
+            f"HollowCylinder.length = {mesh.length:g} m."
         )

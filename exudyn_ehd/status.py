@@ -31,10 +31,11 @@ _ADVICE = {
     "step size, and please report the state.",
     Status.NO_FILM: "the gap closed somewhere, where a film has no solution; give the bearing a contact effect, "
     "contact=RegularisedWall(onset=...), reduce the load or the step size, or check the radial clearance.",
-    Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; use "
-    "RoelandsPressure instead of BarusPressure, or name an elastic liner or bush.",
+    Status.NO_PRESSURE: "the pressure runs away: with this viscosity-pressure law no finite pressure carries the film; "
+    "use RoelandsPressure instead of BarusPressure, or name an elastic liner or bush.",
     Status.OUTSIDE_MAP: "the journal left the domain of its impedance map; give ImpedanceMap a larger "
-    "largest_eccentricity_ratio, or use film=FiniteLength(...), with contact=RegularisedWall(onset=...) if surfaces may touch.",
+    "largest_eccentricity_ratio, or use film=FiniteLength(...), with contact=RegularisedWall(onset=...) if surfaces "
+    "may touch.",
     Status.NOT_FINITE: "the state handed to the film is not finite; reduce the step size and check the masses and "
     "loads of the model.",
 }
@@ -53,11 +54,11 @@ class FilmError(EHDError, RuntimeError):
 
 
 class RunError(EHDError, RuntimeError):
-    """A solver of Exudyn ended without success although every film could be evaluated; names the joints and their state."""
+    """A solver of Exudyn failed although every film could be evaluated; names the joints and their state."""
 
 
 class RingingWarning(UserWarning):
-    """The forces of a joint alternate from step to step: not the film, but steps that are too large for the time integration."""
+    """The forces of a joint alternate from step to step: the steps are too large for the time integration."""
 
 
 def require_number(
@@ -137,7 +138,7 @@ def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, u
 
 
 def require_size(where: str, value: float | np.ndarray, unit: str, *, smallest: float, largest: float) -> None:
-    """Raise `InputError` if a size is neither 0 nor within limits far beyond any machine, where numbers overflow or vanish."""
+    """Raise `InputError` if a size is neither 0 nor within limits beyond which numbers overflow or vanish."""
     size = float(np.max(np.abs(value)))
     if size != 0.0 and not smallest <= size <= largest:
         raise InputError(

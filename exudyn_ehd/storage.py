@@ -73,7 +73,8 @@ def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], A
     key : bytes
         Everything that determines the arrays, a number for the format and for the algorithm included.
     shapes : mapping
-        Names and shapes of the arrays, all of finite floats; a letter for a length that the key doesn't tell, the same for the same length.
+        Names and shapes of the arrays, all of finite floats; a letter for a
+        length that the key doesn't tell, the same for the same length.
     compute : function
         Makes the arrays.
     """

@@ -42,7 +42,8 @@ def test_film_studies_do_not_load_exudyn():
     """`steady` and its like run without Exudyn being imported."""
     code = (
         "import sys, exudyn_ehd as ehd;"
-        "b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=.04));"
+        "b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, "
+        "lubricant=ehd.Lubricant(viscosity=.04));"
         "ehd.steady(b, speed=100., eccentricity_ratio=.5);"
         "assert 'exudyn' not in sys.modules"
     )
@@ -91,7 +92,8 @@ def test_options_are_frozen_and_keyword_only():
 
 # How large things may be; docstrings don't count. A reader holds no more than this at once.
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 411, 96, 28, 24
-# Of the whole package: marks that keep the formatter off aligned tables, annotations that say nothing, logical lines of code.
+# Of the whole package: marks that keep the formatter off aligned tables,
+# annotations that say nothing, logical lines of code.
 MOST_SKIPS, MOST_ANY, MOST_CODE = 196, 560, 19563
 # Files that import each other in a circle, imports for types alone included.
 IN_CIRCLES = 21

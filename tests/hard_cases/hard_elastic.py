@@ -88,7 +88,7 @@ def soft_step():
 @hard_case("thin shell", rejected=20, newton=5.0)
 def thin_shell():
     """A bush of 0.5 mm: bent rather than compressed if it were free, here laid
-    into the housing, where only its thickness gives way."""
+    into the housing, where only its thickness deflects."""
     thickness = 5e-4
     made = bearing(bush=ring(2e9, thickness=thickness, radial=1))
     run, eq = settle(made, load=3000.0)
@@ -130,7 +130,7 @@ def soft_liner():
 
 @hard_case("soft liner pressed through its film", rejected=40, newton=10.0)
 def liner_touches():
-    """At its ends a liner carries no pressure and does not give way: there the
+    """At its ends a liner carries no pressure and does not deflect: there the
     gap closes first, for want of a contact."""
     rotor, period = swinging_liner(1500.0)
     run = rotor.run(6 * period, period / 60, fails=True)
@@ -158,7 +158,7 @@ def liner_on_its_edges():
 @hard_case("starved soft liner under oscillating rotation", newton=5.0)
 def starved_liner():
     """Mass-conserving: the swinging journal's cavities drain and fill on a
-    liner that gives way by the size of its film."""
+    liner that deflects by the size of its film."""
     rotor, period = swinging_liner(100.0, cavitation=ehd.ElrodAdams(cavity_pressure=-2e4))
     run = rotor.run(6 * period, period / 60)
     h = run.history
