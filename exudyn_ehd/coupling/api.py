@@ -11,13 +11,14 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel
+from exudyn_ehd.coupling.contract import Index, JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.axial import hold_axially
 from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.items.resolve import Item
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
+from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
 from exudyn_ehd.coupling.record.sensors import add_sensor
@@ -65,14 +66,24 @@ class LubricatedJoint(JointResults):
         The axial constraint, if `Held`.
     element : FilmElement
         The film between the two frames.
+    display : FilmDisplay
+        The film in Exudyn's renderer.
     bush : FlexibleBush or None
         The nodal bush, if the bearing has one.
     """
 
-    def __init__(self, mbs: exu.MainSystem, name: str, element: FilmElement, numbers: tuple[Any, Any]) -> None:
+    def __init__(
+        self,
+        mbs: exu.MainSystem,
+        name: str,
+        element: FilmElement,
+        display: FilmDisplay,
+        numbers: tuple[Index, Index | None],
+    ) -> None:
         self.mbs = mbs
         self.name = name
-        self.element = element
+        self.element: FilmElement = element
+        self.display = display
         self.bearing = element.model.bearing
         self.objectNumber, self.constraintNumber = numbers
         self.bush = getattr(element, "bush", None)
@@ -86,7 +97,7 @@ class LubricatedJoint(JointResults):
         goes on with it and with what the film remembers, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new
         one, also a run at that time from the old initial values.
         """
-        return self.element.snapshot(self.mbs)
+        return self.element.steps.history(self.mbs)
 
     def place_in_equilibrium(
         self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
@@ -127,7 +138,7 @@ class LubricatedJoint(JointResults):
             raise InputError(
                 f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
-        time, memory, rows = self.element.remembered(self.mbs)
+        time, memory, rows = self.element.steps.remembered(self.mbs)
         return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
 
     def restore_state(self, state: JointState) -> None:
@@ -139,7 +150,7 @@ class LubricatedJoint(JointResults):
             If the state is of another joint or bearing.
         """
         check_owner(self, state)
-        self.element.resume(state.time, state.memory, state.rows)
+        self.element.steps.resume(state.time, state.memory, state.rows)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
@@ -306,7 +317,7 @@ def CreateLubricatedJoint(
     model = importlib.import_module("exudyn_ehd.joint.model.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
     if stepControl is not None:
-        joint.element.watch = GapWatch(stepControl, bearing)
+        joint.element.steps.control = GapWatch(stepControl, bearing)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
@@ -358,6 +369,7 @@ def attach(
         attach_bush = importlib.import_module("exudyn_ehd.coupling.element.attach").attach_bush
         element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show)
         nodes += element.bore_nodes
+    display = FilmDisplay(element)
     number = mbs.AddObject(
         eii.ObjectGenericODE2(
             name=name,
@@ -365,12 +377,12 @@ def attach(
             forceUserFunction=element.force,
             jacobianUserFunction=element.jacobian,
             visualization=eii.VObjectGenericODE2(
-                show=show, color=list(color), graphicsDataUserFunction=element.display.graphics
+                show=show, color=list(color), graphicsDataUserFunction=display.graphics
             ),
             **more,
         )
     )
     constraint = hold_axially(mbs, name, housing, journal, points, rotation) if held else None
-    joint = LubricatedJoint(mbs, name, element, (number, constraint))
+    joint = LubricatedJoint(mbs, name, element, display, (number, constraint))
     joints_of(mbs).append(joint)
     return joint

@@ -8,6 +8,8 @@ from typing import Any, Protocol, SupportsInt, TypeAlias
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import Status
 
 # Exudyn's index types exist at run time, but not in its type stubs.
@@ -43,20 +45,46 @@ class Evaluation(Protocol):
         """Derivative (6, 10) of the wrench with respect to the motion; only until the model's next evaluation."""
         ...
 
-    def quantities(self) -> Mapping[str, Any]:
+    def quantities(self) -> Mapping[str, float]:
         """Scalars by name: minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load."""
         ...
 
-    def history(self) -> Any:
-        """What the film remembers if this state is accepted; opaque to the coupling."""
+    def history(self) -> History | None:
+        """What the film remembers if this state is accepted."""
         ...
+
+
+class Trial:
+    """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked."""
+
+    __slots__ = ("evaluation", "memory", "motion", "q", "q_t", "status", "step")
+
+    def __init__(
+        self,
+        q: list[float],
+        q_t: list[float],
+        memory: History | None,
+        step: float,
+        motion: np.ndarray,
+        evaluation: Evaluation | None,
+    ) -> None:
+        self.q = q
+        self.q_t = q_t
+        self.memory = memory
+        self.step = step
+        self.motion = motion
+        self.evaluation = evaluation
+        if evaluation is not None:
+            self.status = evaluation.status
+        else:
+            self.status = Status.NO_FILM if np.all(np.isfinite(q)) else Status.NOT_FINITE
 
 
 class JointModel(Protocol):
     """A film: a pure function of the motion (10,) of the journal axis in the housing's joint frame, and of its memory."""
 
     @property
-    def bearing(self) -> Any: ...
+    def bearing(self) -> JournalBearing: ...
     @property
     def remembers(self) -> bool:
         """Whether the force depends on accepted steps before; if not, memory is neither asked for nor handed over."""
@@ -67,11 +95,13 @@ class JointModel(Protocol):
         """Whether the journal's angle matters (supply areas in the journal)."""
         ...
 
-    def initial_history(self, motion: np.ndarray) -> Any:
+    def initial_history(self, motion: np.ndarray) -> History | None:
         """Memory at the start of a run, at this motion."""
         ...
 
-    def evaluate(self, motion: np.ndarray, history: Any = None, step: float = 0.0, spin: float = 0.0) -> Evaluation:
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> Evaluation:
         """Evaluate the film at [x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w] (m, rad, m/s, rad/s).
 
         ``history`` is the memory at the last accepted step (None: the steady film), ``step`` the time since then [s],

@@ -199,7 +199,7 @@ class Scene:
     def modal_state(self):
         """Frame of the housing, coordinates and rates of the modes."""
         element = self.joint.element
-        q, q_t = (np.array(v) for v in element._read(self.mbs, exu.ConfigurationType.Current))
+        q, q_t = (np.array(v) for v in element.read(self.mbs, exu.ConfigurationType.Current))
         side, n = detached(element.sides[0]), element.sides[0].size
         side.update(self.mbs, q[:n], q_t[:n], exu.ConfigurationType.Current)
         return side.frame, q[element.rigid_size :], q_t[element.rigid_size :]

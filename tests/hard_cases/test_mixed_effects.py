@@ -77,8 +77,8 @@ class Balances:
     def __init__(self, joint):
         self.oil = self.heat = self.momentum = 0.0
         self.element = element = joint.element
-        self.row, self.force = element._row, element._generalized_force
-        element._row, element._generalized_force = self.look, self.cancel
+        self.row, self.force = element.row, element._generalized_force
+        element.row, element._generalized_force = self.look, self.cancel
 
     def look(self, time, trial):
         row, model = self.row(time, trial), self.element.model

@@ -2,9 +2,11 @@
 
 Module map
 ----------
-attach         from a joint's description to its element
-rigid          rigid bore
-modal          bore by modes
-modal_inertia  inertia of the modes
-nodal          bore by nodes
+attach          from a joint's description to its element
+rigid           `FilmElement`: user functions for a rigid bore
+accepted_steps  what was accepted: record, memory, watches, runs that go on
+failures        messages of films that can't go on
+modal           bore by modes
+modal_inertia   inertia of the modes
+nodal           bore by nodes
 """

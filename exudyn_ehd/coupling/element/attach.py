@@ -70,7 +70,7 @@ def attach_bush(
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         _settle_modes(mbs, model, sides)
-        return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore.stiffness), {}
+        return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
     start = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
@@ -84,7 +84,7 @@ def attach_bush(
     )
     modes = model.bore.modes
     mass = modes.mass if isinstance(modes, BoreModes) else None
-    element = ModalFilmElement(model, *sides, [node], name, model.bore.stiffness)
+    element = ModalFilmElement(model, *sides, [node], name, model.bore)
     if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
         require_heavy_housing(mbs, items[0].node, modes, name)
         element.inertia = ModalInertia(mbs, sides[0], modes)

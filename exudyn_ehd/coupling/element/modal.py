@@ -8,16 +8,17 @@ journal and housing cancel exactly.
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.contract import Index, Side, Trial
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
-from exudyn_ehd.coupling.element.rigid import FilmElement, Trial
+from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.static_modes import BoreModes
 
 SIZE = 10
 
@@ -37,7 +38,9 @@ class BoreFilmElement(FilmElement):
         For messages.
     """
 
-    def __init__(self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
+    model: ElasticBearingModel
+
+    def __init__(self, model: ElasticBearingModel, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
         super().__init__(model, housing, journal, name)
         self.bore_nodes = nodes
         self._places: np.ndarray | None = None
@@ -47,8 +50,8 @@ class BoreFilmElement(FilmElement):
         """Number of coordinates of housing and journal."""
         return self.sides[0].size + self.sides[1].size
 
-    def _read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
-        q, q_t = super()._read(mbs, configuration)
+    def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
+        q, q_t = super().read(mbs, configuration)
         if self._places is None:
             self._places = np.concatenate([mbs.systemData.GetNodeLTGODE2(int(node)) for node in self.bore_nodes])
         data = mbs.systemData
@@ -65,6 +68,11 @@ class BoreFilmElement(FilmElement):
         qv, qv_t, n = np.array(q), np.array(q_t), self.rigid_size
         rigid = self._move_rigid(mbs, qv[:n], qv_t[:n], configuration)
         return np.concatenate((rigid, *self._bore_motion(qv[n:], qv_t[n:])))
+
+    @staticmethod
+    def _evaluation(trial: Trial) -> ElasticEvaluation:
+        assert isinstance(trial.evaluation, ElasticEvaluation)
+        return trial.evaluation
 
     def _bore_motion(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Coordinates and rates of the bore in the film model from those of the bore's nodes."""
@@ -83,20 +91,30 @@ class ModalFilmElement(BoreFilmElement):
 
     Parameters
     ----------
-    stiffness : (k,) array
-        Modal stiffness, N/m.
+    bore : ModalBore
+        That of the model.
 
     Attributes
     ----------
+    modes : BoreModes or ReducedBore
+    stiffness : (k,) array
+        Modal stiffness, N/m.
     inertia : ModalInertia or None
         Of modes with mass on a housing that moves.
     """
 
     def __init__(
-        self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str, stiffness: np.ndarray
+        self,
+        model: ElasticBearingModel,
+        housing: Side,
+        journal: Side,
+        nodes: list[Index],
+        name: str,
+        bore: ModalBore,
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
-        self.stiffness = stiffness
+        self.modes = bore.modes
+        self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
         self._weighed = False
 
@@ -107,7 +125,8 @@ class ModalFilmElement(BoreFilmElement):
             self._bind(mbs)
         if not self._weighed:
             self._weighed = True
-            self.inertia.warn_if_indefinite(self.model.bore.modes, self.name)  # type: ignore[attr-defined]
+            assert isinstance(self.modes, BoreModes)
+            self.inertia.warn_if_indefinite(self.modes, self.failures.name)
         n, n_h, state = self.rigid_size, self.sides[0].size, np.array(q)
         whole = np.zeros((state.size, state.size))
         whole[:n_h, :n_h], coupling, whole[n:, n:] = self.inertia.mass(state[:n_h], state[n:])
@@ -121,22 +140,19 @@ class ModalFilmElement(BoreFilmElement):
         return [q[:n_h], q_t[:n_h], q[n:], q_t[n:]]
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
-        evaluation: Any = trial.evaluation
-        housing, journal = self.sides
+        evaluation = self._evaluation(trial)
         n, k = self.rigid_size, self.stiffness.size
-        relative.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
         force = np.empty(len(trial.q))
-        relative.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        self._rigid_force(evaluation.wrench, force[:n])
         force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
         if self.inertia is not None:
             on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
-            force[: housing.size] += on_housing
+            force[: self.sides[0].size] += on_housing
             force[n:] += on_modes
         return force
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        evaluation: Any = trial.evaluation
-        T, n, k = evaluation.combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
+        T, n, k = self._evaluation(trial).combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
         whole = np.empty((n + k, n + k))
         relative.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
@@ -146,10 +162,8 @@ class ModalFilmElement(BoreFilmElement):
             whole[np.ix_(places, places)] -= f_q * by_place + f_qt * by_rate
         return whole
 
-    def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray | None:
-        """Displacement (k, 3) of the bush's mesh at the film that was evaluated last; None for the bore of a body, which shows itself."""
-        model: Any = self.model
-        evaluation: Any = self.latest
-        if isinstance(model.bore.modes, ReducedBore):
+    def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
+        """Displacement (k, 3) of the bush's mesh at the last trial; None for the bore of a body, which shows itself."""
+        if isinstance(self.modes, ReducedBore):
             return None
-        return np.tensordot(evaluation.bore.coordinates, model.bore.modes.displacements, 1)
+        return np.tensordot(self._evaluation(trial).bore.coordinates, self.modes.displacements, 1)

@@ -10,16 +10,15 @@ leaves out as its Reynolds equation does. The housing itself is loaded through t
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
-from exudyn_ehd.coupling.contract import Index, Side
+from exudyn_ehd.coupling.contract import Evaluation, Index, Side, Trial
 from exudyn_ehd.coupling.element.modal import SIZE, BoreFilmElement
-from exudyn_ehd.coupling.element.rigid import Trial
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.joint.bore.shapes import NodalBore
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.tangent.nodes import BoreForces
 from exudyn_ehd.status import Status
 
@@ -39,15 +38,22 @@ class NodalFilmElement(BoreFilmElement):
     """
 
     def __init__(
-        self, model: Any, housing: Side, journal: Side, nodes: list[Index], name: str, bush: FlexibleBush
+        self,
+        model: ElasticBearingModel,
+        housing: Side,
+        journal: Side,
+        nodes: list[Index],
+        name: str,
+        bush: FlexibleBush,
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
         self.bush = bush
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)
+        assert isinstance(model.bore, NodalBore)
         self.forces = BoreForces(model.bore.values, model.grid)
-        self._nodal: tuple[Any, np.ndarray] = (None, np.zeros((0, 3)))
+        self._nodal: tuple[Evaluation | None, np.ndarray] = (None, np.zeros((0, 3)))
         self.arms = np.zeros((self.count, 3))
         self.drift = np.zeros((self.count, 3))
 
@@ -65,19 +71,20 @@ class NodalFilmElement(BoreFilmElement):
         rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
         return local + np.tensordot(relative.spread_matrix(x), rest, 1)
 
-    def bush_displacement(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
+    def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray:
         """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
         frame = self.sides[0].frame
         positions = self.bush.solid.mesh.nodes + self.bush.displacements(configuration)
         return (positions - frame[:, 3]) @ frame[:, :3] - self.bush.mesh.nodes
 
-    def nodal_forces(self, evaluation: Any) -> np.ndarray:
+    def nodal_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
         if self._nodal[0] is not evaluation:
             self._nodal = evaluation, evaluation.nodal_forces(self.forces)
         return self._complete(evaluation.wrench, self._nodal[1])
 
-    def _quantities(self, evaluation: Any) -> dict[str, Any]:
+    def _quantities(self, evaluation: Evaluation) -> dict[str, float]:
+        assert isinstance(evaluation, ElasticEvaluation)
         out = dict(evaluation.quantities())
         # the model knows the work on the radial displacement only, not that of the spread forces
         rest = self.nodal_forces(evaluation)
@@ -86,18 +93,15 @@ class NodalFilmElement(BoreFilmElement):
         return out
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:
-        evaluation: Any = trial.evaluation
-        housing, journal = self.sides
-        n = self.rigid_size
-        relative.global_loads(housing.frame, journal.frame, evaluation.wrench, self._loads)
+        evaluation, housing, n = self._evaluation(trial), self.sides[0], self.rigid_size
         force = np.empty(len(trial.q))
-        relative.generalized_force(housing.jac, journal.jac, self._loads, force[:n])
+        self._rigid_force(evaluation.wrench, force[:n])
         force[: housing.size] = 0.0
         force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
         return force
 
     def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-        evaluation: Any = trial.evaluation
+        evaluation = self._evaluation(trial)
         wrench, nodal = evaluation.nodal_tangent(self.forces)
         T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
@@ -128,7 +132,7 @@ class NodalFilmElement(BoreFilmElement):
         trial = self._try(mbs, q, q_t, _CURRENT, t)
         return NodalTangent(self, mbs, trial, f_q, f_qt) if trial.status == Status.CONVERGED else None
 
-    def _turning_forces(self, evaluation: Any) -> np.ndarray:
+    def _turning_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Derivative (3 count, n_h) of the forces on the bore's nodes as the housing turns them."""
         force = self.nodal_forces(evaluation) @ self.sides[0].frame[:, :3].T
         turn = np.cross(self.sides[0].jac[1].T, force[:, None, :])
@@ -181,7 +185,7 @@ class NodalTangent:
     """
 
     def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
-        evaluation: Any = trial.evaluation
+        evaluation = element._evaluation(trial)
         self.film = evaluation.nodal_product(element.forces)
         self.factors = f_q, f_qt
         self.n, self.n_h, self.count = element.rigid_size, element.sides[0].size, element.count

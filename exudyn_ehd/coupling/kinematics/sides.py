@@ -7,6 +7,7 @@ geometrically exact beams and cables, `MarkerSide` for any other rigid marker th
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import exudyn as exu
@@ -260,9 +261,9 @@ def detached(side: Any) -> Any:
 
 
 def read_state(
-    mbs: exu.MainSystem, sides: tuple[Side, Side], configuration: exu.ConfigurationType
+    mbs: exu.MainSystem, sides: Sequence[Side], configuration: exu.ConfigurationType
 ) -> tuple[list[float], list[float]]:
-    """Coordinates (without reference values) and rates of both sides, in the film element's order."""
+    """Coordinates (without reference values) and rates of sides, in the film element's order."""
     q: list[float] = []
     q_t: list[float] = []
     for side in sides:

@@ -2,6 +2,7 @@
 
 Module map
 ----------
+element      what records ask of a joint's film element
 history      quantities over accepted steps
 films        films over accepted steps
 results      what a joint's handle offers

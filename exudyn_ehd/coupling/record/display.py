@@ -8,19 +8,16 @@ state.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import exudyn as exu
 import exudyn.graphics
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Side, Trial
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
-from exudyn_ehd.joint.bore.shapes import ModalBore
-from exudyn_ehd.joint.solved_film import SolvedFilm
+from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.status import Status
-
-if TYPE_CHECKING:
-    from exudyn_ehd.coupling.element.rigid import FilmElement
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
 EDGE = [0.0, 0.0, 0.0, 1.0]
@@ -33,7 +30,7 @@ class FilmDisplay:
 
     Parameters
     ----------
-    element : FilmElement
+    element : Element
 
     Attributes
     ----------
@@ -41,35 +38,41 @@ class FilmDisplay:
         Whether a renderer has asked.
     """
 
-    def __init__(self, element: FilmElement) -> None:
+    def __init__(self, element: Element) -> None:
         self.element = element
         self.wanted = False
         self.pressure: np.ndarray | None = None
         self.bore: np.ndarray | None = None
         self.bush: np.ndarray | None = None
-        self._housing: Any = None
+        self._housing: Side | None = None
 
-    def take(self) -> None:
-        """Store what is drawn of the film that was evaluated last; asked for after every accepted step."""
-        model: Any = self.element.model
-        film: SolvedFilm | None = getattr(self.element.latest, "film", None)
+    def take(self, trial: Trial) -> None:
+        """Store what is drawn of a film, the last that was evaluated."""
+        film = getattr(trial.evaluation, "film", None)
         if film is None:
             return
         self.pressure = film.oil.P * film.scales.pressure
         if film.bore is None:
             return
+        model: Any = self.element.model
         self.bore = film.bore.displacement * model.bearing.radial_clearance
-        if isinstance(model.bore, ModalBore):
-            self.bush = np.tensordot(film.bore.coordinates, model.bore.modes.displacements, 1)
+        modes = getattr(model.bore, "modes", None)
+        if modes is not None:
+            self.bush = np.tensordot(film.bore.coordinates, modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Any]:
         """User function of Exudyn: the list of graphics data at the state that the renderer shows, in global coordinates."""
-        self.wanted = True
         model: Any = self.element.model
         if not hasattr(model, "grid"):
             return []
-        if self.element.is_idle and self.element.look_at_accepted(mbs)[1].status is Status.CONVERGED:
-            self.take()
+        steps = self.element.steps
+        if not self.wanted:
+            self.wanted = True
+            steps.observers.append(self.take)
+        if steps.is_idle:
+            trial = steps.look_at_accepted(mbs)[1]
+            if trial.status is Status.CONVERGED:
+                self.take(trial)
         frame = self._frame(mbs)
         grid, bearing = model.grid, model.bearing
         # a polygon about the bore, not in it: its chords would cut through the journal
@@ -95,8 +98,7 @@ class FilmDisplay:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
         if self._housing is None:
             self._housing = detached(self.element.sides[0])
-        one: Any = (self._housing,)
-        q, q_t = read_state(mbs, one, _VISUALIZATION)
+        q, q_t = read_state(mbs, [self._housing], _VISUALIZATION)
         self._housing.update(mbs, np.array(q), np.array(q_t), _VISUALIZATION)
         return self._housing.frame
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
 
+from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.record.revolutions import Revolutions
@@ -20,8 +21,6 @@ from exudyn_ehd.status import FilmError, InputError, Status
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from exudyn_ehd.coupling.element.rigid import FilmElement
-
 
 class JointResults:
     """Results of a joint; mixed into `LubricatedJoint`.
@@ -32,7 +31,7 @@ class JointResults:
 
     name: str
     mbs: exu.MainSystem
-    element: FilmElement
+    element: Element
 
     @property
     def history(self) -> JointHistory:
@@ -56,7 +55,7 @@ class JointResults:
             raise InputError(
                 f"LubricatedJoint.film: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
-        time, trial, configuration = self.element.look_at_accepted(self.mbs)
+        time, trial, configuration = self.element.steps.look_at_accepted(self.mbs)
         if trial.evaluation is None or trial.status is not Status.CONVERGED:
             raise FilmError(
                 f"LubricatedJoint.film: no film of joint '{self.name}' at t = {time:.9g} s: {trial.status.advice}"
@@ -67,7 +66,7 @@ class JointResults:
             grid = FiniteLength(n_theta=film.n_theta, n_z=film.n_z, stretch=film.stretch)
             model = build_model(dataclasses.replace(model.bearing, film=grid))
             return film_fields(model.evaluate(trial.motion), time)
-        return self.element.fields(self.mbs, time, configuration)
+        return self.element.fields(self.mbs, time, trial, configuration)
 
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:
         """Keep the film at regular instants of the runs that follow, for `films`, `animate` and `export_vtk`.
@@ -88,12 +87,12 @@ class JointResults:
                 f"LubricatedJoint.record_films: joint '{self.name}' has film=ImpedanceMap(...), which holds no pressure; use "
                 "film=FiniteLength(...)."
             )
-        self.element.recorder = FilmRecorder(period, frames)
+        self.element.steps.recorder = FilmRecorder(period, frames)
 
     @property
     def films(self) -> tuple[FilmFields, ...]:
         """Films kept since `record_films`, the last one at the last accepted state; empty without it."""
-        recorder = self.element.recorder
+        recorder = self.element.steps.recorder
         if recorder is None or not self.mbs.systemIsConsistent:
             return ()
         now = self.film()

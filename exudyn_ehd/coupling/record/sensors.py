@@ -8,14 +8,14 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.coupling.record.history import Quantity, column
 
 _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quantity.MOMENT: 3}
 
 
 def add_sensor(
-    mbs: exu.MainSystem, element: FilmElement, quantity: Quantity, name: str, file_name: str, write_to_file: bool
+    mbs: exu.MainSystem, element: Element, quantity: Quantity, name: str, file_name: str, write_to_file: bool
 ) -> Any:
     """Add a sensor of one quantity; its values are stored in the sensor.
 

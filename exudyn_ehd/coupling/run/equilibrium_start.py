@@ -64,7 +64,7 @@ def place(mbs: exu.MainSystem, element: FilmElement, name: str, load: Any, speed
     mbs.systemData.SetODE2Coordinates_t(rates.tolist(), _INITIAL)
     at_rest = motion.copy()
     at_rest[:2], at_rest[4:8] = result.position, 0.0
-    element.resume(float(mbs.systemData.GetTime(_INITIAL)), _memory(element.model, at_rest, result), element.no_rows())
+    element.steps.resume(float(mbs.systemData.GetTime(_INITIAL)), _memory(element.model, at_rest, result))
     return result
 
 

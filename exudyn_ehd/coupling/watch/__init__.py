@@ -3,6 +3,6 @@
 Module map
 ----------
 solver_state  which solver runs, with which step
-step_control  steps that follow the film
-chatter       warnings about alternating forces
+step_control  implicit steps too coarse for a film, rejected
+chatter       explicit steps beyond their stability limit, recognised
 """

@@ -18,10 +18,9 @@ not resolved and makes it faster is such a kick, and kicks in short succession c
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Geometry
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
@@ -50,7 +49,7 @@ class ChatterWatch:
         |d - h (v0 + v1) / 2| of the last step, m; tilts count by half the length.
     """
 
-    def __init__(self, bearing: Any) -> None:
+    def __init__(self, bearing: Geometry) -> None:
         self.clearance = bearing.radial_clearance
         self.lever = 0.5 * bearing.length
         self.begin_anew()

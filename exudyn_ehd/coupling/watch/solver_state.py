@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TypeAlias, cast
 
 import exudyn as exu
 
+Solver: TypeAlias = exu.MainSolverImplicitSecondOrder | exu.MainSolverStatic | exu.MainSolverExplicit
+Stored: TypeAlias = tuple[Solver | None, Solver | None]
+# Before the first run: not even no solver is the same object.
+NO_RUN: Stored = (cast(Solver, object()), cast(Solver, object()))
 _REJECTING = (exu.MainSolverImplicitSecondOrder, exu.MainSolverStatic)
 
 
-def stored_solvers(mbs: exu.MainSystem) -> tuple[Any, Any]:
+def stored_solvers(mbs: exu.MainSystem) -> Stored:
     """The solver objects that Exudyn's SolveDynamic and SolveStatic left in ``mbs.sys``; new ones for every run."""
     stored = mbs.sys
     return stored.get("dynamicSolver"), stored.get("staticSolver")
 
 
-def running_solver(before: tuple[Any, Any], now: tuple[Any, Any]) -> Any:
+def running_solver(before: Stored, now: Stored) -> Solver | None:
     """The solver at work, from the stored ones at the run before and now; None if it was not stored in ``mbs.sys``.
 
     A stored solver outlives its run, and one that an exception has ended looks as if it were still at work: what tells
@@ -27,22 +31,22 @@ def running_solver(before: tuple[Any, Any], now: tuple[Any, Any]) -> Any:
     return min(working, key=lambda solver: solver.timer.total, default=None)
 
 
-def is_static(solver: Any) -> bool:
+def is_static(solver: Solver | None) -> bool:
     """Whether ``solver`` is a static one: its time is a load parameter."""
     return isinstance(solver, exu.MainSolverStatic)
 
 
-def is_explicit(solver: Any) -> bool:
+def is_explicit(solver: Solver | None) -> bool:
     """Whether ``solver`` is an explicit integrator."""
     return isinstance(solver, exu.MainSolverExplicit)
 
 
-def is_finished(solver: Any) -> bool:
+def is_finished(solver: Solver | None) -> bool:
     """Whether the run of ``solver`` has come to its end; a failed one never does."""
     return solver is None or bool(solver.output.finishedSuccessfully)
 
 
-def can_reject_step(solver: Any) -> bool:
+def can_reject_step(solver: Solver | None) -> bool:
     """Whether ``solver`` is at work and answers a nan force by repeating the step with a smaller size, as it still can.
 
     Implicit and static solvers do, down to their smallest step size; explicit ones would accept the nan, and initial

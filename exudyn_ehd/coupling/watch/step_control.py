@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number
@@ -23,8 +23,9 @@ class StepControl:
 
     Newton may well converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
     once: the motion is then wrong, without a sign. With a step control such a step is answered like a film that can't be
-    evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest
-    step size every step is accepted. Explicit and static solvers are not touched.
+    evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles it again
+    after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size every step is accepted.
+    Explicit and static solvers are not touched.
 
     Parameters
     ----------
@@ -53,13 +54,13 @@ class GapWatch:
     bearing : JournalBearing
     """
 
-    def __init__(self, control: StepControl, bearing: Any) -> None:
+    def __init__(self, control: StepControl, bearing: JournalBearing) -> None:
         self.share = control.largest_gap_change
         self.clearance, self.length = bearing.radial_clearance, bearing.length
         ranges = [SMALLEST_GAP_SHARE * self.clearance]
-        if getattr(bearing, "contact", None) is not None:
+        if bearing.contact is not None:
             ranges.append(bearing.contact.onset)
-        if getattr(bearing, "asperity", None) is not None:
+        if bearing.asperity is not None:
             ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
         self.range = max(ranges)
         self.gap = np.nan
@@ -69,7 +70,7 @@ class GapWatch:
         """Remember the gap at the start of a step."""
         self.gap = self._gap(motion)
 
-    def rejects(self, motion: np.ndarray, solver: Any) -> bool:
+    def rejects(self, motion: np.ndarray, solver: solver_state.Solver | None) -> bool:
         """Whether the step to this motion is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
         too_far = abs(self._gap(motion) - self.gap) > self.share * max(self.gap, self.range)

@@ -193,7 +193,7 @@ def test_modal_bushes_start_in_equilibrium_on_every_body(kind, dynamics, measure
     mbs, joint = held(kind, dataclasses.replace(MODAL, mesh=RING, material=material, dynamics=dynamics))
     element = joint.element
     q = np.array(mbs.GetNodeOutput(element.bore_nodes[0], exu.OutputVariableType.Coordinates))
-    evaluation = element.look_at_accepted(mbs)[1].evaluation
+    evaluation = element.steps.look_at_accepted(mbs)[1].evaluation
     assert np.abs(q).max() > 1e-8
     load, spring = evaluation.bore_load, element.stiffness * q
     # velocities of markers come from differences of positions

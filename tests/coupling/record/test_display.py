@@ -51,7 +51,7 @@ def test_without_a_renderer_nothing_is_stored():
     mbs, joint = rotor()
     mbs.Assemble()
     run(mbs, steps=4)
-    assert not joint.element.display.wanted and joint.element.display.pressure is None
+    assert not joint.display.wanted and joint.display.pressure is None
 
 
 def test_drawing_within_a_run_shows_the_last_accepted_step_and_changes_no_bit():
@@ -60,14 +60,14 @@ def test_drawing_within_a_run_shows_the_last_accepted_step_and_changes_no_bit():
         mbs, joint = rotor()
         joint.record_films()
         mbs.Assemble()
-        display, shown = joint.element.display, []
+        display, shown = joint.display, []
 
-        def look(mbs, t, number=joint.objectNumber, element=joint.element, shown=shown):
-            before = element.evaluations
+        def look(mbs, t, number=joint.objectNumber, joint=joint, shown=shown):
+            before = joint.element.evaluations
             drawn(mbs, number)
             if t > 0.0:
-                assert element.evaluations == before, "within a run the film belongs to the solver"
-                shown.append(element.display.pressure)
+                assert joint.element.evaluations == before, "within a run the film belongs to the solver"
+                shown.append(joint.display.pressure)
             return True
 
         if watched:
@@ -76,7 +76,7 @@ def test_drawing_within_a_run_shows_the_last_accepted_step_and_changes_no_bit():
         motions.append(joint.history.motion)
         if watched:
             # after step k the film of its start is shown
-            for pressure, film in zip(shown[1:], joint.element.recorder.films[1:], strict=False):
+            for pressure, film in zip(shown[1:], joint.element.steps.recorder.films[1:], strict=False):
                 np.testing.assert_array_equal(pressure, film.pressure)
             assert len(shown) == 20 and display.wanted
     np.testing.assert_array_equal(*motions)
@@ -124,16 +124,16 @@ def test_frame_of_every_kind_of_housing(name):
     mbs, _, joint = joined(AGAINST_CONNECTOR[name], role="housing")
     mbs.Assemble()
     element, kind = joint.element, exu.ConfigurationType
-    element._look(mbs, 0.0, kind.Current)
+    element.look(mbs, 0.0, kind.Current)
     start = element.sides[0].frame.copy()
-    np.testing.assert_allclose(element.display._frame(mbs), start, atol=1e-14)
+    np.testing.assert_allclose(joint.display._frame(mbs), start, atol=1e-14)
     mbs.SolveDynamic(scenes.settings(2e-3, 4, tolerance=1e-6, full_newton=False))
     mbs.systemData.SetSystemState(mbs.systemData.GetSystemState(kind.Current), kind.Visualization)
-    element._look(mbs, mbs.systemData.GetTime(kind.Current), kind.Current)
+    element.look(mbs, mbs.systemData.GetTime(kind.Current), kind.Current)
     frame = element.sides[0].frame
     assert np.abs(frame - start).max() > 0.0
     # position and rotation; rates aren't drawn
-    np.testing.assert_allclose(element.display._frame(mbs)[:, :4], frame[:, :4], atol=1e-14)
+    np.testing.assert_allclose(joint.display._frame(mbs)[:, :4], frame[:, :4], atol=1e-14)
 
 
 def test_modal_bush_is_drawn_around_the_film():

@@ -43,7 +43,7 @@ def test_recording_changes_no_bit_of_the_run(recorded):
     mbs, joint = rotor()
     mbs.Assemble()
     run(mbs)
-    assert joint.films == () and joint.element.recorder is None
+    assert joint.films == () and joint.element.steps.recorder is None
     np.testing.assert_array_equal(joint.history.motion, recorded.history.motion)
     np.testing.assert_array_equal(joint.history.force, recorded.history.force)
 

@@ -192,4 +192,4 @@ def test_implicit_solvers_are_not_watched():
     mbs, joint = rotor()
     step = 4.0 * 2.8 * MASS / largest_damping((0.0, -500.0))
     run(mbs, 100 * step, step, exu.DynamicSolverType.GeneralizedAlpha)
-    assert joint.element._chatter is None
+    assert joint.element.steps._chatter is None

@@ -40,7 +40,7 @@ def test_no_step_changes_the_gap_by_more_than_its_share(share):
     change = np.abs(np.diff(gap)) / gap[:-1]
     # to rounding
     assert change.max() <= share * (1.0 + 1e-9)
-    assert joint.element.watch.rejections > 0
+    assert joint.element.steps.control.rejections > 0
     assert np.diff(joint.history.time).min() > 1.1e-8
     # Newton's iterates count too, so that steps end well below; not by orders
     assert change.max() > 0.1 * share
@@ -48,7 +48,7 @@ def test_no_step_changes_the_gap_by_more_than_its_share(share):
 
 def test_a_control_that_has_nothing_to_do_changes_no_bit():
     plain, watched = run(None, 2e-5), run(ehd.StepControl(largest_gap_change=1.0), 2e-5)
-    assert watched.element.watch.rejections == 0
+    assert watched.element.steps.control.rejections == 0
     np.testing.assert_array_equal(watched.history.motion, plain.history.motion)
 
 

@@ -1,0 +1,247 @@
+"""The accepted steps of one joint: recorded exactly as Exudyn accepted them, and remembered by the film.
+
+Exudyn has no call for an accepted step. A step is accepted when the start of the step has moved on: the state at the new start is then evaluated
+once more, recorded, watched for runs that ring or chatter, and what the film remembers there serves the next step. A rejected
+step leaves nothing behind.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.record.films import FilmRecorder
+from exudyn_ehd.coupling.record.history import JointHistory, Record
+from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.coupling.watch.chatter import ChatterWatch
+from exudyn_ehd.coupling.watch.step_control import GapWatch
+from exudyn_ehd.joint.audit import ringing
+from exudyn_ehd.joint.model.fields import FilmFields
+from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.static.steady_temperature import is_too_hot
+
+_CURRENT = exu.ConfigurationType.Current
+_START_OF_STEP = exu.ConfigurationType.StartOfStep
+
+
+class Film(Protocol):
+    """What accepted steps ask of the element they belong to.
+
+    Attributes
+    ----------
+    model : JointModel
+    failures : Failures
+    seen : list of float
+        Coordinates where the film was asked for last.
+    """
+
+    model: JointModel
+    failures: Failures
+    seen: list[float]
+
+    def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
+        """Coordinates and rates of all nodes of the element."""
+
+    def look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
+        """The film at the state that Exudyn holds in ``configuration``."""
+
+    def motion(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> np.ndarray:
+        """Motion of the journal at the state in ``configuration``; the film is not asked."""
+
+    def row(self, time: float, trial: Trial) -> np.ndarray | None:
+        """Row of the record; None without a film."""
+
+    def fields(
+        self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType
+    ) -> FilmFields:
+        """Fields of the film at a trial, the last one."""
+
+    def forget(self) -> None:
+        """Evaluate the film anew at the next state, whichever it is."""
+
+
+class AcceptedSteps:
+    """Record, memory and watches of one joint.
+
+    Parameters
+    ----------
+    film : Film
+        The element.
+
+    Attributes
+    ----------
+    start : float
+        Time of the last accepted step, s; nan before the first.
+    solvers : pair
+        Exudyn's stored solvers in the run under way, see `solver_state.stored_solvers`.
+    solver : object or None
+        The one of them that is at work.
+    memory : History or None
+        What the film remembers at ``start``; None for a film that remembers nothing, or is steady.
+    control : GapWatch or None
+        Rejects steps that are too coarse.
+    recorder : FilmRecorder or None
+        Keeps films.
+    observers : list of functions
+        Called with every accepted trial that has a film.
+    """
+
+    def __init__(self, film: Film) -> None:
+        self.film = film
+        self.start = np.nan
+        self.solvers = solver_state.NO_RUN
+        self.solver: solver_state.Solver | None = None
+        self.memory: History | None = None
+        self.control: GapWatch | None = None
+        self.recorder: FilmRecorder | None = None
+        self.observers: list[Callable[[Trial], None]] = []
+        self._record = Record(film.model.bearing)
+        self._chatter: ChatterWatch | None = None
+        self._ringing: ringing.RingingWatch | None = None
+        self._uses_memory = False
+        self._resumed: tuple[float, History | None] | None = None
+        self._first: list[float] = []
+
+    def accept(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> None:
+        """Take the state at the start of the current step as accepted.
+
+        Raises
+        ------
+        FilmError
+            If the film there is none that can go on.
+        """
+        resumed = False
+        if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
+            resumed = self._begin_run(mbs, start, solvers)
+        elif start < self.start:
+            self.memory = None
+        if self._uses_memory and self.memory is None:
+            self.start = start
+            motion = self.film.motion(mbs, _START_OF_STEP)
+            self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
+        trial = self.film.look(mbs, start, _START_OF_STEP)
+        if self.control is not None:
+            self.control.start(trial.motion)
+        row = self.film.row(start, trial)
+        if row is not None:
+            # a resumed state was recorded at the end of its step; for the memory it is the beginning of the next
+            if not resumed or start > self._record.last_time:
+                self._record.append(row)
+                if self.recorder is not None:
+                    self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, _START_OF_STEP))
+            for observe in self.observers:
+                observe(trial)
+            if start > self.start:
+                self._advance_memory(trial)
+        last, self.start = self.start, start
+        self._check(start, trial, start - last, row is not None)
+
+    def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
+        """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
+        film = self.film
+        self.solver = solver_state.running_solver(self.solvers, solvers)
+        self.solvers = solvers
+        explicit, static = solver_state.is_explicit(self.solver), solver_state.is_static(self.solver)
+        bearing = film.model.bearing
+        self._chatter = ChatterWatch(bearing) if explicit else None
+        area = 2.0 * bearing.journal_radius * bearing.length
+        self._ringing = None if explicit or static else ringing.RingingWatch(area)
+        # the time of a static solve is a load parameter: the film is the steady one
+        self._uses_memory = film.model.remembers and not static
+        goes_on = self._goes_on(mbs, start)
+        if not self._uses_memory or not goes_on:
+            self.memory = None
+        state, self._resumed = self._resumed, None
+        if state is not None and start == state[0]:
+            self.start, self.memory = state
+            return True
+        if not goes_on:
+            self._record.clear()
+            if self.recorder is not None:
+                self.recorder.begin_anew()
+        return False
+
+    def _goes_on(self, mbs: exu.MainSystem, start: float) -> bool:
+        """Whether a run goes on with the record: it starts behind it, and elsewhere than the run before, whose end is now the initial state.
+
+        Where nothing has moved either run starts where the other ended.
+        """
+        before, self._first = self._first, self.film.read(mbs, _START_OF_STEP)[0]
+        return start > self._record.last_time and (self._first != before or self.film.seen == before)
+
+    def _advance_memory(self, trial: Trial) -> None:
+        if self._uses_memory:
+            assert trial.evaluation is not None
+            self.memory = trial.evaluation.history()
+            self.film.forget()
+
+    def _check(self, start: float, trial: Trial, step: float, has_film: bool) -> None:
+        """Raise `FilmError` for a film that can't go on, warn of forces that ring."""
+        failures = self.film.failures
+        if has_film and (through := failures.pressed_through(start, trial)) is not None:
+            raise through
+        temperature = getattr(self.memory, "temperature", None)
+        if temperature is not None and is_too_hot(temperature):
+            raise failures.too_hot(start, trial, temperature)
+        if not has_film:
+            return
+        if self._ringing is not None:
+            assert trial.evaluation is not None
+            x, y = trial.evaluation.wrench[:2].tolist()
+            if self._ringing.take(start, x, y):
+                watch, self._ringing = self._ringing, None
+                ringing.warn(failures.name, watch)
+        if self._chatter is not None and self._chatter.sees_chatter(start, trial.motion):
+            raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no solver is at work; after a run that an exception has ended it still seems to be."""
+        return solver_state.is_finished(self.solver)
+
+    @property
+    def _accepted(self) -> exu.ConfigurationType:
+        # during a run, and after one that an exception has ended, the current state need not be an accepted one
+        return _CURRENT if self.is_idle else _START_OF_STEP
+
+    def look_at_accepted(self, mbs: exu.MainSystem) -> tuple[float, Trial, exu.ConfigurationType]:
+        """Time of the last accepted state, the film there, and the configuration that holds it."""
+        configuration = self._accepted
+        time = mbs.systemData.GetTime(configuration)
+        return time, self.film.look(mbs, time, configuration), configuration
+
+    def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, np.ndarray]:
+        """Time of the last accepted state, what the film remembers there, and the record up to it."""
+        time, trial, _ = self.look_at_accepted(mbs)
+        row, memory = self.film.row(time, trial), self.memory
+        if self._uses_memory and time > self.start and row is not None:
+            assert trial.evaluation is not None
+            memory = trial.evaluation.history()
+            self.film.forget()
+        return time, memory, self._record.rows(row)
+
+    def resume(self, time: float, memory: History | None, rows: np.ndarray | None = None) -> None:
+        """Go on with ``memory`` and record, by default none, in a run that starts at ``time``."""
+        if rows is None:
+            self._record.clear()
+        else:
+            self._record.restore(rows)
+        self._resumed = (time, memory)
+        self.memory, self.start = None, np.nan
+        self.film.forget()
+        # the next run is a new one, whatever was run before
+        self.solvers = solver_state.NO_RUN
+
+    def history(self, mbs: exu.MainSystem) -> JointHistory:
+        """The record, completed by the current state if that is later than the last recorded step."""
+        final = None
+        if mbs.systemIsConsistent:
+            time = mbs.systemData.GetTime(self._accepted)
+            if time > self._record.last_time:
+                final = self.film.row(time, self.film.look(mbs, time, self._accepted))
+        return self._record.snapshot(final)

@@ -1,0 +1,87 @@
+"""What a joint's film says when it can't go on: where, why, and what to do about it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.bearing import advice
+from exudyn_ehd.coupling.contract import Geometry, Trial
+from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.joint.static.steady_temperature import HOTTEST, WAY_OUT
+from exudyn_ehd.status import FilmError, Status
+
+# Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are none.
+DEEPEST = 2.0
+
+
+class Failures:
+    """Errors of one joint.
+
+    Parameters
+    ----------
+    name : str
+        Of the joint.
+    bearing : JournalBearing
+    """
+
+    def __init__(self, name: str, bearing: Geometry) -> None:
+        self.name, self.bearing = name, bearing
+
+    def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
+        """The film can't be evaluated, and the solver can't repeat the step."""
+        if np.all(np.isfinite(trial.motion)):
+            state = self._place(trial.motion)
+        elif trial.status == Status.NOT_FINITE:
+            state = "the state is not finite; "
+        else:
+            state = "the journal's axis has left the bearing's (tilt near 90 degrees); "
+        message = f"can't be evaluated at t = {time:.9g} s: {state}{advice(trial.status, self.bearing)}"
+        if explicit:
+            message += " An explicit solver can't repeat a step: use smaller ones, or an implicit solver."
+        return FilmError(f"LubricatedJoint '{self.name}' {message}")
+
+    def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
+        """The steps (s) of an explicit solver are beyond its stability limit; the last one's rates miss its motion by ``miss`` (m)."""
+        assert trial.evaluation is not None
+        damping = -trial.evaluation.tangent()[:2, 4:6]
+        largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
+        return self._at(
+            time,
+            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last velocities miss its "
+            f"last displacement by {miss:.3g} m; {self._place(trial.motion)}with the journal's mass m and the film's damping C, here about "
+            f"{largest:.2g} N s/m, steps must stay below 2 m / C with forward Euler and 2.8 m / C with RK44, tilting motions alike: use "
+            "smaller steps, DOPRI5 with its automatic steps, or an implicit solver.",
+        )
+
+    def pressed_through(self, time: float, trial: Trial) -> FilmError | None:
+        """The journal is so deep in a rigid bore that no contact stands for it; None if it is not."""
+        bearing = self.bearing
+        if getattr(bearing, "bush", None) is not None:
+            return None
+        if eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)[1] <= DEEPEST:
+            return None
+        return self._at(
+            time,
+            "the journal was pressed through its contact by more than the clearance; "
+            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness (RegularisedWall.pressure), or take "
+            "smaller steps or a StepControl if the step has overshot.",
+        )
+
+    def too_hot(self, time: float, trial: Trial, temperature: float | np.ndarray) -> FilmError:
+        """The film's heat has no way out."""
+        contact = ""
+        if getattr(self.bearing, "asperity", None) is not None and np.ndim(temperature) > 0:
+            contact = "with the friction of asperities: they heat spots through which hardly any oil flows; "
+        return self._at(
+            time,
+            f"the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial.motion)}its heat has no way out; {WAY_OUT}",
+        )
+
+    def _at(self, time: float, message: str) -> FilmError:
+        return FilmError(f"LubricatedJoint '{self.name}' at t = {time:.9g} s: {message}")
+
+    def _place(self, motion: np.ndarray) -> str:
+        bearing = self.bearing
+        mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
+        gap = bearing.radial_clearance * (1.0 - largest)
+        return f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid surfaces {gap:.6g} m; "
