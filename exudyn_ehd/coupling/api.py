@@ -5,17 +5,19 @@ from __future__ import annotations
 import dataclasses
 import importlib
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal, overload
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from numpy.typing import ArrayLike
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.axial import hold_axially
+from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
-from exudyn_ehd.coupling.items.resolve import Item
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
@@ -189,7 +191,7 @@ class LubricatedJoint(JointResults):
 
     def AddSensor(
         self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
-    ) -> Any:
+    ) -> Index:
         """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
 
         Parameters
@@ -214,21 +216,54 @@ class LubricatedJoint(JointResults):
         return add_sensor(self.mbs, self.element, quantity, label, fileName, write)
 
 
+@overload
 def CreateLubricatedJoint(
     mbs: exu.MainSystem,
     name: str = "",
-    itemNumbers: Sequence[Any] = (None, None),
+    itemNumbers: Sequence[Index | None] = (None, None),
     position: Sequence[float] | np.ndarray = (),
     axis: Sequence[float] | np.ndarray = (),
-    bearing: Any = None,
-    rotationMatrixAxes: Any = None,
+    bearing: JournalBearing | None = None,
+    rotationMatrixAxes: ArrayLike | None = None,
+    axial: Free | Held = Free(),
+    stepControl: StepControl | None = None,
+    useGlobalFrame: bool = True,
+    show: bool = True,
+    color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    returnDict: Literal[False] = False,
+) -> LubricatedJoint: ...
+@overload
+def CreateLubricatedJoint(
+    mbs: exu.MainSystem,
+    name: str = "",
+    itemNumbers: Sequence[Index | None] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    axis: Sequence[float] | np.ndarray = (),
+    bearing: JournalBearing | None = None,
+    rotationMatrixAxes: ArrayLike | None = None,
+    axial: Free | Held = Free(),
+    stepControl: StepControl | None = None,
+    useGlobalFrame: bool = True,
+    show: bool = True,
+    color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    *,
+    returnDict: Literal[True],
+) -> dict[str, object]: ...
+def CreateLubricatedJoint(
+    mbs: exu.MainSystem,
+    name: str = "",
+    itemNumbers: Sequence[Index | None] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    axis: Sequence[float] | np.ndarray = (),
+    bearing: JournalBearing | None = None,
+    rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
     stepControl: StepControl | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     returnDict: bool = False,
-) -> Any:
+) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
 
     Arguments that ``mbs.CreateRevoluteJoint`` also has mean the same, so that one call replaces the other; joint frame
@@ -310,9 +345,10 @@ def CreateLubricatedJoint(
         bearing, housing = importlib.import_module("exudyn_ehd.coupling.items.reduced_bodies").hold_fe_bore(
             mbs, bearing, housing, points[0], rotation
         )
-    if not housing.nodes and getattr(getattr(bearing, "bush", None), "body_forces", False):
+    bush = getattr(bearing, "bush", None)
+    if bush is not None and not housing.nodes and getattr(bush, "body_forces", False):
         # what stands still needs no modes for its acceleration
-        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bearing.bush, body_forces=False))
+        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
     # imported late: the builder compiles kernels, which input errors need not wait for
     model = importlib.import_module("exudyn_ehd.joint.model.build").build_model(bearing)
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)

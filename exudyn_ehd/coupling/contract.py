@@ -15,6 +15,8 @@ from exudyn_ehd.status import Status
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
 NodeIndex, ObjectIndex, MarkerIndex = _indices.NodeIndex, _indices.ObjectIndex, _indices.MarkerIndex
+Data: TypeAlias = dict[str, Any]
+"""An item's data as Exudyn's GetNode, GetObject and GetMarker return them."""
 Index: TypeAlias = SupportsInt
 """Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
 

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -67,7 +66,7 @@ class CarriedOuter:
         when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
     """
 
-    itemNumber: Any
+    itemNumber: Index
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -90,18 +89,18 @@ class FlexibleBush:
     mbs: exu.MainSystem
     mesh: BushMesh
     solid: TotalLagrange
-    objectNumber: Any
+    objectNumber: Index
     nodeNumbers: np.ndarray
     equations: BushEquations
 
     def coordinates(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the object's coordinates q without reference values."""
-        places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
+        places = self.mbs.systemData.GetObjectLTGODE2(int(self.objectNumber))
         return np.asarray(self.mbs.systemData.GetODE2Coordinates(configuration))[places]
 
     def coordinates_t(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:
         """Return the rates dq/dt of the object's coordinates."""
-        places = self.mbs.systemData.GetObjectLTGODE2(self.objectNumber)
+        places = self.mbs.systemData.GetObjectLTGODE2(int(self.objectNumber))
         return np.asarray(self.mbs.systemData.GetODE2Coordinates_t(configuration))[places]
 
     def displacements(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> np.ndarray:

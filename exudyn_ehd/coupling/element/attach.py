@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -15,14 +14,15 @@ from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.carrier import initial_frame
+from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
-from exudyn_ehd.coupling.items.resolve import Item
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
 from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.static_modes import BoreModes
 from exudyn_ehd.status import Status
@@ -34,13 +34,13 @@ NUMERICAL_PERIOD = 1e-6
 
 def attach_bush(
     mbs: exu.MainSystem,
-    model: Any,
+    model: ElasticBearingModel,
     items: tuple[Item, Item],
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
     name: str,
     show: bool,
-) -> tuple[BoreFilmElement, dict[str, Any]]:
+) -> tuple[BoreFilmElement, dict[str, object]]:
     """Add the bush of ``model`` (an `ElasticBearingModel`).
 
     Parameters
@@ -98,10 +98,10 @@ def attach_bush(
     return element, {"massMatrix": _mass_matrix(rigid, mass)}
 
 
-def _settle_modes(mbs: exu.MainSystem, model: Any, sides: tuple[Side, Side]) -> None:
+def _settle_modes(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
     """Let the modes of a reduced body start in equilibrium with the film, unless the scene has set them."""
-    bush: ReducedBore = model.bearing.bush
-    node = sides[0].nodes[-1]
+    bush, node = model.bearing.bush, sides[0].nodes[-1]
+    assert isinstance(bush, ReducedBore)
     if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
         return
     held = bush.held()
@@ -112,17 +112,19 @@ def _settle_modes(mbs: exu.MainSystem, model: Any, sides: tuple[Side, Side]) -> 
 
 def _attach_nodes(
     mbs: exu.MainSystem,
-    model: Any,
+    model: ElasticBearingModel,
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
     name: str,
     show: bool,
 ) -> NodalFilmElement:
+    solid = model.bearing.bush
+    assert isinstance(solid, ANCFBush)
     mount = Mount(sides[0], sides[0].frame.copy(), place[0]) if sides[0].nodes else None
-    bush = add_bush(mbs, f"{name} bush", model.bearing.bush, mount, place, fixed=mount is None, show=show)
+    bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show)
     start = initial_coordinates(model, sides)
     if start is not None:
-        u = displacements_at_rest(model.bearing.bush, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
+        u = displacements_at_rest(solid, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
         for number, shift in zip(bush.nodeNumbers, u):
             if number >= 0 and shift.any():
                 node = NodeIndex(int(number))
@@ -143,7 +145,9 @@ def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     return whole
 
 
-def initial_coordinates(model: Any, sides: tuple[Side, Side], bore: Any = None) -> np.ndarray | None:
+def initial_coordinates(
+    model: ElasticBearingModel, sides: tuple[Side, Side], bore: ModalBore | None = None
+) -> np.ndarray | None:
     """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's

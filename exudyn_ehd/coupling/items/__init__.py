@@ -2,7 +2,10 @@
 
 Module map
 ----------
-resolve         bodies, nodes and markers
+resolve         item numbers: bodies, nodes and markers
+item            what becomes of one
+bodies          nodes and bodies
+markers         rigid markers
 joint_frame     where the joint is
 beams           beams and cables
 reduced_bodies  reduced finite-element bodies

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.items.resolve import Item, body_of_node
+from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.resolve import body_of_node
 from exudyn_ehd.status import InputError
 
 _WHERE = "CreateLubricatedJoint"
@@ -21,7 +21,7 @@ def hold_axially(
     journal: Item,
     points: tuple[np.ndarray, np.ndarray],
     rotation: np.ndarray,
-) -> Any:
+) -> Index:
     """Constrain the relative displacement along the joint axis to its reference value."""
     axial_offset = float(rotation[:, 2] @ (points[1] - points[0]))
     markers = []
@@ -57,7 +57,7 @@ def hold_axially(
     )
 
 
-def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray) -> Any:
+def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray) -> Index:
     """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
     if item.node is None:
         # a ground object of our own at the origin holds the marker

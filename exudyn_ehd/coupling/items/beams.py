@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex
+from exudyn_ehd.coupling.contract import Data, Index, NodeIndex
 from exudyn_ehd.coupling.kinematics import cables
 from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide, SlopeSide
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, NodeSide
@@ -36,7 +35,7 @@ def node_coordinates(mbs: exu.MainSystem, nodes: tuple[Index, ...]) -> tuple[np.
     return reference, initial, velocities
 
 
-def element_nodes(data: dict[str, Any]) -> tuple[Index, ...]:
+def element_nodes(data: Data) -> tuple[Index, ...]:
     """Nodes of an object."""
     numbers = data["nodeNumbers"] if "nodeNumbers" in data else [data["nodeNumber"]]
     return tuple(NodeIndex(int(number)) for number in numbers)

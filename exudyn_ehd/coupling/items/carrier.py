@@ -16,7 +16,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
-from exudyn_ehd.coupling.items.resolve import Item
+from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, detached
 
 _CURRENT, _REFERENCE = exu.ConfigurationType.Current, exu.ConfigurationType.Reference

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import exudyn as exu
 import numpy as np
+from numpy.typing import ArrayLike
 
 from exudyn_ehd.coupling.contract import Geometry, Side
-from exudyn_ehd.coupling.items.resolve import Item, resolve
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
 
 
-def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[Any]) -> tuple[Item, Item]:
+def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[Item, Item]:
     """Housing and journal of ``itemNumbers``; `InputError` for what can't be one."""
     where = f"{_WHERE}.itemNumbers"
     if not isinstance(itemNumbers, (list, tuple)) or len(itemNumbers) != 2:
@@ -36,7 +37,9 @@ def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[Any]) -> tuple[Item,
     return housing, journal
 
 
-def joint_rotation(housing: Item, axis: Any, matrix: Any, use_global: bool) -> np.ndarray:
+def joint_rotation(
+    housing: Item, axis: Sequence[float] | np.ndarray, matrix: ArrayLike | None, use_global: bool
+) -> np.ndarray:
     """Joint frame (3, 3) in the reference configuration, columns x, y, z global."""
     to_global = np.eye(3) if use_global else housing.rotation
     given = np.size(axis) > 0
@@ -67,7 +70,7 @@ def joint_rotation(housing: Item, axis: Any, matrix: Any, use_global: bool) -> n
     return np.column_stack([x, np.cross(z, x), z])
 
 
-def _checked_rotation(matrix: Any) -> np.ndarray:
+def _checked_rotation(matrix: ArrayLike) -> np.ndarray:
     """``rotationMatrixAxes`` as an array (3, 3); `InputError` for what isn't a rotation."""
     where = f"{_WHERE}.rotationMatrixAxes"
     try:
@@ -82,7 +85,9 @@ def _checked_rotation(matrix: Any) -> np.ndarray:
     return rotation
 
 
-def joint_points(housing: Item, journal: Item, position: Any, use_global: bool) -> tuple[np.ndarray, np.ndarray]:
+def joint_points(
+    housing: Item, journal: Item, position: Sequence[float] | np.ndarray, use_global: bool
+) -> tuple[np.ndarray, np.ndarray]:
     """Joint point of either side in the reference configuration, global [m]."""
     if housing.is_marker or journal.is_marker:
         if np.size(position):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from typing import Any
+from typing import TypeVar
 
 import exudyn as exu
 import numpy as np
@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 
 _CURRENT = exu.ConfigurationType.Current
-_EMPTY = np.zeros(0)
+SideType = TypeVar("SideType", bound=Side)
 
 
 class NodeSide:
@@ -247,7 +247,7 @@ class MeshSide(MarkerSide):
         return np.asarray(mbs.ComputeItem(self.marker, item))[:, self.columns]
 
 
-def detached(side: Any) -> Any:
+def detached(side: SideType) -> SideType:
     """Copy of a side with work arrays of its own, for other states than the solver's."""
     out = copy.copy(side)
     for name, value in vars(side).items():

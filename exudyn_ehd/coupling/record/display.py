@@ -14,7 +14,7 @@ import exudyn as exu
 import exudyn.graphics
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Side, Trial
+from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
 from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.status import Status
@@ -60,7 +60,7 @@ class FilmDisplay:
         if modes is not None:
             self.bush = np.tensordot(film.bore.coordinates, modes.displacements, 1)
 
-    def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Any]:
+    def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
         """User function of Exudyn: the list of graphics data at the state that the renderer shows, in global coordinates."""
         model: Any = self.element.model
         if not hasattr(model, "grid"):
@@ -103,7 +103,7 @@ class FilmDisplay:
         return self._housing.frame
 
     @staticmethod
-    def _line(points: np.ndarray) -> Any:
+    def _line(points: np.ndarray) -> Data:
         """Closed line through points (n, 3)."""
         return exudyn.graphics.Lines(np.vstack([points, points[:1]]), color=EDGE)
 

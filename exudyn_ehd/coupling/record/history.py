@@ -71,7 +71,7 @@ class Quantity(enum.Enum):
     BORE_DISPLACEMENT = "bore_displacement"
 
 
-_COLUMNS: dict[str, Any] = {
+_COLUMNS: dict[str, int | slice] = {
     "time": _TIME,
     "motion": slice(_MOTION, _MOTION + 10),
     "eccentricity": slice(_ECCENTRICITY, _ECCENTRICITY + 2),
@@ -190,7 +190,7 @@ class JointHistory(HistoryPictures):
         InputError
             If there is no whole revolution or period.
         """
-        return revolutions(self, period)
+        return revolutions({name: getattr(self, name) for name in _COLUMNS}, period)
 
 
 def load_history(path: str | pathlib.Path) -> JointHistory:
@@ -210,7 +210,7 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
             known = "format" in data.files and str(data["format"]) == _FORMAT
-            values: dict[str, Any] = {name: data[name] for name in data.files if name != "format"} if known else {}
+            values = {name: data[name] for name in data.files if name != "format"} if known else {}
     except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
         known = False
     if not known:
@@ -234,7 +234,7 @@ def make_row(
     motion: np.ndarray,
     ratios: tuple[float, float],
     wrench: np.ndarray,
-    quantities: Mapping[str, Any],
+    quantities: Mapping[str, float],
 ) -> np.ndarray:
     """One row of the record."""
     row = np.empty(_WIDTH)

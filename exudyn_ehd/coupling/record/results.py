@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
+from collections.abc import Sequence
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
@@ -16,10 +18,13 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
+from exudyn_ehd.pictures.protocols import Target
 from exudyn_ehd.status import FilmError, InputError, Status
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
 
 
 class JointResults:
@@ -60,7 +65,7 @@ class JointResults:
             raise FilmError(
                 f"LubricatedJoint.film: no film of joint '{self.name}' at t = {time:.9g} s: {trial.status.advice}"
             )
-        model: Any = self.element.model
+        model = self.element.model
         if isinstance(model, ImpedanceModel):
             film = model.bearing.film
             grid = FiniteLength(n_theta=film.n_theta, n_z=film.n_z, stretch=film.stretch)
@@ -157,42 +162,46 @@ class JointResults:
         """Table of the whole revolutions up to now; see `JointHistory.revolutions`."""
         return self.history.revolutions(period=period)
 
-    def plot_pressure(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the pressure at the last accepted state; see `FilmPictures.plot_pressure`."""
         return self.film().plot_pressure(ax=ax, path=path)
 
-    def plot_gap(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_gap(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the gap at the last accepted state."""
         return self.film().plot_gap(ax=ax, path=path)
 
-    def plot_fill(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_fill(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the film fraction at the last accepted state, for `ElrodAdams`."""
         return self.film().plot_fill(ax=ax, path=path)
 
-    def plot_temperature(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_temperature(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the film's temperature at the last accepted state, with a thermal effect."""
         return self.film().plot_temperature(ax=ax, path=path)
 
-    def plot_contact_pressure(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_contact_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of the pressure of asperities or wall at the last accepted state."""
         return self.film().plot_contact_pressure(ax=ax, path=path)
 
-    def plot_wear_depth(self, *, ax: Any = None, path: Any = None) -> Figure:
+    def plot_wear_depth(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
         """Unrolled map of what was worn off the bore up to the last accepted state."""
         return self.film().plot_wear_depth(ax=ax, path=path)
 
-    def plot_bearing(self, *, camera: tuple[float, float] | None = None, ax: Any = None, path: Any = None) -> Figure:
+    def plot_bearing(
+        self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
+    ) -> Figure:
         """The bearing in space at the last accepted state: pressure, journal, load on the bush."""
         return self.film().plot_bearing(camera=camera, ax=ax, path=path)
 
-    def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Any = None, path: Any = None) -> Figure:
+    def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
         """Orbit of the journal in the clearance circle, over all accepted steps; see `HistoryPictures.plot_orbit`."""
         return self.history.plot_orbit(ends=ends, text=text, ax=ax, path=path)
 
-    def plot_load(self, *, text: str = "", ax: Any = None, path: Any = None) -> Figure:
+    def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """Polar diagram of the load of the journal on the bush, over all accepted steps."""
         return self.history.plot_load(text=text, ax=ax, path=path)
 
-    def plot_traces(self, quantities: Any = ("minimum_gap", "peak_pressure"), **options: Any) -> Figure:
+    def plot_traces(
+        self, quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
+    ) -> Figure:
         """Quantities over time, or over an ``angle``; see `HistoryPictures.plot_traces`."""
         return self.history.plot_traces(quantities, **options)

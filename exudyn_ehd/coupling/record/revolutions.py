@@ -5,13 +5,16 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import pathlib
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.tables import text_table, write_csv
 
+Columns: TypeAlias = Mapping[str, np.ndarray]
+"""The columns of a `JointHistory` by name."""
 TURN = 2.0 * np.pi
 _UNITS = {"start": "s", "end": "s"}
 
@@ -79,13 +82,13 @@ def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
     return np.interp(np.arange(whole + 1.0), reached[first], time[first])
 
 
-def revolutions(history: Any, period: float | None = None) -> Revolutions:
+def revolutions(history: Columns, period: float | None = None) -> Revolutions:
     """Summarise the whole revolutions of a history; see `JointHistory.revolutions`."""
-    time = history.time
+    time = history["time"]
     if time.size < 2:
         raise InputError("JointHistory.revolutions: the history has no steps; run a solver first.")
     if period is None:
-        edges = revolution_times(time, history.motion[:, 8])
+        edges = revolution_times(time, history["motion"][:, 8])
         if edges.size < 2:
             raise InputError(
                 "JointHistory.revolutions: the journal has not turned once against the housing; give period=..., the duration of "
@@ -104,8 +107,8 @@ def revolutions(history: Any, period: float | None = None) -> Revolutions:
     return Revolutions(**{name: np.array([row[name] for row in rows]) for name in rows[0]})
 
 
-def _summary(history: Any, start: float, end: float) -> dict[str, float]:
-    time = history.time
+def _summary(history: Columns, start: float, end: float) -> dict[str, float]:
+    time = history["time"]
     # edges are sums of many steps: a step on an edge belongs to both sides, to rounding
     slack = 1e-9 * (end - start)
     inside = np.flatnonzero((time >= start - slack) & (time <= end + slack))
@@ -120,27 +123,27 @@ def _summary(history: Any, start: float, end: float) -> dict[str, float]:
         v = np.interp(along, time, values)
         return float(np.sum(0.5 * (v[1:] + v[:-1]) * np.diff(along)) / (end - start))
 
-    thinnest = _place(history.minimum_gap, inside, np.nanargmin)
-    highest = _place(history.peak_pressure, inside, np.nanargmax)
+    thinnest = _place(history["minimum_gap"], inside, np.nanargmin)
+    highest = _place(history["peak_pressure"], inside, np.nanargmax)
     return {
         "start": start,
         "end": end,
-        "minimum_gap": history.minimum_gap[thinnest],
+        "minimum_gap": history["minimum_gap"][thinnest],
         "minimum_gap_time": time[thinnest],
-        "minimum_gap_angle": history.minimum_gap_angle[thinnest],
-        "minimum_gap_z": history.minimum_gap_z[thinnest],
-        "peak_pressure": history.peak_pressure[highest],
+        "minimum_gap_angle": history["minimum_gap_angle"][thinnest],
+        "minimum_gap_z": history["minimum_gap_z"][thinnest],
+        "peak_pressure": history["peak_pressure"][highest],
         "peak_pressure_time": time[highest],
-        "peak_angle": history.peak_angle[highest],
-        "largest_eccentricity_ratio": float(history.largest_eccentricity_ratio[inside].max()),
-        "largest_load": float(np.hypot(history.force[inside, 0], history.force[inside, 1]).max()),
-        "mean_power_loss": mean(history.power_loss),
-        "mean_leakage": mean(history.leakage),
-        "mean_friction_torque": mean(history.friction_torque),
+        "peak_angle": history["peak_angle"][highest],
+        "largest_eccentricity_ratio": float(history["largest_eccentricity_ratio"][inside].max()),
+        "largest_load": float(np.hypot(history["force"][inside, 0], history["force"][inside, 1]).max()),
+        "mean_power_loss": mean(history["power_loss"]),
+        "mean_leakage": mean(history["leakage"]),
+        "mean_friction_torque": mean(history["friction_torque"]),
     }
 
 
-def _place(values: np.ndarray, inside: np.ndarray, find: Any) -> int:
+def _place(values: np.ndarray, inside: np.ndarray, find: Callable[[np.ndarray], np.intp]) -> int:
     """Row of the extreme value among those inside; the first of them if the film does not provide the quantity."""
     among = values[inside]
     return int(inside[0] if np.isnan(among).all() else inside[find(among)])

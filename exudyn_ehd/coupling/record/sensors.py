@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
+from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.record.element import Element
 from exudyn_ehd.coupling.record.history import Quantity, column
 
@@ -16,7 +15,7 @@ _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quant
 
 def add_sensor(
     mbs: exu.MainSystem, element: Element, quantity: Quantity, name: str, file_name: str, write_to_file: bool
-) -> Any:
+) -> Index:
     """Add a sensor of one quantity; its values are stored in the sensor.
 
     The sensor looks at the state Exudyn shows it, which after an accepted step is exactly the state the record gets, so
@@ -25,7 +24,11 @@ def add_sensor(
     size = _SIZE.get(quantity, 1)
 
     def read(
-        mbs: exu.MainSystem, t: float, sensorNumbers: Any, factors: Any, configuration: exu.ConfigurationType
+        mbs: exu.MainSystem,
+        t: float,
+        sensorNumbers: list[int],
+        factors: list[float],
+        configuration: exu.ConfigurationType,
     ) -> list[float]:
         row = element.current_row(mbs)
         values = np.full(size, np.nan) if row is None else column(row, quantity)

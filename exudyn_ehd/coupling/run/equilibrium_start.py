@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from collections.abc import Sequence
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
-from exudyn_ehd.joint.solved_film import History
+    last = evaluation.history()
+    assert last is not None
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
@@ -20,7 +22,9 @@ _INITIAL = exu.ConfigurationType.Initial
 _WHERE = "LubricatedJoint.place_in_equilibrium"
 
 
-def place(mbs: exu.MainSystem, element: FilmElement, name: str, load: Any, speed: float | None) -> EquilibriumResult:
+def place(
+    mbs: exu.MainSystem, element: FilmElement, name: str, load: Sequence[float] | np.ndarray, speed: float | None
+) -> EquilibriumResult:
     """Move the journal's node to its equilibrium; see `LubricatedJoint.place_in_equilibrium`."""
     journal = element.sides[1]
     if not mbs.systemIsConsistent:
@@ -55,7 +59,7 @@ def place(mbs: exu.MainSystem, element: FilmElement, name: str, load: Any, speed
     coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
     # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
     rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
-    bore: Any = result.film.bore_coordinates
+    bore = np.zeros(0) if result.film.bore_coordinates is None else result.film.bore_coordinates
     for node in getattr(element, "bore_nodes", ()):
         where = np.array(mbs.systemData.GetNodeLTGODE2(int(node)), dtype=int)
         coordinates[where], bore = bore[: where.size], bore[where.size :]
@@ -78,10 +82,11 @@ def _motion(mbs: exu.MainSystem, element: FilmElement, q: np.ndarray, q_t: np.nd
     return motion
 
 
-def _memory(model: Any, motion: np.ndarray, result: EquilibriumResult) -> History | None:
+def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) -> History | None:
     """What the steady film at ``motion`` (10,) remembers; None without effects that do."""
     if not model.remembers:
         return None
+    assert isinstance(model, BearingModel)
     bore = result.film.bore_coordinates
     whole = motion if bore is None else np.concatenate((motion, bore, np.zeros_like(bore)))
     first = model.initial_history(whole)
@@ -90,6 +95,7 @@ def _memory(model: Any, motion: np.ndarray, result: EquilibriumResult) -> Histor
     if first is None or evaluation.status is not Status.CONVERGED:
         return first
     last = evaluation.history()
+    assert last is not None
     temperature = first.temperature if settled is None else settled.temperature
     return dataclasses.replace(
         first, mass=last.mass, deflection=last.deflection, temperature=temperature, density=last.density

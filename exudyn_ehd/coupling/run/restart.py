@@ -9,11 +9,15 @@ import pathlib
 import zipfile
 import zlib
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import Data
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import InputError
@@ -47,6 +51,32 @@ class JointState:
     rows: np.ndarray
 
 
+class Joint(Protocol):
+    """What runs ask of a lubricated joint."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+    @property
+    def bearing(self) -> JournalBearing:
+        """What was given as bearing."""
+
+    @property
+    def element(self) -> FilmElement:
+        """The film between the two frames."""
+
+    @property
+    def history(self) -> JointHistory:
+        """All accepted steps."""
+
+    def state(self) -> JointState:
+        """Memory and record at the last accepted state."""
+
+    def restore_state(self, state: JointState) -> None:
+        """Let the next run go on from a state."""
+
+
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class SystemState:
     """The last accepted state of a system with its lubricated joints; see `SaveState` and `SolveDynamic`.
@@ -71,7 +101,7 @@ class SystemState:
     joints: tuple[JointState, ...]
 
     @classmethod
-    def of(cls, mbs: exu.MainSystem, joints: Sequence[Any]) -> SystemState:
+    def of(cls, mbs: exu.MainSystem, joints: Sequence[Joint]) -> SystemState:
         """Take the last accepted state of a system and its joints after a run."""
         solver = mbs.sys.get("dynamicSolver")
         if not mbs.systemIsConsistent or solver is None:
@@ -91,7 +121,7 @@ class SystemState:
             joints=tuple(joint.state() for joint in joints),
         )
 
-    def put_into(self, mbs: exu.MainSystem, joints: Sequence[Any]) -> None:
+    def put_into(self, mbs: exu.MainSystem, joints: Sequence[Joint]) -> None:
         """Make this the initial state of a system of the same build, and of its joints."""
         data, initial = mbs.systemData, exu.ConfigurationType.Initial
         own = [np.size(part) for part in data.GetSystemState(initial)]
@@ -184,7 +214,7 @@ def load_state(path: str | pathlib.Path) -> SystemState:
         ) from None
 
 
-def _joint(arrays: dict[str, np.ndarray], k: int, head: dict[str, Any]) -> JointState:
+def _joint(arrays: dict[str, np.ndarray], k: int, head: Data) -> JointState:
     memory = None
     if head["memory"]:
         stored = {field.name: arrays.get(f"{k} {field.name}") for field in dataclasses.fields(History)}
@@ -197,16 +227,16 @@ def _joint(arrays: dict[str, np.ndarray], k: int, head: dict[str, Any]) -> Joint
     )
 
 
-def digest(bearing: Any) -> str:
+def digest(bearing: JournalBearing) -> str:
     """Short digest of a bearing's description; meshes of bushes count by their type alone."""
-    described = bearing
+    described = repr(bearing)
     bush = getattr(bearing, "bush", None)
     if bush is not None and hasattr(bush, "mesh"):
-        described = (dataclasses.replace(bearing, bush=None), type(bush).__name__)
-    return hashlib.sha256(repr(described).encode()).hexdigest()[:16]
+        described = repr((dataclasses.replace(bearing, bush=None), type(bush).__name__))
+    return hashlib.sha256(described.encode()).hexdigest()[:16]
 
 
-def check_owner(joint: Any, state: JointState) -> None:
+def check_owner(joint: Joint, state: JointState) -> None:
     """Refuse a state of another joint or bearing."""
     if state.name != joint.name:
         raise InputError(

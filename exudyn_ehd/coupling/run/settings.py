@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import exudyn as exu
 
 from exudyn_ehd.status import InputError, require_bool, require_number
 
 
 def ConfigureSolver(
-    simulationSettings: Any,
+    simulationSettings: exu.SimulationSettings,
     relativeTolerance: float = 1e-6,
     useModifiedNewton: bool = False,
     absoluteTolerance: float = 1e-8,
-) -> Any:
+) -> exu.SimulationSettings:
     """Set what a model with lubricated joints needs in dynamic and static solves; everything else stays.
 
     - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries

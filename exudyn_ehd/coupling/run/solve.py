@@ -5,13 +5,12 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.run.restart import SystemState, load_state
-from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
+from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
 from exudyn_ehd.status import EHDError, InputError, RunError
 
 JOINTS = "lubricatedJoints"
@@ -25,7 +24,7 @@ def require_system(where: str, mbs: exu.MainSystem) -> None:
         )
 
 
-def require_settings(where: str, settings: Any) -> None:
+def require_settings(where: str, settings: object) -> None:
     """Refuse what are no settings of Exudyn."""
     if not isinstance(settings, exu.SimulationSettings):
         raise InputError(
@@ -33,17 +32,17 @@ def require_settings(where: str, settings: Any) -> None:
         )
 
 
-def joints_of(mbs: exu.MainSystem) -> list[Any]:
+def joints_of(mbs: exu.MainSystem) -> list[Joint]:
     """The lubricated joints of a system, in the order in which they were created."""
     return mbs.variables.setdefault(JOINTS, [])
 
 
 def SolveDynamic(
     mbs: exu.MainSystem,
-    simulationSettings: Any,
+    simulationSettings: exu.SimulationSettings,
     *,
     restart: SystemState | str | pathlib.Path | None = None,
-    **options: Any,
+    **options: object,
 ) -> bool:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
 
@@ -97,7 +96,7 @@ def SolveDynamic(
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
 
-def SolveStatic(mbs: exu.MainSystem, simulationSettings: Any, **options: Any) -> bool:
+def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings, **options: object) -> bool:
     """``mbs.SolveStatic`` with this package's errors; see `SolveDynamic`.
 
     Parameters
@@ -192,7 +191,7 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
     return "".join(parts)
 
 
-def start_guess(mbs: exu.MainSystem, before: Any = None) -> StartGuess:
+def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:
     """The start of Newton's method for the joints of a system, ahead of the run; ``before`` is the user's own function."""
     elements = [joint.element for joint in joints_of(mbs)]
     bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
@@ -201,7 +200,7 @@ def start_guess(mbs: exu.MainSystem, before: Any = None) -> StartGuess:
 
 
 @contextmanager
-def _better_start(mbs: exu.MainSystem, options: dict[str, Any]) -> Iterator[None]:
+def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
     # without a stored solver its step size and parameters are not known
     if not options.get("storeSolver", True):
@@ -218,7 +217,7 @@ def _better_start(mbs: exu.MainSystem, options: dict[str, Any]) -> Iterator[None
 
 
 @contextmanager
-def _restarted(mbs: exu.MainSystem, settings: Any, state: SystemState) -> Iterator[None]:
+def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: SystemState) -> Iterator[None]:
     """Put a state into a system for the run within; user functions and settings are given back afterwards."""
     if not mbs.systemIsConsistent:
         raise InputError("SolveDynamic.restart: the system is not assembled; call mbs.Assemble() first.")

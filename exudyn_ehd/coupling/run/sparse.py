@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -37,6 +37,9 @@ from exudyn_ehd.status import require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
+
+# Exudyn's stubs lack the self of its solvers' methods.
+Solver: TypeAlias = Any
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -106,7 +109,7 @@ class SparseRun:
 
 def SolveDynamicSparse(
     mbs: exu.MainSystem,
-    simulationSettings: Any | None = None,
+    simulationSettings: exu.SimulationSettings | None = None,
     *,
     reuse: FactorReuse | None = None,
 ) -> SparseRun:
@@ -138,8 +141,7 @@ def SolveDynamicSparse(
     loop = _Newton(
         matrix=SystemMatrix.of(mbs), guess=start_guess(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run
     )
-    # Exudyn's stubs lack the self of its methods
-    solver: Any = exu.MainSolverImplicitSecondOrder()
+    solver: Solver = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
@@ -171,7 +173,7 @@ class _Newton:
     baseline: int = 0
     excess: int = 0
 
-    def __call__(self, solver: Any, mbs: exu.MainSystem, settings) -> bool:
+    def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton = settings.timeIntegration.newton
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, mbs.systemData.GetTime(), 0, 0)
@@ -206,7 +208,7 @@ class _Newton:
         self.run.rejected += 1
         return False
 
-    def _factorise(self, solver, mbs) -> bool:
+    def _factorise(self, solver: Solver, mbs: exu.MainSystem) -> bool:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
@@ -227,7 +229,7 @@ class _Newton:
         self.run.seconds_jacobian += time.perf_counter() - start
         return True
 
-    def _solve(self, solver: Any, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
+    def _solve(self, solver: Solver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
         """Newton's step: with the factor, or with it and the films' operators."""
         assert self.factor is not None
         films = self.matrix.film_operators(mbs, solver)
@@ -246,7 +248,7 @@ class _Newton:
         y, _ = gmres(operator, residual, rtol=FILM_TOLERANCE, atol=0.0, restart=FILM_PRODUCTS, maxiter=1)
         return factor.solve(y)
 
-    def _update(self, solver, mbs) -> None:
+    def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
         assert self.factor is not None
         d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
@@ -255,8 +257,8 @@ class _Newton:
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
         square = solver.newmarkBeta * h * h
         dq = d[:n]
-        data.SetODE2Coordinates(data.GetODE2Coordinates() - dq)
-        data.SetODE2Coordinates_t(data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq)
-        data.SetODE2Coordinates_tt(data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square))
+        data.SetODE2Coordinates((data.GetODE2Coordinates() - dq).tolist())
+        data.SetODE2Coordinates_t((data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq).tolist())
+        data.SetODE2Coordinates_tt((data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square)).tolist())
         if len(d) > n:
-            data.SetAECoordinates(data.GetAECoordinates() - d[n:] / square)
+            data.SetAECoordinates((data.GetAECoordinates() - d[n:] / square).tolist())

@@ -20,7 +20,7 @@ themselves.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import Any
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -29,6 +29,8 @@ from exudyn_ehd.coupling.contract import NodeIndex
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
+UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
+"""Exudyn's user function before a residual: system, time, Newton iteration, discontinuous iteration."""
 # Largest change of the accelerations from step to step with which they count as lasting, share of the last ones.
 LARGEST_CHANGE = 0.5
 # Largest change of their change with which they go on in a line, share of their change.
@@ -47,9 +49,7 @@ class StartGuess:
         Numbers of the nodes that hold the deformation of bushes: without inertia they follow the film at once.
     """
 
-    def __init__(
-        self, mbs: exu.MainSystem, before: Callable[[Any, float, int, int], Any] | None, bushes: Collection[int] = ()
-    ) -> None:
+    def __init__(self, mbs: exu.MainSystem, before: UserFunction | None, bushes: Collection[int] = ()) -> None:
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
         self.bushes = bushes
@@ -68,7 +68,7 @@ class StartGuess:
         if self.before is not None:
             self.before(mbs, t, iteration, discontinuous)
 
-    def _set_start(self, mbs: exu.MainSystem, solver: Any) -> None:
+    def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
         start = data.GetTime(_START_OF_STEP)
         if not self.past:
@@ -87,9 +87,9 @@ class StartGuess:
         h = solver.it.currentStepSize
         change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
         q, q_t, q_tt = data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE2Coordinates_tt()
-        data.SetODE2Coordinates(np.array(q) + solver.newmarkBeta * h * h * change, _CURRENT)
-        data.SetODE2Coordinates_t(np.array(q_t) + solver.newmarkGamma * h * change, _CURRENT)
-        data.SetODE2Coordinates_tt(np.array(q_tt) + self.guess, _CURRENT)
+        data.SetODE2Coordinates((np.array(q) + solver.newmarkBeta * h * h * change).tolist(), _CURRENT)
+        data.SetODE2Coordinates_t((np.array(q_t) + solver.newmarkGamma * h * change).tolist(), _CURRENT)
+        data.SetODE2Coordinates_tt((np.array(q_tt) + self.guess).tolist(), _CURRENT)
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -36,7 +35,7 @@ class SystemMatrix:
     coordinates: int
     constraints: int
     parts: tuple[Callable, ...]
-    films: tuple[tuple[Any, np.ndarray], ...]
+    films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
 
     @classmethod
     def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
@@ -51,7 +50,7 @@ class SystemMatrix:
                     "mbs.SolveDynamic."
                 )
         n = len(data.GetODE2Coordinates())
-        films: list[tuple[Any, np.ndarray]] = []
+        films: list[tuple[NodalFilmElement, np.ndarray]] = []
         parts: list[Callable] = [
             _euler_parameters(mbs, NodeIndex(number), n)
             for number in range(data.NumberOfNodes())
@@ -76,7 +75,9 @@ class SystemMatrix:
                 parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
         return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
 
-    def film_operators(self, mbs: exu.MainSystem, solver: Any) -> list[tuple[np.ndarray, Callable]]:
+    def film_operators(
+        self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder
+    ) -> list[tuple[np.ndarray, Callable]]:
         """Places and operators of the films on nodal bushes at the current state, scaled by beta h^2."""
         if not self.films:
             return []
@@ -86,7 +87,7 @@ class SystemMatrix:
         made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
         return [(places, operator) for places, operator in made if operator is not None]
 
-    def assemble(self, mbs: exu.MainSystem, solver: Any) -> csc_matrix:
+    def assemble(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> csc_matrix:
         """Return the iteration matrix of the current state, scaled by beta h^2."""
         h = solver.it.currentStepSize
         factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)

@@ -1,0 +1,195 @@
+"""Nodes and bodies of a scene, rigid and flexible, as items of a joint."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
+from exudyn_ehd.coupling.items import beams
+from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics.beam_sides import BeamSide
+from exudyn_ehd.status import InputError
+
+NODE_KINDS = {
+    "RigidBodyEP": rigid_nodes.EULER_PARAMETERS,
+    "RigidBodyRxyz": rigid_nodes.TAIT_BRYAN,
+    "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
+    "RigidBody2D": rigid_nodes.PLANAR,
+}
+_MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
+
+
+def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
+    """Node of a rigid body, a beam or a cable."""
+    data = mbs.GetNode(node)
+    if data["nodeType"] in SLOPE_NODES:
+        return cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
+    if data["nodeType"] == "PointSlope23":
+        return _slope_pair_item(mbs, where, node)
+    kind = NODE_KINDS.get(data["nodeType"])
+    if kind is None:
+        raise InputError(
+            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a node of a rigid body, a beam or a cable, or a "
+            "rigid marker on the flexible body."
+        )
+    reference = np.array(data["referenceCoordinates"], dtype=float)
+    nt = 2 if kind == rigid_nodes.PLANAR else 3
+    position = np.zeros(3)
+    position[:nt] = reference[:nt]
+    rotation, _ = rigid_nodes.node_rotation(kind, reference[nt:])
+    return Item(
+        position=position,
+        rotation=rotation,
+        is_marker=False,
+        kind=kind,
+        planar=kind == rigid_nodes.PLANAR,
+        node=node,
+        nodes=(node,),
+        node_position=position,
+        node_rotation=rotation,
+        reference_coordinates=reference,
+        initial_coordinates=np.array(data["initialCoordinates"], dtype=float),
+        initial_velocities=np.array(data["initialVelocities"], dtype=float),
+    )
+
+
+def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
+    """Body or ground."""
+    data = mbs.GetObject(body)
+    kind = data["objectType"]
+    if kind == "Ground":
+        return Item(
+            position=np.array(data["referencePosition"], dtype=float),
+            rotation=np.array(data["referenceRotation"], dtype=float),
+            is_marker=False,
+            kind=rigid_nodes.GROUND,
+        )
+    if kind in ("RigidBody", "RigidBody2D"):
+        return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
+    nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
+    if kind in CABLES:
+        return cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
+    if kind in EXACT_BEAMS:
+        return beam_item(mbs, where, nodes, float(data["length"]))
+    if kind in ("ObjectANCFBeam", "RotationalMass1D"):
+        output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+        place = [
+            mbs.GetObjectOutputBody(body, o, [0.0] * 3, reference) for o in (output.Position, output.RotationMatrix)
+        ]
+        return Item(
+            position=np.array(place[0]),
+            rotation=np.array(place[1]).reshape(3, 3),
+            is_marker=False,
+            kind=None,
+            nodes=nodes,
+            build=lambda point, rotation: beams.marker_on_body(mbs, where, body, nodes, point, rotation),
+        )
+    if kind == "FFRFreducedOrder":
+        return _reduced_body_item(mbs, where, body, nodes)
+    hints = {
+        "KinematicTree": "give MarkerKinematicTreeRigid on one of its links",
+        "FFRF": _MESH_HINT,
+        "GenericODE2": _MESH_HINT,
+    }
+    raise InputError(
+        f"{where}: an object of type {kind} is no rigid body; "
+        + hints.get(kind, "give a rigid body, a beam or cable element, a ground object, or a rigid marker on it")
+        + "."
+    )
+
+
+def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...]) -> Item:
+    """Reduced finite-element body, which can hold a film in its bore and nothing else without a marker."""
+    rigid = node_item(mbs, where, nodes[0])
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
+
+    def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
+        raise InputError(
+            f"{where}: an object of type FFRFreducedOrder is no rigid body; {_MESH_HINT}, or give the bearing bush=FEBore(fem=...) for a housing "
+            "whose bore deforms under the film."
+        )
+
+    return dataclasses.replace(
+        rigid,
+        kind=None,
+        node_kind=rigid.kind,
+        body=body,
+        nodes=nodes,
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+        build=refuse,
+    )
+
+
+def _slope_pair_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
+    """Node of an ANCF beam."""
+    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    place = np.array(mbs.GetNodeOutput(node, output.Position, reference))
+    frame = np.array(mbs.GetNodeOutput(node, output.RotationMatrix, reference)).reshape(3, 3)
+    return Item(
+        position=place,
+        rotation=frame,
+        is_marker=False,
+        kind=None,
+        nodes=(node,),
+        build=lambda point, rotation: beams.marker_on_node(mbs, where, node, place, frame, point, rotation),
+    )
+
+
+def cable_item(
+    mbs: exu.MainSystem,
+    where: str,
+    nodes: tuple[Index, ...],
+    dimension: int,
+    length: float | None,
+    x: float | None = None,
+) -> Item:
+    """Node (``length`` None) or element of cables; ``x`` is the place of a marker along the element."""
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
+    place, slope = beams.cable_maps(dimension, length, 0.0 if x is None else x)
+    return Item(
+        position=place @ reference,
+        rotation=beams.frame_along(slope @ reference, dimension == 2),
+        is_marker=x is not None,
+        kind=None,
+        planar=dimension == 2,
+        nodes=nodes,
+        build=lambda point, rotation: beams.cable_side(where, nodes, reference, length, x, point, rotation),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+    )
+
+
+def beam_item(
+    mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
+) -> Item:
+    """Element of a geometrically exact beam; ``transform`` (4, 4) that of a marker in the element's local coordinates."""
+    ends = beams.beam_ends(mbs, nodes, NODE_KINDS)
+    reference, initial, velocities = beams.node_coordinates(mbs, nodes)
+    share = None if transform is None else 0.5 + float(transform[0, 3]) / length
+    position = 0.5 * (ends[0].frame[:, 3] + ends[1].frame[:, 3])
+    rotation = BeamSide(ends, 0.5 if share is None else share, position, np.eye(3)).section()
+    if transform is not None:
+        assert share is not None
+        position = (1.0 - share) * ends[0].frame[:, 3] + share * ends[1].frame[:, 3]
+        position = position + rotation[:, 1:] @ transform[1:3, 3]
+        rotation = rotation @ transform[:3, :3]
+    return Item(
+        position=position,
+        rotation=rotation,
+        is_marker=transform is not None,
+        kind=None,
+        planar=ends[0].kind == rigid_nodes.PLANAR,
+        nodes=nodes,
+        build=lambda point, joint: beams.beam_side(where, ends, share, point, joint),
+        reference_coordinates=reference,
+        initial_coordinates=initial,
+        initial_velocities=velocities,
+    )

@@ -1,0 +1,112 @@
+"""Rigid markers of a scene as items of a joint."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import Data, Index, NodeIndex, Side
+from exudyn_ehd.coupling.items import beams
+from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
+from exudyn_ehd.coupling.items.bodies import NODE_KINDS, beam_item, body_item, cable_item, node_item
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, MeshSide, NodeSide, TreeSide
+from exudyn_ehd.status import InputError
+
+_RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
+
+
+def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
+    """Rigid marker, or marker of a position on a cable."""
+    data = mbs.GetMarker(marker)
+    item = _known_marker_item(mbs, where, data)
+    if item is not None:
+        return dataclasses.replace(item, marker=marker, is_marker=True)
+    if data["markerType"] not in _RIGID_MARKERS:
+        raise InputError(
+            f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. MarkerBodyRigid or "
+            "MarkerNodeRigid."
+        )
+    reference, output = exu.ConfigurationType.Reference, exu.OutputVariableType
+    rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)
+    make, nodes = _marker_side(mbs, marker, data)
+    return Item(
+        position=np.array(mbs.GetMarkerOutput(marker, output.Position, reference), dtype=float),
+        rotation=rotation,
+        is_marker=True,
+        kind=None,
+        inner=data["markerType"] in ("KinematicTreeRigid", "SuperElementRigid"),
+        marker=marker,
+        nodes=nodes,
+        build=lambda point, joint: make(rotation.T @ joint),
+    )
+
+
+def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | None:
+    """Item of a marker on a body or node whose kinematics are known here; None for any other."""
+    kind = data["markerType"]
+    if kind in ("NodeRigid", "NodePosition"):
+        node = NodeIndex(int(data["nodeNumber"]))
+        node_type = mbs.GetNode(node)["nodeType"]
+        if node_type in SLOPE_NODES:
+            return cable_item(mbs, where, (node,), SLOPE_NODES[node_type], None, 0.0)
+        if kind == "NodeRigid" and node_type in NODE_KINDS:
+            return _transformed(node_item(mbs, where, node), data)
+    if kind in ("BodyRigid", "BodyPosition"):
+        body = mbs.GetObject(data["bodyNumber"])
+        if body["objectType"] in CABLES:
+            local = np.array(data["localHT"])[:3, 3] if kind == "BodyRigid" else np.array(data["localPosition"])
+            item = cable_item(
+                mbs,
+                where,
+                beams.element_nodes(body),
+                CABLES[body["objectType"]],
+                float(body["length"]),
+                float(local[0]),
+            )
+            turn = np.array(data["localHT"])[:3, :3] if kind == "BodyRigid" else np.eye(3)
+            return dataclasses.replace(
+                item, position=item.position + item.rotation[:, 1:] @ local[1:], rotation=item.rotation @ turn
+            )
+        if kind == "BodyRigid" and body["objectType"] in EXACT_BEAMS:
+            return beam_item(mbs, where, beams.element_nodes(body), float(body["length"]), np.array(data["localHT"]))
+        if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
+            return _transformed(body_item(mbs, where, data["bodyNumber"]), data)
+    return None
+
+
+def _transformed(base: Item, data: Data) -> Item:
+    transform = np.array(data["localHT"], dtype=float)
+    return dataclasses.replace(
+        base,
+        position=base.position + base.rotation @ transform[:3, 3],
+        rotation=base.rotation @ transform[:3, :3],
+    )
+
+
+def _marker_side(
+    mbs: exu.MainSystem, marker: Index, data: Data
+) -> tuple[Callable[[np.ndarray], Side], tuple[Index, ...]]:
+    """Function from the rotation of the joint frame in the marker's to the side, and the nodes it depends on."""
+    if "nodeNumber" in data:
+        nodes: tuple[Index, ...] = (NodeIndex(int(data["nodeNumber"])),)
+        return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
+    body = mbs.GetObject(data["bodyNumber"] if "bodyNumber" in data else data["objectNumber"])
+    nodes = beams.element_nodes(body)
+    kind = data["markerType"]
+    if kind == "KinematicTreeRigid":
+        return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
+    if kind == "SuperElementRigid" and body["objectType"] in ("FFRF", "FFRFreducedOrder"):
+        frame = node_item(mbs, "", nodes[0]).side(np.zeros(3), np.eye(3))
+        assert isinstance(frame, NodeSide)
+        frame.rho[:] = 0.0
+        return (lambda rotation: FloatingSide(marker, list(nodes), rotation, frame)), nodes
+    if kind == "SuperElementRigid" and all(mbs.GetNode(node)["nodeType"] == "Point" for node in nodes):
+        own = np.array(data["meshNodeNumbers"], dtype=int)
+        used = tuple(nodes[i] for i in own)
+        columns = (3 * own[:, None] + np.arange(3)).ravel()
+        return (lambda rotation: MeshSide(marker, list(used), rotation, columns)), used
+    return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes
