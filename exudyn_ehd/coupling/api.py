@@ -95,9 +95,10 @@ class LubricatedJoint(JointResults):
         """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
 
         Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at the end of the record
-        goes on with it and with what the film remembers, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new
-        one, also a run at that time from the old initial values.
+        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
+        the end of the record goes on with it and with what the film remembers, e.g. after
+        ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new one, also a run at that time from the
+        old initial values.
         """
         return self.element.steps.history(self.mbs)
 
@@ -106,9 +107,9 @@ class LubricatedJoint(JointResults):
     ) -> EquilibriumResult:
         """Let the next run start where the film carries a steady load, with the film in its steady state.
 
-        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing but for its spin.
-        Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and loads that depend on the
-        place, settle in a static solve (`SolveStatic`) or a ramp of the load.
+        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing but for its
+        spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and
+        loads that depend on the place, settle in a static solve (`SolveStatic`) or a ramp of the load.
 
         Parameters
         ----------
@@ -144,7 +145,9 @@ class LubricatedJoint(JointResults):
         return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
 
     def restore_state(self, state: JointState) -> None:
-        """Let the next run, if it starts at the state's time, go on with its memory and record; `SolveDynamic` does it with ``restart``.
+        """Let the next run, if it starts at the state's time, go on with its memory and record.
+
+        `SolveDynamic` does it with ``restart``.
 
         Raises
         ------
@@ -157,9 +160,10 @@ class LubricatedJoint(JointResults):
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
 
-        The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are evaluated again,
-        on a model of their own: the joint is not touched. What the record holds counts as recorded; what it takes a field for (cavitated
-        share, grid, heat of a field) is that of a flexible bore settled under the film.
+        The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are
+        evaluated again, on a model of their own: the joint is not touched. What the record holds counts as recorded;
+        what it takes a field for (cavitated share, grid, heat of a field) is that of a flexible bore settled under the
+        film.
 
         Parameters
         ----------
@@ -277,11 +281,11 @@ def CreateLubricatedJoint(
     name : str
         Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
-        Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact beams and
-        cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker (MarkerIndex: on any of these,
-        on a link of a kinematic tree, on a superelement). Beams are joined where ``position`` lies along the element. A cable turns
-        with its slope; it has no roll: spatial ones take joints along the cable, without spin of their own, and across it, for motion
-        in the plane normal to the axis.
+        Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact
+        beams and cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker
+        (MarkerIndex: on any of these, on a link of a kinematic tree, on a superelement). Beams are joined where
+        ``position`` lies along the element. A cable turns with its slope; it has no roll: spatial ones take joints
+        along the cable, without spin of their own, and across it, for motion in the plane normal to the axis.
     position : (3,) [m]
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
@@ -296,7 +300,8 @@ def CreateLubricatedJoint(
     axial : Free or Held
         Whether the journal may slide along the axis.
     stepControl : StepControl or None
-        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are halved.
+        Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
+        halved.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
@@ -329,7 +334,8 @@ def CreateLubricatedJoint(
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:
         raise InputError(
-            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: choose another."
+            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
+            "choose another."
         )
     require_vector(f"{_WHERE}.color", color, 4)
     if bearing is None:

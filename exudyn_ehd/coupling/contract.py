@@ -83,7 +83,7 @@ class Trial:
 
 
 class JointModel(Protocol):
-    """A film: a pure function of the motion (10,) of the journal axis in the housing's joint frame, and of its memory."""
+    """A film: a pure function of its memory and of the motion (10,) of the journal axis in the joint frame."""
 
     @property
     def bearing(self) -> JournalBearing: ...

@@ -49,7 +49,7 @@ class BushEquations:
     def motion(
         self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at Exudyn's state in ``configuration``."""
+        """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at a state of Exudyn."""
         u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)
         u[self._moving] = q[: self._count].reshape(-1, 3)
         v[self._moving] = q_t[: self._count].reshape(-1, 3)

@@ -60,10 +60,11 @@ class CarriedOuter:
     Parameters
     ----------
     itemNumber : exudyn.ObjectIndex, NodeIndex or MarkerIndex
-        The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar bodies, beams and cables,
-        links of kinematic trees, finite-element bodies. Its own mass and inertia stay untouched: the bush adds its own. With a Lie group node
-        (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
-        when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
+        The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar
+        bodies, beams and cables, links of kinematic trees, finite-element bodies. Its own mass and inertia stay
+        untouched: the bush adds its own. With a Lie group node (RotationRotationVector) use full Newton: Exudyn 1.13.6
+        was seen to end at a wrong attitude, without a message, when its modified Newton restarts often. Euler
+        parameters and Rxyz show no such effect.
     """
 
     itemNumber: Index
@@ -186,9 +187,18 @@ def CreateFlexibleBush(
     velocity = require_vector("CreateFlexibleBush.initialVelocity", initialVelocity, 3, "m/s")
     omega = require_vector("CreateFlexibleBush.initialAngularVelocity", initialAngularVelocity, 3, "rad/s")
     return add_bush(
-        mbs, name, bush, carry, (place, rotation), fixed=isinstance(outer, FixedOuter), supports=supports, loads=loads,
-        start=(velocity, omega), show=show, color=color,
-    )  # fmt: skip
+        mbs,
+        name,
+        bush,
+        carry,
+        (place, rotation),
+        fixed=isinstance(outer, FixedOuter),
+        supports=supports,
+        loads=loads,
+        start=(velocity, omega),
+        show=show,
+        color=color,
+    )
 
 
 def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np.ndarray) -> Mount:
@@ -199,7 +209,8 @@ def _carried(mbs: exu.MainSystem, number: Index, place: np.ndarray, rotation: np
         raise InputError(f"{where} must be a body that moves, got ground; use FixedOuter() for ground.")
     if item.planar and abs(rotation[2, 2]) < 1.0 - 1e-12:
         raise InputError(
-            f"CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis {rotation[:, 2]}."
+            "CreateFlexibleBush.rotationMatrix must keep z normal to the plane of a planar carrier, got the bush axis "
+            f"{rotation[:, 2]}."
         )
     side = item.side(item.position if item.is_marker else place, rotation)
     return Mount(side, initial_frame(mbs, item, side), item.position if item.is_marker else place)

@@ -1,8 +1,8 @@
 """The accepted steps of one joint: recorded exactly as Exudyn accepted them, and remembered by the film.
 
-Exudyn has no call for an accepted step. A step is accepted when the start of the step has moved on: the state at the new start is then evaluated
-once more, recorded, watched for runs that ring or chatter, and what the film remembers there serves the next step. A rejected
-step leaves nothing behind.
+Exudyn has no call for an accepted step. A step is accepted when the start of the step has moved on: the state at the
+new start is then evaluated once more, recorded, watched for runs that ring or chatter, and what the film remembers
+there serves the next step. A rejected step leaves nothing behind.
 """
 
 from __future__ import annotations
@@ -167,9 +167,10 @@ class AcceptedSteps:
         return False
 
     def _goes_on(self, mbs: exu.MainSystem, start: float) -> bool:
-        """Whether a run goes on with the record: it starts behind it, and elsewhere than the run before, whose end is now the initial state.
+        """Whether a run goes on with the record.
 
-        Where nothing has moved either run starts where the other ended.
+        It starts behind it, and elsewhere than the run before: that one's end is now the initial state. Where nothing
+        has moved either run starts where the other ended.
         """
         before, self._first = self._first, self.film.read(mbs, _START_OF_STEP)[0]
         return start > self._record.last_time and (self._first != before or self.film.seen == before)

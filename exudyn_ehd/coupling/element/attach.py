@@ -137,8 +137,8 @@ def _attach_nodes(
 def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
 
-    A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be felt;
-    only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
+    A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be
+    felt; only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
     """
     whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass
@@ -150,8 +150,8 @@ def initial_coordinates(
 ) -> np.ndarray | None:
     """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
 
-    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a flooded film's
-    first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
+    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
+    flooded film's first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
     """
     bearing = dataclasses.replace(model.bearing, thermal=None)
     if bearing.cavitation.conserves_mass:

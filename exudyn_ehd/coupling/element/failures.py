@@ -10,7 +10,8 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.joint.static.steady_temperature import HOTTEST, WAY_OUT
 from exudyn_ehd.status import FilmError, Status
 
-# Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are none.
+# Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are
+# none.
 DEEPEST = 2.0
 
 
@@ -41,16 +42,17 @@ class Failures:
         return FilmError(f"LubricatedJoint '{self.name}' {message}")
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
-        """The steps (s) of an explicit solver are beyond its stability limit; the last one's rates miss its motion by ``miss`` (m)."""
+        """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""
         assert trial.evaluation is not None
         damping = -trial.evaluation.tangent()[:2, 4:6]
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,
-            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last velocities miss its "
-            f"last displacement by {miss:.3g} m; {self._place(trial.motion)}with the journal's mass m and the film's damping C, here about "
-            f"{largest:.2g} N s/m, steps must stay below 2 m / C with forward Euler and 2.8 m / C with RK44, tilting motions alike: use "
-            "smaller steps, DOPRI5 with its automatic steps, or an implicit solver.",
+            f"the explicit solver's step of {step:.3g} s is too large for this film, the journal chatters: its last "
+            f"velocities miss its last displacement by {miss:.3g} m; {self._place(trial.motion)}with the journal's "
+            f"mass m and the film's damping C, here about {largest:.2g} N s/m, steps must stay below 2 m / C with "
+            "forward Euler and 2.8 m / C with RK44, tilting motions alike: use smaller steps, DOPRI5 with its "
+            "automatic steps, or an implicit solver.",
         )
 
     def pressed_through(self, time: float, trial: Trial) -> FilmError | None:
@@ -63,8 +65,8 @@ class Failures:
         return self._at(
             time,
             "the journal was pressed through its contact by more than the clearance; "
-            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness (RegularisedWall.pressure), or take "
-            "smaller steps or a StepControl if the step has overshot.",
+            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness "
+            "(RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
 
     def too_hot(self, time: float, trial: Trial, temperature: float | np.ndarray) -> FilmError:
@@ -74,7 +76,10 @@ class Failures:
             contact = "with the friction of asperities: they heat spots through which hardly any oil flows; "
         return self._at(
             time,
-            f"the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial.motion)}its heat has no way out; {WAY_OUT}",
+            (
+                f"the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial.motion)}its heat has no way out; "
+                f"{WAY_OUT}"
+            ),
         )
 
     def _at(self, time: float, message: str) -> FilmError:
@@ -84,4 +89,5 @@ class Failures:
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
         gap = bearing.radial_clearance * (1.0 - largest)
-        return f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end, minimum gap of the rigid surfaces {gap:.6g} m; "
+        ratios = f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end"
+        return f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; "

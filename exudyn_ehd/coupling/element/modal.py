@@ -1,9 +1,9 @@
 """The film element on a flexible bore: a third block of coordinates beside housing and journal.
 
-Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is ``Q - K q``; their
-mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves coupled with it (`modal_inertia`). The
-film's wrench on the housing stays the opposite of the journal's, since the modes' forces are internal to the bush: force and moment on
-journal and housing cancel exactly.
+Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is
+``Q - K q``; their mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves
+coupled with it (`modal_inertia`). The film's wrench on the housing stays the opposite of the journal's, since the
+modes' forces are internal to the bush: force and moment on journal and housing cancel exactly.
 """
 
 from __future__ import annotations

@@ -1,20 +1,21 @@
 """Inertia of a modal bush on a housing that moves: floating frame of reference, linear in the modes' displacement.
 
-The housing's body has the bush's mass, at its undeformed place. A point X of the bush's frame (position r, rotation A, velocity v, angular
-velocity omega) stands at r + A (X + u), u = Phi q. Of its kinetic energy beyond the body's,
+The housing's body has the bush's mass, at its undeformed place. A point X of the bush's frame (position r, rotation A,
+velocity v, angular velocity omega) stands at r + A (X + u), u = Phi q. Of its kinetic energy beyond the body's,
 
     T = int rho d(A X + r)/dt . d(A u)/dt dV + q_t^T M q_t / 2,
 
-what is left out is of the second order in u: gyroscopic and centrifugal terms of u with itself. T does not change when the whole model is
-displaced or turned, so that momentum, angular momentum and energy of housing and bush together are kept. Its Euler-Lagrange equations, with p = P q and
-accelerations in the frame's components,
+what is left out is of the second order in u: gyroscopic and centrifugal terms of u with itself. T does not change when
+the whole model is displaced or turned, so that momentum, angular momentum and energy of housing and bush together are
+kept. Its Euler-Lagrange equations, with p = P q and accelerations in the frame's components,
 
     delta r:    a_w = alpha x p + Omega x (Omega x p) + 2 Omega x p_t + p_tt,
     delta phi:  p x a + I alpha + Omega x (I Omega) + 2 sum q_t,i K_i Omega + Theta q_tt,     I = sum q_i (K_i + K_i^T),
     delta q_i:  P_i . a + Theta_i . alpha - Omega . K_i Omega + (M q_tt)_i,
 
-need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see `BoreModes.moments`.
-With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore answers to accelerations as the mesh does, else within 5 to 20 %.
+need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see
+`BoreModes.moments`. With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore answers to accelerations as
+the mesh does, else within 5 to 20 %.
 """
 
 from __future__ import annotations
@@ -46,8 +47,9 @@ def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, modes: BoreMo
     mass, own = float(mbs.GetObject(body)["mass"]), bush_mass(modes)
     if mass < own * (1.0 - 1e-6):
         raise InputError(
-            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its bush with dynamics=True has "
-            f"{own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's to the body, or take dynamics=False."
+            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its bush "
+            f"with dynamics=True has {own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's "
+            "to the body, or take dynamics=False."
         )
 
 
@@ -86,9 +88,9 @@ class ModalInertia:
         return J.T @ own @ J, J.T @ self._both, self.modal_mass
 
     def warn_if_indefinite(self, modes: BoreModes, name: str) -> None:
-        """Warn, once the system is assembled, if what carries the bush has not its mass: the mass matrix is then indefinite.
+        """Warn if what carries the bush has not its mass: the mass matrix is then indefinite.
 
-        No error: constraints may hold what is too light.
+        To be called once the system is assembled. No error: constraints may hold what is too light.
         """
         data, mbs = self.mbs.systemData, self.mbs
         places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in self.side.nodes])
@@ -109,9 +111,9 @@ class ModalInertia:
         scaled = whole[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
         if np.linalg.eigvalsh(scaled)[0] < INDEFINITE:
             warnings.warn(
-                f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the bush of {bush_mass(modes):.4g} kg "
-                "is lighter than it there, or has less rotary inertia, but must contain the bush's: add them to the housing, or take "
-                "ModalBush(dynamics=False).",
+                f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the bush "
+                f"of {bush_mass(modes):.4g} kg is lighter than it there, or has less rotary inertia, but must contain "
+                "the bush's: add them to the housing, or take ModalBush(dynamics=False).",
                 stacklevel=2,
             )
 
@@ -126,18 +128,17 @@ class ModalInertia:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n + k, n + k) of `force` to the coordinates and to the rates.
 
-        Exact but for the change with the housing's coordinates, which is left out; so is that of the mass matrix in Exudyn: Newton's rate
-        suffers by the angle of a step.
+        Exact but for the change with the housing's coordinates, which is left out; so is that of the mass matrix in
+        Exudyn: Newton's rate suffers by the angle of a step.
         """
         J, n, k = self._move(q), q.size, modes.size
         place, rate = np.zeros((n + k, n + k)), np.zeros((n + k, n + k))
         a, alpha, omega = self._accelerations(J, q, q_t)
         N = self.K + self.K.transpose(0, 2, 1)
         columns = self.P.T
-        by_place = np.concatenate((
-            np.cross(alpha, columns) + np.cross(omega, np.cross(omega, columns)),
-            np.cross(columns, a) + N @ alpha + np.cross(omega, N @ omega),
-        ), axis=1)  # fmt: skip
+        force = np.cross(alpha, columns) + np.cross(omega, np.cross(omega, columns))
+        moment = np.cross(columns, a) + N @ alpha + np.cross(omega, N @ omega)
+        by_place = np.concatenate((force, moment), axis=1)
         by_rate = np.concatenate((np.cross(omega, columns), self.K @ omega), axis=1)
         place[:n, n:] = -(J.T @ by_place.T)
         rate[:n, n:] = -2.0 * (J.T @ by_rate.T)

@@ -1,11 +1,12 @@
 """The film element on the bore nodes of a nodal bush.
 
-The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame; normals are fixed in
-the frame. The nodal loads of pressure and shear are the shape functions' transpose of their forces at the film's vertices
-(`exudyn_ehd.joint.tangent.nodes`). What the film's wrench has beyond them is spread over the bore's nodes as ``w (a + b x r)``, with a and b
-from force and moment, so that journal and bush receive exactly opposite forces and moments, at any displacement: the small moments of
-forces on displaced points, and the shear's net force across the axis, clearance over radius of the load, which the wrench of a film
-leaves out as its Reynolds equation does. The housing itself is loaded through the bush.
+The bore's displacement is that of its nodes against where the housing's joint frame would carry them, in that frame;
+normals are fixed in the frame. The nodal loads of pressure and shear are the shape functions' transpose of their forces
+at the film's vertices (`exudyn_ehd.joint.tangent.nodes`). What the film's wrench has beyond them is spread over the
+bore's nodes as ``w (a + b x r)``, with a and b from force and moment, so that journal and bush receive exactly opposite
+forces and moments, at any displacement: the small moments of forces on displaced points, and the shear's net force
+across the axis, clearance over radius of the load, which the wrench of a film leaves out as its Reynolds equation does.
+The housing itself is loaded through the bush.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ _CURRENT = exu.ConfigurationType.Current
 class NodalFilmElement(BoreFilmElement):
     """Film on a nodal bush; see the module's docstring.
 
-    The Jacobian is exact but for the change of lever arms with the bore's displacement, which is smaller by displacement
-    over radius.
+    The Jacobian is exact but for the change of lever arms with the bore's displacement, which is smaller by
+    displacement over radius.
 
     Parameters
     ----------
@@ -66,7 +67,7 @@ class NodalFilmElement(BoreFilmElement):
         return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
 
     def _complete(self, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
-        """Nodal forces (count, 3, ...) of pressure and shear (count, 3, ...) and of the rest of minus the wrench (6, ...)."""
+        """Nodal forces (count, 3, ...): those of pressure and shear, and the rest of minus the wrench (6, ...)."""
         x = self.arms @ self.sides[0].frame[:, :3]
         rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
         return local + np.tensordot(relative.spread_matrix(x), rest, 1)
@@ -139,7 +140,7 @@ class NodalFilmElement(BoreFilmElement):
         return turn.transpose(0, 2, 1).reshape(3 * self.count, -1)
 
     def _housing_maps(self) -> tuple[np.ndarray, np.ndarray]:
-        """d(d)/dq = d(d_t)/dq_t and d(d_t)/dq (2 count, n_h) of the bore's displacements to the housing's coordinates."""
+        """d(d)/dq = d(d_t)/dq_t and d(d_t)/dq (2 count, n_h) of the bore's displacements; q of the housing."""
         frame, (Jp, Jr, Vq, Wq) = self.sides[0].frame, self.sides[0].jac
         A, omega = frame[:, :2], frame[:, 5]
         r, u = self.arms[:, None, :], self.drift[:, None, :]

@@ -2,8 +2,8 @@
 
 The element has no mass and shares the nodes of the two bodies. Its user functions get the coordinates q (without
 reference values) and q_t of those nodes, housing's first, and return the generalized force Q on the right-hand side and
-the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the force user function alone;
-what can't be evaluated is explained by `failures`.
+the derivative of -Q. The film is evaluated once per state. What was accepted is kept by `accepted_steps`, from the
+force user function alone; what can't be evaluated is explained by `failures`.
 """
 
 from __future__ import annotations
@@ -195,7 +195,7 @@ class FilmElement:
         return read_state(mbs, self.sides, configuration)
 
     def look(self, mbs: exu.MainSystem, time: float, configuration: exu.ConfigurationType) -> Trial:
-        """Evaluate the film at the state that Exudyn holds in ``configuration``; the model then holds that film's fields."""
+        """Evaluate the film at the state that Exudyn holds in ``configuration``."""
         q, q_t = self.read(mbs, configuration)
         trial = self._try(mbs, q, q_t, configuration, time)
         if configuration != _CURRENT and any(isinstance(side, MarkerSide) for side in self.sides):

@@ -29,8 +29,8 @@ def hold_axially(
         if item.kind is None:
             if item.marker is None or mbs.GetMarker(item.marker)["markerType"].endswith("Position"):
                 raise InputError(
-                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none exists on spatial "
-                    "cables; use axial=Free(), with a constraint of your own if one is needed."
+                    f"{_WHERE}: axial=Held() needs a rigid marker where the {label} is a flexible body, and none "
+                    "exists on spatial cables; use axial=Free(), with a constraint of your own if one is needed."
                 )
             if abs(axial_offset) > 0.0:
                 raise InputError(

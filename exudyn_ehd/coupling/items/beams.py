@@ -18,7 +18,8 @@ SLOPE_NODES = {"Point2DSlope1": 2, "PointSlope1": 3}
 """Node types that hold a position and a slope, and their dimension."""
 CABLES = {"ANCFCable2D": 2, "ANCFCable": 3}
 EXACT_BEAMS = ("BeamGeometricallyExact2D", "BeamGeometricallyExact3D", "BeamGeometricallyExact")
-# |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8 degrees)
+# |cos| between cable and joint axis up to which the axis counts as across the cable, and from which as along it (8
+# degrees)
 ACROSS, ALONG = math.sin(math.radians(8.0)), math.cos(math.radians(8.0))
 # How far a joint point may lie beyond an element's end, in lengths; positions are typed with few digits.
 BEYOND_END = 1e-6
@@ -42,13 +43,10 @@ def element_nodes(data: Data) -> tuple[Index, ...]:
 
 
 def frame_along(tangent: np.ndarray, planar: bool) -> np.ndarray:
-    """Reference frame (3, 3) of a beam or cable without an orientation: x along it, z as close to the global z as can be."""
+    """Reference frame (3, 3) of a cable, which has no orientation: x along it, z as close to the global z as can be."""
     t = tangent / np.linalg.norm(tangent)
     across = np.array([0.0, 0.0, 1.0]) if planar or abs(t[2]) < 0.9 else np.array([0.0, 1.0, 0.0])
     return cables.slope_rotation(t, across)[:, [0, 2, 1]] * [1.0, -1.0, 1.0]
-
-
-# --- cables -------------------------------------------------------------------------------------------------------------------------------
 
 
 def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarray, np.ndarray]:
@@ -68,11 +66,17 @@ def cable_maps(dimension: int, length: float | None, x: float) -> tuple[np.ndarr
     else:
         s = x / length
         values = [
-            1.0 - 3.0 * s**2 + 2.0 * s**3, length * (s - 2.0 * s**2 + s**3), 3.0 * s**2 - 2.0 * s**3, length * (s**3 - s**2),
-        ]  # fmt: skip
+            1.0 - 3.0 * s**2 + 2.0 * s**3,
+            length * (s - 2.0 * s**2 + s**3),
+            3.0 * s**2 - 2.0 * s**3,
+            length * (s**3 - s**2),
+        ]
         slopes = [
-            (6.0 * s**2 - 6.0 * s) / length, 1.0 - 4.0 * s + 3.0 * s**2, (6.0 * s - 6.0 * s**2) / length, 3.0 * s**2 - 2.0 * s,
-        ]  # fmt: skip
+            (6.0 * s**2 - 6.0 * s) / length,
+            1.0 - 4.0 * s + 3.0 * s**2,
+            (6.0 * s - 6.0 * s**2) / length,
+            3.0 * s**2 - 2.0 * s,
+        ]
     part = np.eye(3)[:, :dimension]
     return tuple(np.hstack([value * part for value in row]) for row in (values, slopes))  # type: ignore[return-value]
 
@@ -106,8 +110,8 @@ def cable_side(
         if ACROSS < cosine < ALONG:
             raise InputError(
                 f"CreateLubricatedJoint.axis must be along or across the cable of {where}, got an angle of "
-                f"{math.degrees(math.acos(cosine)):.3g} degrees: a cable has no orientation about its axis; use a beam element or a "
-                "rigid body at its end."
+                f"{math.degrees(math.acos(cosine)):.3g} degrees: a cable has no orientation about its axis; use a beam "
+                "element or a rigid body at its end."
             )
         director = rotation[:, 2] if cosine <= ACROSS else rotation[:, 0]
         director = director - t * (t @ director)
@@ -132,13 +136,10 @@ def _within(where: str, x: float, low: float, high: float) -> float:
     margin = BEYOND_END * (high - low)
     if not low - margin <= x <= high + margin:
         raise InputError(
-            f"CreateLubricatedJoint.position must lie on the element of {where}, which spans {low:g} to {high:g} m along its axis, got "
-            f"{x:.6g} m; give the element of the beam that carries the joint, or move the joint."
+            f"CreateLubricatedJoint.position must lie on the element of {where}, which spans {low:g} to {high:g} m "
+            f"along its axis, got {x:.6g} m; give the element of the beam that carries the joint, or move the joint."
         )
     return min(max(x, low), high)
-
-
-# --- beams --------------------------------------------------------------------------------------------------------------------------------
 
 
 def beam_ends(mbs: exu.MainSystem, nodes: tuple[Index, ...], node_kinds: dict[str, int]) -> tuple[NodeSide, NodeSide]:
@@ -169,7 +170,7 @@ def beam_side(
 def marker_on_body(
     mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...], point: np.ndarray, rotation: np.ndarray
 ) -> MarkerSide:
-    """Side through a marker of our own on an ANCF beam element or a RotationalMass1D, at a point of the reference configuration."""
+    """Side through a new marker on an ANCF beam element or a RotationalMass1D, at a point of the reference state."""
     output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
 
     def at(local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -206,8 +207,8 @@ def marker_on_node(
     """Side through a marker of our own on a node that has an orientation, at the node."""
     if np.linalg.norm(point - place) > 1e-9 * max(1.0, float(np.linalg.norm(place))):
         raise InputError(
-            f"CreateLubricatedJoint.position must be that of the node of {where}, {place.tolist()}, got {point.tolist()}; for a point "
-            "along the beam give the beam element."
+            f"CreateLubricatedJoint.position must be that of the node of {where}, {place.tolist()}, got "
+            f"{point.tolist()}; for a point along the beam give the beam element."
         )
     marker = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=node))
     return MarkerSide(marker, [node], frame.T @ rotation)

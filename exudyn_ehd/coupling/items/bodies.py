@@ -34,8 +34,8 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     kind = NODE_KINDS.get(data["nodeType"])
     if kind is None:
         raise InputError(
-            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a node of a rigid body, a beam or a cable, or a "
-            "rigid marker on the flexible body."
+            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a node of a rigid body, a "
+            "beam or a cable, or a rigid marker on the flexible body."
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
     nt = 2 if kind == rigid_nodes.PLANAR else 3
@@ -110,8 +110,8 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
 
     def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
         raise InputError(
-            f"{where}: an object of type FFRFreducedOrder is no rigid body; {_MESH_HINT}, or give the bearing bush=FEBore(fem=...) for a housing "
-            "whose bore deforms under the film."
+            f"{where}: an object of type FFRFreducedOrder is no rigid body; {_MESH_HINT}, or give the bearing "
+            "bush=FEBore(fem=...) for a housing whose bore deforms under the film."
         )
 
     return dataclasses.replace(
@@ -170,7 +170,7 @@ def cable_item(
 def beam_item(
     mbs: exu.MainSystem, where: str, nodes: tuple[Index, ...], length: float, transform: np.ndarray | None = None
 ) -> Item:
-    """Element of a geometrically exact beam; ``transform`` (4, 4) that of a marker in the element's local coordinates."""
+    """Element of a geometrically exact beam, or a marker on one at ``transform`` (4, 4), local coordinates."""
     ends = beams.beam_ends(mbs, nodes, NODE_KINDS)
     reference, initial, velocities = beams.node_coordinates(mbs, nodes)
     share = None if transform is None else 0.5 + float(transform[0, 3]) / length

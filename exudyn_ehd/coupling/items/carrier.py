@@ -1,12 +1,13 @@
 """What carries the slaved nodes of a bush: points that move with the rigid frame of any side of a joint.
 
-With the frame's position p, rotation A, velocity v, angular velocity omega and Jacobians Jp, Jr (see `kinematics`), a point X of the
-bush's frame has the arm s = A X and
+With the frame's position p, rotation A, velocity v, angular velocity omega and Jacobians Jp, Jr (see `kinematics`), a
+point X of the bush's frame has the arm s = A X and
 
     x = p + s,   dx/dt = v + omega x s,   B = dx/dq = Jp - [s]x Jr,
     d2x/dt2 = B q_tt + Vq q_t + (Wq q_t) x s + omega x (omega x s),
 
-where Vq, Wq are the derivatives of v and omega to q. Sides that know no derivatives of their Jacobians (`MarkerSide`) count them as zero.
+where Vq, Wq are the derivatives of v and omega to q. Sides that know no derivatives of their Jacobians (`MarkerSide`)
+count them as zero.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ class Carrier:
         return self.side.nodes
 
     def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = _CURRENT) -> None:
-        """Bring frame and Jacobians to coordinates ``q`` and rates ``q_t`` (n,), those of Exudyn's ``configuration``."""
+        """Bring frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:
             self.side.bind(self.mbs)  # type: ignore[attr-defined]
             self._bound = True
@@ -129,7 +130,8 @@ def _marker_frame(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Position and rotation of a marker at coordinates of its nodes.
 
-    Before Assemble Exudyn knows the reference configuration only: the nodes' reference coordinates are moved and put back.
+    Before Assemble Exudyn knows the reference configuration only: the nodes' reference coordinates are moved and put
+    back.
     """
     output = exu.OutputVariableType
     try:

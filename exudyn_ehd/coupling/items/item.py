@@ -18,8 +18,8 @@ class Item:
     Attributes
     ----------
     position, rotation : ndarray (3,), (3, 3)
-        Its frame in the reference configuration, global: the body's, the node's or the marker's; of a beam element that of its local
-        coordinates, x along it.
+        Its frame in the reference configuration, global: the body's, the node's or the marker's; of a beam element that
+        of its local coordinates, x along it.
     is_marker : bool
         Whether it fixes the joint point itself.
     kind : int or None
@@ -27,7 +27,8 @@ class Item:
     planar : bool
         Whether it moves in the global x-y plane only.
     inner : bool
-        Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree, point of a mesh).
+        Whether it moves against other points of its own body by coordinates of the body's one node (link of a tree,
+        point of a mesh).
     node : exudyn.NodeIndex or None
         The rigid node.
     marker : exudyn.MarkerIndex or None

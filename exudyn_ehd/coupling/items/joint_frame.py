@@ -1,4 +1,4 @@
-"""The two items of a joint, its frame and its joint points, from the arguments of `CreateLubricatedJoint`; input checks."""
+"""From the arguments of `CreateLubricatedJoint`: the two items, the joint frame and the joint points, checked."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ def resolve_pair(mbs: exu.MainSystem, itemNumbers: Sequence[object]) -> tuple[It
     if not housing.nodes and not journal.nodes:
         raise InputError(f"{where}: both items are ground; one of them must move, got {list(itemNumbers)!r}.")
     shared = {int(node) for node in housing.nodes} & {int(node) for node in journal.nodes}
-    # Exudyn adds up what an object hands to a node that it lists twice: two points that move against each other may share one
+    # Exudyn adds up what an object hands to a node that it lists twice: two points that move against each other may
+    # share one
     inner = {int(item.marker) for item in (housing, journal) if item.inner and item.marker is not None}
     if shared and len(inner) < 2:
         raise InputError(

@@ -27,8 +27,8 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
         return dataclasses.replace(item, marker=marker, is_marker=True)
     if data["markerType"] not in _RIGID_MARKERS:
         raise InputError(
-            f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. MarkerBodyRigid or "
-            "MarkerNodeRigid."
+            f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. "
+            "MarkerBodyRigid or MarkerNodeRigid."
         )
     reference, output = exu.ConfigurationType.Reference, exu.OutputVariableType
     rotation = np.array(mbs.GetMarkerOutput(marker, output.RotationMatrix, reference), dtype=float).reshape(3, 3)

@@ -12,7 +12,7 @@ from exudyn_ehd.coupling.contract import Index
 
 
 def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | None:
-    """Mass matrix (n, n) of an object in its own coordinates; None without a constant one, or one that Exudyn returns."""
+    """Mass matrix (n, n) of an object in its own coordinates; None if Exudyn returns none and it is not constant."""
     data = mbs.GetObject(item)
     if data["objectType"] == "GenericODE2":
         matrix = as_sparse(data["massMatrix"])
@@ -34,7 +34,10 @@ def point_mass(mbs: exu.MainSystem, item: Index, size: int) -> Callable:
 
 
 def planar_mass(mbs: exu.MainSystem, item: Index) -> Callable:
-    """Mass matrix of a planar rigid body; density times position Jacobian are its first two rows, centre of mass off the node included."""
+    """Mass matrix of a planar rigid body.
+
+    Density times position Jacobian are its first two rows, also with the centre of mass off the node.
+    """
     inertia = float(mbs.GetObjectParameter(item, "inertia"))
 
     def mass(mbs: exu.MainSystem) -> np.ndarray:

@@ -1,7 +1,8 @@
-"""The bore of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the joint's frame that takes part in its motion.
+"""The bore of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the joint's frame that follows it.
 
-The body's modal node serves twice in the film's object: in the housing's side, for the rigid motion of the bore that the modes cause,
-and as the bore's coordinates, for the rest. Exudyn adds up what an object hands to a node that it lists twice, forces and Jacobians alike.
+The body's modal node serves twice in the film's object: in the housing's side, for the rigid motion of the bore that
+the modes cause, and as the bore's coordinates, for the rest. Exudyn adds up what an object hands to a node that it
+lists twice, forces and Jacobians alike.
 """
 
 from __future__ import annotations
@@ -45,8 +46,9 @@ def hold_fe_bore(
     bush = bearing.bush
     if not isinstance(bush, FEBore):
         raise InputError(
-            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder gives way by its own modes with bush=FEBore(fem=...), got "
-            f"{type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on the body as itemNumbers[0]."
+            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder gives way by its own modes with "
+            f"bush=FEBore(fem=...), got {type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on "
+            "the body as itemNumbers[0]."
         )
     data = mbs.GetObject(housing.body)
     basis = np.asarray(data["modeBasis"], dtype=float)
@@ -145,7 +147,7 @@ class FloatingBoreSide:
     def geometric(
         self, mbs: exu.MainSystem | None, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global loads into ``out``, after `vary` at the same state."""
         out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
 
 

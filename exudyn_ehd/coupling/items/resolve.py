@@ -38,8 +38,9 @@ def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
     except exu.ExudynError as error:
         raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
     raise InputError(
-        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam or cable node) or a MarkerIndex (rigid "
-        f"marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... returned."
+        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam or cable node) or a "
+        f"MarkerIndex (rigid marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... "
+        "returned."
     )
 
 

@@ -1,4 +1,4 @@
-"""Sides on beams whose kinematics are known in closed form: geometrically exact beams, and cables that have a slope only."""
+"""Sides on beams whose kinematics are known in closed form: geometrically exact beams, and cables."""
 
 from __future__ import annotations
 
@@ -14,10 +14,11 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide
 class BeamSide:
     """Frame at a place along a geometrically exact beam element with two rigid-body nodes.
 
-    Position, velocity and angular velocity are interpolated linearly between the nodes, as the element's own virtual work does, the
-    rotation along the shortest turn between the two. (Exudyn places points between the nodes on an arc, whose rate is not the velocity
-    it reports; a film, which takes the gap from one and its squeezing from the other, needs both to agree.) The rate of the shortest turn
-    differs from the interpolated angular velocity by the relative rotation of the nodes squared.
+    Position, velocity and angular velocity are interpolated linearly between the nodes, as the element's own virtual
+    work does, the rotation along the shortest turn between the two. (Exudyn places points between the nodes on an arc,
+    whose rate is not the velocity it reports; a film, which takes the gap from one and its squeezing from the other,
+    needs both to agree.) The rate of the shortest turn differs from the interpolated angular velocity by the relative
+    rotation of the nodes squared.
 
     Parameters
     ----------

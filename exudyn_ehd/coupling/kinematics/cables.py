@@ -1,11 +1,13 @@
 """Frame on a cable that knows its position and slope only, with exact variations, as array kernels.
 
-Legend: S, Sx (3, n) maps from coordinates to the centreline r = S (q_ref + q) and its slope s = Sx (q_ref + q); t = s / |s|; d0 a fixed
-global unit vector, the director, normal to t in the reference configuration; d = d0 - (d0 t) t normalised, b = t x d. The cable's frame is
-[t, d, b]: t is what the cable knows, its roll about t is chosen such that d stays as close to d0 as t allows. rho joint point in this frame
-relative to the centreline [m]; w = A rho its lever arm; a_loc joint frame to cable frame.
+Legend: S, Sx (3, n) maps from coordinates to the centreline r = S (q_ref + q) and its slope s = Sx (q_ref + q); t = s /
+|s|; d0 a fixed global unit vector, the director, normal to t in the reference configuration; d = d0 - (d0 t) t
+normalised, b = t x d. The cable's frame is [t, d, b]: t is what the cable knows, its roll about t is chosen such that d
+stays as close to d0 as t allows. rho joint point in this frame relative to the centreline [m]; w = A rho its lever arm;
+a_loc joint frame to cable frame.
 
-With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = (skew(t) - tau / (1 - tau^2) t c^T) (I - t t^T) / |s|.
+With tau = t d0 and c = t x d0, the frame turns with omega = G ds/dt, G = (skew(t) - tau / (1 - tau^2) t c^T) (I - t
+t^T) / |s|.
 """
 
 from __future__ import annotations
@@ -72,7 +74,7 @@ def slope_rotation(s, d0):
 
 @njit(cache=True)
 def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
-    """Fill frame (3, 6) and Jp, Jr of `kinematics` at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
+    """Fill frame (3, 6) and Jp, Jr at total coordinates ``q`` (n,) and rates; nan where the roll is undefined."""
     s, s_t = Sx @ q, Sx @ q_t
     length = np.sqrt(_dot(s, s))
     if not (length > 0.0 and abs(_dot(s, d0)) < LARGEST_TURN * length):

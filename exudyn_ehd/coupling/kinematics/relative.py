@@ -1,7 +1,7 @@
 """Relative motion of the two frames of a joint, and the loads of its film on their coordinates, as array kernels.
 
-Frames, Jacobians and legend as in `kinematics`; index h: housing, j: journal. The journal's axis is z of its frame, the joint frame that of
-the housing.
+Frames, Jacobians and legend as in `kinematics`; index h: housing, j: journal. The journal's axis is z of its frame, the
+joint frame that of the housing.
 """
 
 from __future__ import annotations
@@ -155,12 +155,13 @@ def wrench_map(frame_h, frame_j, jac_h, jac_j, map_out):
 
 @njit(cache=True)
 def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f_q, f_qt, stiffness, out):
-    """Derivative ``-(f_q dQ/dq + f_qt dQ/dq_t)`` of the forces on two sides (n coordinates) and on k modes: out (n + k, n + k).
+    """Derivative ``-(f_q dQ/dq + f_qt dQ/dq_t)`` (n + k, n + k) of the forces on two sides and on k modes.
 
     Parameters
     ----------
     tangent : (6 + k, 10 + k) array
-        Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness (k,).
+        Wrench and loads on the modes to the motion and, combined by f_q and f_qt, to the modes; without their stiffness
+        (k,).
     k_rigid, d_rigid, motion_q, motion_qt : (n, n), (n, n), (10, n), (10, n) arrays
         Of the sides, see `tangent_matrices`.
     wrench_map : (n, 6) array
@@ -191,7 +192,10 @@ def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f
 
 @njit(cache=True)
 def spread_matrix(x):
-    """Map (count, 3, 6) from a force and a moment about O to forces ``(a + b x r) / count`` at points x (count, 3) with these resultants."""
+    """Map (count, 3, 6) from a force and a moment about O to forces with these resultants at points x (count, 3).
+
+    The forces are ``(a + b x r) / count``.
+    """
     count = len(x)
     mean, second = np.zeros(3), np.zeros((3, 3))
     for k in range(count):

@@ -1,4 +1,4 @@
-"""Frames of the nodes of rigid bodies: pose, rates and exact variations of the two marker frames of a joint, as array kernels.
+"""Frames of the nodes of rigid bodies: pose, rates and exact variations, as array kernels.
 
 Every side (housing H, journal J) is described by two work arrays, whoever fills them (the kernels here for the nodes
 of rigid bodies, `film_element.MarkerSide` for any other marker):
@@ -9,7 +9,8 @@ jac   (4, 3, n)   Jp, Jr, Vq, Wq with dp = Jp dq, dphi = Jr dq (global rotation)
                   fixed q_t; with respect to q_t, dv = Jp dq_t and domega = Jr dq_t.
 
 Legend: q, q_t coordinates (without reference values) and their rates; n their number; rho joint point in the node's
-frame [m]; a_loc marker frame to node frame; s = A_node rho the global lever arm; T, F, M global torque, force, moment. What follows for the joint: `joint_kinematics`.
+frame [m]; a_loc marker frame to node frame; s = A_node rho the global lever arm; T, F, M global torque, force, moment.
+What follows for the joint: `joint_kinematics`.
 
 Lie group nodes: q_t holds the local angular velocity, and dq the local incremental rotation, as in Exudyn's Newton.
 Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;

@@ -1,7 +1,8 @@
 """The two sides of a joint: who carries the marker frame, and how its state is read.
 
-A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels, `beam_sides` for
-geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
+A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
+`beam_sides` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
+marker Jacobians.
 """
 
 from __future__ import annotations
@@ -74,9 +75,9 @@ class NodeSide:
 class MarkerSide:
     """Marker frame of any rigid marker, through Exudyn's marker Jacobians.
 
-    The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from Exudyn too where the
-    marker offers it (ANCF beams and cables, rigid bodies); the subclasses know it for bodies whose markers don't. For any other body it
-    counts as zero: Newton's rate suffers a little, the solution does not.
+    The change of the Jacobians with the coordinates, which velocities and the geometric stiffness need, comes from
+    Exudyn too where the marker offers it (ANCF beams and cables, rigid bodies); the subclasses know it for bodies whose
+    markers don't. For any other body it counts as zero: Newton's rate suffers a little, the solution does not.
 
     Parameters
     ----------
@@ -131,7 +132,7 @@ class MarkerSide:
     def geometric(
         self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
-        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into ``out``, after `vary` at the same state."""
+        """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global loads into ``out``, after `vary` at the same state."""
         if self.change is not None:
             out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
 
@@ -152,8 +153,9 @@ class MarkerSide:
 class TreeSide(MarkerSide):
     """Frame on a link of a kinematic tree of revolute and prismatic joints.
 
-    Columns k of joints behind j turn with joint j, dJ_k/dq_j = omega_j x J_k (j <= k); a joint before j sees the marker's point move,
-    dJp_k/dq_j = omega_k x Jp_j (j > k). Parents come before their children; joints off the path to the link have zero columns.
+    Columns k of joints behind j turn with joint j, dJ_k/dq_j = omega_j x J_k (j <= k); a joint before j sees the
+    marker's point move, dJp_k/dq_j = omega_k x Jp_j (j > k). Parents come before their children; joints off the path to
+    the link have zero columns.
     """
 
     def bind(self, mbs: exu.MainSystem) -> None:
@@ -172,10 +174,10 @@ class TreeSide(MarkerSide):
 
 
 class FloatingSide(MarkerSide):
-    """Superelement marker on a body in floating frame of reference formulation: a rigid node, then local flexible coordinates.
+    """Superelement marker on a body with a floating frame: a rigid node, then local flexible coordinates.
 
-    The columns of the flexible coordinates turn with the frame, ``d/dtheta = Jr_theta x``, and the frame's lever arm to the marker grows
-    with them; their own change with deformation is of the order of the deformation and left out.
+    The columns of the flexible coordinates turn with the frame, ``d/dtheta = Jr_theta x``, and the frame's lever arm to
+    the marker grows with them; their own change with deformation is of the order of the deformation and left out.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """The film in Exudyn's renderer: its pressure in colours on the bore, and the deformed modal bush.
 
-Exudyn asks for the picture only while a renderer runs, or for an image of its ray tracer (``SC.renderer.RedrawAndGetImage(True)``, which needs
-no display). The first time it does, the film element begins to hand over the pressure of every accepted step; before that nothing is stored.
-Within a run, drawing never evaluates the film, whose last evaluation belongs to the solver; outside of one it shows the film of the present
-state.
+Exudyn asks for the picture only while a renderer runs, or for an image of its ray tracer
+(``SC.renderer.RedrawAndGetImage(True)``, which needs no display). The first time it does, the film element begins to
+hand over the pressure of every accepted step; before that nothing is stored. Within a run, drawing never evaluates the
+film, whose last evaluation belongs to the solver; outside of one it shows the film of the present state.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class FilmDisplay:
             self.bush = np.tensordot(film.bore.coordinates, modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
-        """User function of Exudyn: the list of graphics data at the state that the renderer shows, in global coordinates."""
+        """User function of Exudyn: graphics data of the state that the renderer shows, global coordinates."""
         model: Any = self.element.model
         if not hasattr(model, "grid"):
             return []

@@ -17,8 +17,8 @@ class FilmRecorder:
     period : float
         Time between two films, s; 0 keeps every accepted step.
     frames : int
-        Most films that are kept, at least 2. When they are full, every second one is dropped, and from then on only every second instant is
-        kept: the films always span the whole run evenly.
+        Most films that are kept, at least 2. When they are full, every second one is dropped, and from then on only
+        every second instant is kept: the films always span the whole run evenly.
     """
 
     def __init__(self, period: float, frames: int) -> None:
@@ -34,7 +34,7 @@ class FilmRecorder:
         self.first = self.last = math.nan
 
     def offer(self, time: float, take: Callable[[], FilmFields]) -> None:
-        """Keep the film of an accepted step if its instant has come; an earlier time than the last starts a new record."""
+        """Keep the film of an accepted step if its instant has come; time that runs back starts a new record."""
         if time == self.last:
             return
         if time < self.last:

@@ -142,7 +142,7 @@ class JointHistory(HistoryPictures):
     length: float
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
-        """The steps with ``start <= time <= end`` (s), a billionth of the record's length more on either side for rounding."""
+        """The steps with ``start <= time <= end`` (s), to rounding: a billionth of the record's length."""
         if not start <= end:
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
         slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
@@ -177,13 +177,15 @@ class JointHistory(HistoryPictures):
         write_csv(path, columns, more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
 
     def revolutions(self, *, period: float | None = None) -> Revolutions:
-        """Smallest film with its place, peak pressure, mean loss and leakage of every whole revolution; print it for a table.
+        """Smallest film with its place, peak pressure, mean loss and leakage of every whole revolution.
+
+        Print it for a table.
 
         Parameters
         ----------
         period : float, optional
-            Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the journal against
-            the housing are counted.
+            Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the
+            journal against the housing are counted.
 
         Raises
         ------

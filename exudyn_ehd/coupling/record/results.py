@@ -30,8 +30,8 @@ if TYPE_CHECKING:
 class JointResults:
     """Results of a joint; mixed into `LubricatedJoint`.
 
-    The ``plot_...`` methods take ``ax`` (a matplotlib Axes to draw into; by default a figure of its own is made) and ``path`` (where to
-    write it), and return the figure.
+    The ``plot_...`` methods take ``ax`` (a matplotlib Axes to draw into; by default a figure of its own is made) and
+    ``path`` (where to write it), and return the figure.
     """
 
     name: str
@@ -46,8 +46,8 @@ class JointResults:
     def film(self) -> FilmFields:
         """The film at the last accepted state: pressure, gap, fill and temperature on the grid.
 
-        Available at any time after Assemble, also within a run; read it before the system's state is changed, as `history`. With an
-        `ImpedanceMap`, which holds no pressure, the film behind the map is solved.
+        Available at any time after Assemble, also within a run; read it before the system's state is changed, as
+        `history`. With an `ImpedanceMap`, which holds no pressure, the film behind the map is solved.
 
         Raises
         ------
@@ -76,21 +76,21 @@ class JointResults:
     def record_films(self, *, period: float = 0.0, frames: int = 400) -> None:
         """Keep the film at regular instants of the runs that follow, for `films`, `animate` and `export_vtk`.
 
-        Without this call nothing is kept. A film takes some 5 arrays of the grid's size, that is 0.05 MB on the default grid, and with
-        a bush the displacements of its mesh.
+        Without this call nothing is kept. A film takes some 5 arrays of the grid's size, that is 0.05 MB on the default
+        grid, and with a bush the displacements of its mesh.
 
         Parameters
         ----------
         period : float
             Time between two films, s; 0 keeps every accepted step.
         frames : int
-            Most films that are kept; when they are full, every second one is dropped and the period doubled, so that memory is bounded
-            and the films span the whole run.
+            Most films that are kept; when they are full, every second one is dropped and the period doubled, so that
+            memory is bounded and the films span the whole run.
         """
         if isinstance(self.element.model, ImpedanceModel):
             raise InputError(
-                f"LubricatedJoint.record_films: joint '{self.name}' has film=ImpedanceMap(...), which holds no pressure; use "
-                "film=FiniteLength(...)."
+                f"LubricatedJoint.record_films: joint '{self.name}' has film=ImpedanceMap(...), which holds no "
+                "pressure; use film=FiniteLength(...)."
             )
         self.element.steps.recorder = FilmRecorder(period, frames)
 
@@ -124,12 +124,13 @@ class JointResults:
         films = self.films
         if not films:
             raise InputError(
-                f"LubricatedJoint.animate: no films of joint '{self.name}' were kept; call joint.record_films() before the run."
+                f"LubricatedJoint.animate: no films of joint '{self.name}' were kept; call joint.record_films() before "
+                "the run."
             )
         animate(films, self.history, path, frames_per_second=frames_per_second, largest_count=largest_count)
 
     def export_vtk(self, path: str | pathlib.Path, *, magnification: float = 1.0) -> list[pathlib.Path]:
-        """Write the film on the bore, and the bush with its stress, for ParaView and the like; needs the package meshio.
+        """Write the film on the bore, and the bush with its stress, for ParaView; needs the package meshio.
 
         With films kept by `record_films` a time series, else the film at the last accepted state; see
         `exudyn_ehd.pictures.vtk.export_films`.

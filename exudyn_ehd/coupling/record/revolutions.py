@@ -69,9 +69,10 @@ class Revolutions:
 
 
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:
-    """Instants (k + 1,) at which the journal has turned by 0, 1, ... k whole revolutions against the housing, one way or the other.
+    """Instants (k + 1,) at which the journal has turned by 0, 1, ... k whole revolutions against the housing.
 
-    The angle is the integral of the relative spin, by the trapezoidal rule; linear between steps.
+    One way or the other counts.     The angle is the integral of the relative spin, by the trapezoidal rule; linear
+    between steps.
     """
     angle = np.concatenate(([0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(time)))) / TURN
     # a journal that swings back counts when it comes by for the first time
@@ -91,8 +92,8 @@ def revolutions(history: Columns, period: float | None = None) -> Revolutions:
         edges = revolution_times(time, history["motion"][:, 8])
         if edges.size < 2:
             raise InputError(
-                "JointHistory.revolutions: the journal has not turned once against the housing; give period=..., the duration of "
-                "one cycle in s."
+                "JointHistory.revolutions: the journal has not turned once against the housing; give period=..., the "
+                "duration of one cycle in s."
             )
     else:
         length = require_number("JointHistory.revolutions: period", period, "s", above=0.0)
@@ -100,7 +101,8 @@ def revolutions(history: Columns, period: float | None = None) -> Revolutions:
         whole = int(np.floor((time[-1] - time[0]) / length + 1e-9))
         if whole == 0:
             raise InputError(
-                f"JointHistory.revolutions: period must not exceed the history's {time[-1] - time[0]:g} s, got {length:g} s."
+                f"JointHistory.revolutions: period must not exceed the history's {time[-1] - time[0]:g} s, got "
+                f"{length:g} s."
             )
         edges = np.minimum(time[0] + length * np.arange(whole + 1.0), time[-1])
     rows = [_summary(history, a, b) for a, b in itertools.pairwise(edges)]
@@ -114,7 +116,8 @@ def _summary(history: Columns, start: float, end: float) -> dict[str, float]:
     inside = np.flatnonzero((time >= start - slack) & (time <= end + slack))
     if inside.size == 0:
         raise InputError(
-            f"JointHistory.revolutions: no recorded step between {start:g} s and {end:g} s; the steps are longer than a revolution."
+            f"JointHistory.revolutions: no recorded step between {start:g} s and {end:g} s; the steps are longer than "
+            "a revolution."
         )
     # the recorded steps within, and both ends by linear interpolation
     along = np.concatenate(([start], time[(time > start) & (time < end)], [end]))

@@ -12,8 +12,8 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
-    last = evaluation.history()
-    assert last is not None
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
@@ -31,13 +31,14 @@ def place(
         raise InputError(f"{_WHERE}: the system of joint '{name}' is not assembled; call mbs.Assemble() first.")
     if not isinstance(journal, NodeSide) or not journal.nodes:
         raise InputError(
-            f"{_WHERE}: the journal of joint '{name}' must be a rigid body or node that moves; place other bodies by a static solve "
-            "(ehd.SolveStatic)."
+            f"{_WHERE}: the journal of joint '{name}' must be a rigid body or node that moves; place other bodies by a "
+            "static solve (ehd.SolveStatic)."
         )
     if getattr(element, "bush", None) is not None:
         raise InputError(
-            f"{_WHERE}: joint '{name}' has a nodal bush, whose nodes would have to move too; place the journal's body before the joint is "
-            "created (initialDisplacement), at ehd.equilibrium(...).position: the bush then starts in equilibrium with its film."
+            f"{_WHERE}: joint '{name}' has a nodal bush, whose nodes would have to move too; place the journal's body "
+            "before the joint is created (initialDisplacement), at ehd.equilibrium(...).position: the bush then "
+            "starts in equilibrium with its film."
         )
     force = require_vector(f"{_WHERE}: load", load, 2, "N")
     q, q_t = (np.array(v) for v in read_state(mbs, element.sides, _INITIAL))
@@ -46,8 +47,8 @@ def place(
         motion[8] = require_number(f"{_WHERE}: speed", speed, "rad/s")
     if motion[8] == 0.0:
         raise InputError(
-            f"{_WHERE}: joint '{name}' does not turn in the initial state, and a film without speed carries no steady load; give speed=..., or "
-            "the bodies an initial angular velocity."
+            f"{_WHERE}: joint '{name}' does not turn in the initial state, and a film without speed carries no steady "
+            "load; give speed=..., or the bodies an initial angular velocity."
         )
     bearing = element.model.bearing
     result = equilibrium(bearing, speed=float(motion[8]), load=(force[0], force[1]), tilt=(motion[2], motion[3]))

@@ -86,7 +86,8 @@ class SystemState:
     time : float
         s.
     coordinates : tuple of 5 arrays
-        As Exudyn's ``systemData.GetSystemState``: ODE2 coordinates and velocities, ODE1, algebraic and data coordinates.
+        As Exudyn's ``systemData.GetSystemState``: ODE2 coordinates and velocities, ODE1, algebraic and data
+        coordinates.
     accelerations : (n,) array
         Of the ODE2 coordinates.
     algorithmic : (n,) array or None
@@ -128,12 +129,13 @@ class SystemState:
         given = [part.size for part in self.coordinates]
         if own != given:
             raise InputError(
-                f"SystemState: it belongs to another system: {dict(zip(_PARTS, given, strict=True))} coordinates are stored, this one has "
-                f"{dict(zip(_PARTS, own, strict=True))}."
+                f"SystemState: it belongs to another system: {dict(zip(_PARTS, given, strict=True))} coordinates are "
+                f"stored, this one has {dict(zip(_PARTS, own, strict=True))}."
             )
         if len(joints) != len(self.joints):
             raise InputError(
-                f"SystemState: it belongs to another system: {len(self.joints)} lubricated joints are stored, this one has {len(joints)}."
+                f"SystemState: it belongs to another system: {len(self.joints)} lubricated joints are stored, this one "
+                f"has {len(joints)}."
             )
         for joint, state in zip(joints, self.joints, strict=True):
             check_owner(joint, state)
@@ -244,6 +246,6 @@ def check_owner(joint: Joint, state: JointState) -> None:
         )
     if state.bearing != digest(joint.bearing):
         raise InputError(
-            f"LubricatedJoint.restore_state: the state of joint '{state.name}' comes from another bearing (geometry, oil, grid or effects "
-            "differ); build the joint with the bearing of the stored run."
+            f"LubricatedJoint.restore_state: the state of joint '{state.name}' comes from another bearing (geometry, "
+            "oil, grid or effects differ); build the joint with the bearing of the stored run."
         )

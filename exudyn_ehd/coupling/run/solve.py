@@ -20,7 +20,8 @@ def require_system(where: str, mbs: exu.MainSystem) -> None:
     """Refuse what is no system of Exudyn."""
     if not isinstance(mbs, exu.MainSystem):
         raise InputError(
-            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what SystemContainer().AddSystem() returns."
+            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
+            "SystemContainer().AddSystem() returns."
         )
 
 
@@ -46,22 +47,24 @@ def SolveDynamic(
 ) -> bool:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
 
-    Exudyn starts Newton's method of a step at zero accelerations, beside the solution by some 0.3 h^2 a: more than a film is thick
-    in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`): the same solution with two to
-    four times fewer iterations, without halved steps and without the errors that they leave in the forces.
+    Exudyn starts Newton's method of a step at zero accelerations, beside the solution by some 0.3 h^2 a: more than a
+    film is thick in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`):
+    the same solution with two to four times fewer iterations, without halved steps and without the errors that they
+    leave in the forces.
 
-    A film that can't be evaluated ends a run with an Exudyn error whose cause is this package's; here it is the package's error itself.
-    A run that ends because Newton's method does not converge is explained by the last accepted state of every joint. Either way
-    ``joint.history`` holds all accepted steps, and `SaveState` stores the last one.
+    A film that can't be evaluated ends a run with an Exudyn error whose cause is this package's; here it is the
+    package's error itself. A run that ends because Newton's method does not converge is explained by the last accepted
+    state of every joint. Either way ``joint.history`` holds all accepted steps, and `SaveState` stores the last one.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
     simulationSettings : exudyn.SimulationSettings
     restart : SystemState or path, optional
-        From `SystemState.of` or `SaveState`: the run goes on from there. ``startTime`` of the settings is set; ``endTime`` and ``numberOfSteps``
-        are those of the rest. With the same step size and full Newton it repeats what the run would have done without the
-        stop, to rounding: films with their memory, Exudyn's algorithmic accelerations and the histories.
+        From `SystemState.of` or `SaveState`: the run goes on from there. ``startTime`` of the settings is set;
+        ``endTime`` and ``numberOfSteps`` are those of the rest. With the same step size and full Newton it repeats what
+        the run would have done without the stop, to rounding: films with their memory, Exudyn's algorithmic
+        accelerations and the histories.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...
 
@@ -89,8 +92,8 @@ def SolveDynamic(
         time = simulationSettings.timeIntegration
         if not time.endTime > time.startTime:
             raise InputError(
-                f"SolveDynamic.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
-                f"{time.endTime:.9g} s."
+                "SolveDynamic.simulationSettings.timeIntegration.endTime must be after startTime = "
+                f"{time.startTime:.9g} s, got {time.endTime:.9g} s."
             )
     with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
@@ -180,19 +183,19 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
         )
     if static:
         parts.append(
-            "a film without relative speed, and a journal's spin and place along the axis, have no stiffness of their own: give speeds by "
-            "initial velocities and hold what is free by springs or constraints; "
+            "a film without relative speed, and a journal's spin and place along the axis, have no stiffness of their "
+            "own: give speeds by initial velocities and hold what is free by springs or constraints; "
         )
     parts.append(
-        "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), smaller steps or a "
-        "StepControl, soften jumps of loads and speeds, and check constraints that leave nothing to move. joint.history holds all "
-        "accepted steps."
+        "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), "
+        "smaller steps or a StepControl, soften jumps of loads and speeds, and check constraints that leave nothing "
+        "to move. joint.history holds all accepted steps."
     )
     return "".join(parts)
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:
-    """The start of Newton's method for the joints of a system, ahead of the run; ``before`` is the user's own function."""
+    """The start of Newton's method for a system with joints, before the run; ``before`` is the user's own function."""
     elements = [joint.element for joint in joints_of(mbs)]
     bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
     bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
@@ -201,7 +204,7 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
 
 @contextmanager
 def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[None]:
-    """Let Newton's method start at lasting accelerations in the run within; the user's function is given back afterwards."""
+    """Let Newton's method start at lasting accelerations in the run within; the user's function comes back then."""
     # without a stored solver its step size and parameters are not known
     if not options.get("storeSolver", True):
         yield
@@ -226,7 +229,8 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
     integration.startTime = state.time
     if not integration.endTime > state.time:
         raise InputError(
-            f"SolveDynamic.restart: endTime must be after the stored state's time {state.time:.9g} s, got {integration.endTime:.9g} s."
+            f"SolveDynamic.restart: endTime must be after the stored state's time {state.time:.9g} s, got "
+            f"{integration.endTime:.9g} s."
         )
     alpha = integration.generalizedAlpha
     computes = alpha.computeInitialAccelerations

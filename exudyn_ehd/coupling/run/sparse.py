@@ -11,11 +11,12 @@ after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off 
 and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
-Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product with their exact
-tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES
-(Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r. The bush answers a film's short waves weakly, so that
-some eight products do. Newton then takes the iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and
-hardly changing, lasts. The matrix is put together in `system_matrix`.
+Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
+with their exact tangent costs one film solve. With J0 everything else and F the films, every iteration solves
+``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a
+thousandth of r. The bush answers a film's short waves weakly, so that some eight products do. Newton then takes the
+iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The
+matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """
@@ -35,7 +36,8 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.status import require_integer, require_number
 
-# Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of products.
+# Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
+# products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 
 # Exudyn's stubs lack the self of its solvers' methods.

@@ -1,20 +1,22 @@
 """Where Newton's method starts in a step of Exudyn's generalized alpha or Newmark integrator.
 
-Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System Dynamics 18 (2007)
-185). With accelerations a the first positions are beside the solution by beta h^2 f a, f = (1 - alpha_f) / (1 - alpha_m), about 0.3 h^2 a for any
-spectral radius. A mechanism does not notice, a film does: a crank radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um for 43 mm and
-360 steps, where films are 3 um thick. Newton's first force is then far beyond the film's: it takes two to four times the iterations, halves steps without
+Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System
+Dynamics 18 (2007) 185). With accelerations a the first positions are beside the solution by beta h^2 f a, f = (1 -
+alpha_f) / (1 - alpha_m), about 0.3 h^2 a for any spectral radius. A mechanism does not notice, a film does: a crank
+radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um for 43 mm and 360 steps, where films are 3 um thick.
+Newton's first force is then far beyond the film's: it takes two to four times the iterations, halves steps without
 need, and a tolerance relative to its first residual accepts forces that are wrong by more than the film carries.
 
 Accelerations that last are known from the steps before. With a guess g of them, Newton starts at
 
     q + beta h^2 f g,   dq/dt + gamma h f g,   d2q/dt2 + g,
 
-which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line through the last two
-accelerations if the last three lie in a line but for a tenth of their change, over steps of one size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where they agree
-in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per period, there is no guess. Norms are those of all
-coordinates together, since what one would gain is lost where it meets another; but deformations of bodies, which ring while the body moves smoothly, are judged by
-themselves.
+which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line
+through the last two accelerations if the last three lie in a line but for a tenth of their change, over steps of one
+size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where
+they agree in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per
+period, there is no guess. Norms are those of all coordinates together, since what one would gain is lost where it meets
+another; but deformations of bodies, which ring while the body moves smoothly, are judged by themselves.
 """
 
 from __future__ import annotations
@@ -127,7 +129,7 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
 
 
 def additive_coordinates(mbs: exu.MainSystem) -> np.ndarray:
-    """One for every second-order coordinate (n,) that displacements are added to, zero for rotations of Lie group nodes."""
+    """Of the second-order coordinates (n,): one where displacements are added, zero for rotations of Lie groups."""
     mask = np.ones(len(mbs.systemData.GetODE2Coordinates()))
     for number in range(mbs.systemData.NumberOfNodes()):
         node = NodeIndex(number)

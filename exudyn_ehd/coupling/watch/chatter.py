@@ -1,19 +1,21 @@
 """Explicit integrators beyond their stability limit, recognised from the accepted steps of a joint.
 
-A film is a damper C between masses: beyond h C / m = 2 (forward Euler), 2.51 (RK33) or 2.79 (RK44) the journal's velocity is a product of
-the step size h. The film's stiffening keeps it finite, so that the journal chatters about a wrong place. What tells is that velocities
-are no longer the rates of the positions: with the displacement d of a step and the velocities v0, v1 at its ends,
+A film is a damper C between masses: beyond h C / m = 2 (forward Euler), 2.51 (RK33) or 2.79 (RK44) the journal's
+velocity is a product of the step size h. The film's stiffening keeps it finite, so that the journal chatters about a
+wrong place. What tells is that velocities are no longer the rates of the positions: with the displacement d of a step
+and the velocities v0, v1 at its ends,
 
     s = |d - h (v0 + v1) / 2| / (h max(|v0|, |v1|))
 
-is |sin(a) / a - cos(a)|, a = pi / n, for an oscillation with n steps per period: 0.05 at eight, 0.19 at four, 0.64 at two. For
-v' = -lambda v a Runge-Kutta method has d = h v0 (1 - R) / z, with z = h lambda and its stability function R(z): s = |(1 - R) / z - (1 + R) / 2| is
-2 / z at the limit R = -1 and 1 at the limit R = 1, however slow the growth. Single steps of that kind belong to impacts, and
-those that die away to transients that end within some steps: neither counts.
+is |sin(a) / a - cos(a)|, a = pi / n, for an oscillation with n steps per period: 0.05 at eight, 0.19 at four, 0.64 at
+two. For v' = -lambda v a Runge-Kutta method has d = h v0 (1 - R) / z, with z = h lambda and its stability function
+R(z): s = |(1 - R) / z - (1 + R) / 2| is 2 / z at the limit R = -1 and 1 at the limit R = 1, however slow the growth.
+Single steps of that kind belong to impacts, and those that die away to transients that end within some steps: neither
+counts.
 
-Far beyond the limit a step throws the journal out of the thin film, where its damping is a hundredth; it flies back for some
-well resolved steps and is thrown again, each time by another amount. Film and walls slow a journal down: a step that is
-not resolved and makes it faster is such a kick, and kicks in short succession count however unequal they are.
+Far beyond the limit a step throws the journal out of the thin film, where its damping is a hundredth; it flies back for
+some well resolved steps and is thrown again, each time by another amount. Film and walls slow a journal down: a step
+that is not resolved and makes it faster is such a kick, and kicks in short succession count however unequal they are.
 """
 
 from __future__ import annotations
@@ -25,14 +27,15 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
 UNRESOLVED = 0.25
-# Position error below which a step counts as resolved, share of the gap (or of a hundredth of the clearance), and m: rounding of
-# positions some metres from the origin stays below.
+# Position error below which a step counts as resolved, share of the gap (or of a hundredth of the clearance), and m:
+# rounding of positions some metres from the origin stays below.
 SMALLEST_SHARE, SMALLEST_GAP_SHARE, ROUNDING = 1e-6, 1e-2, 1e-14
 # A step counts if its error is still so large a share of the largest one before, which fades by so much per step.
 LASTING_SHARE, FADING = 0.15, 0.99
 # A step that counts adds two, any other takes one.
 LIMIT = 32
-# A step is a kick if it makes the journal faster by this factor; a kick adds seven and any other step takes one, so that one in eight lasts.
+# A step is a kick if it makes the journal faster by this factor; a kick adds seven and any other step takes one, so
+# that one in eight lasts.
 KICK, KICK_WEIGHT, KICK_LIMIT = 1.1, 7, 70
 
 

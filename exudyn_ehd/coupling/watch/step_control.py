@@ -12,7 +12,8 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number
 
-# Gap beside which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the clearance.
+# Gap beside which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the
+# clearance.
 SMALLEST_GAP_SHARE = 1e-3
 ROUGHNESSES = 4.0
 
@@ -21,17 +22,17 @@ ROUGHNESSES = 4.0
 class StepControl:
     """Limits what an implicit step may do to the film.
 
-    Newton may well converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
-    once: the motion is then wrong, without a sign. With a step control such a step is answered like a film that can't be
-    evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles it again
-    after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size every step is accepted.
-    Explicit and static solvers are not touched.
+    Newton may well converge for a step in which the journal falls from the centre onto its contact, or crosses the
+    contact's range at once: the motion is then wrong, without a sign. With a step control such a step is answered like
+    a film that can't be evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves
+    it, and doubles it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size
+    every step is accepted. Explicit and static solvers are not touched.
 
     Parameters
     ----------
     largest_gap_change : float
-        Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the step (or of
-        the contact's range, if that is larger); 0.01 to 1.
+        Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
+        step (or of the contact's range, if that is larger); 0.01 to 1.
     """
 
     largest_gap_change: float = 0.25
@@ -40,8 +41,8 @@ class StepControl:
         require_number("StepControl.largest_gap_change", self.largest_gap_change, at_least=0.01)
         if self.largest_gap_change > 1.0:
             raise InputError(
-                f"StepControl.largest_gap_change must be within 0.01 and 1, got {self.largest_gap_change!r}; leave the control out "
-                "with stepControl=None."
+                f"StepControl.largest_gap_change must be within 0.01 and 1, got {self.largest_gap_change!r}; leave the "
+                "control out with stepControl=None."
             )
 
 
