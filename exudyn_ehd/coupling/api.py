@@ -107,8 +107,8 @@ class LubricatedJoint(JointResults):
     ) -> EquilibriumResult:
         """Let the next run start where the film carries a steady load, with the film in its steady state.
 
-        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing but for its
-        spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and
+        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing except for
+        its spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and
         loads that depend on the place, settle in a static solve (`SolveStatic`) or a ramp of the load.
 
         Parameters
@@ -133,7 +133,7 @@ class LubricatedJoint(JointResults):
         return place(self.mbs, self.element, self.name, load, speed)
 
     def state(self) -> JointState:
-        """What the joint knows beside Exudyn's coordinates at the last accepted state: memory of the film, and record.
+        """What the joint knows besides Exudyn's coordinates at the last accepted state: memory of the film, and record.
 
         See `SaveState` for the whole system.
         """
@@ -158,7 +158,7 @@ class LubricatedJoint(JointResults):
         self.element.steps.resume(state.time, state.memory, state.rows)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects mattered in the accepted steps, which were left out, which were paid for in vain.
+        """Which effects mattered in the accepted steps, which were left out, which were without effect.
 
         The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are
         evaluated again, on a model of their own: the joint is not touched. What the record holds counts as recorded;

@@ -61,7 +61,7 @@ def attach_bush(
     element : BoreFilmElement
         The film on it.
     arguments : dict
-        What the element's ObjectGenericODE2 needs beside nodes and functions.
+        What the element's ObjectGenericODE2 needs besides nodes and functions.
     """
     for item, side in zip(items, sides, strict=True):
         side.frame[:] = initial_frame(mbs, item, side)
@@ -138,7 +138,7 @@ def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
 
     A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be
-    felt; only if it starts in equilibrium: elsewhere it would start with an acceleration beyond all measure.
+    felt; only if it starts in equilibrium: elsewhere it would start with a huge acceleration.
     """
     whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass

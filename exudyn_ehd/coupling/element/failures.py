@@ -56,7 +56,7 @@ class Failures:
         )
 
     def pressed_through(self, time: float, trial: Trial) -> FilmError | None:
-        """The journal is so deep in a rigid bore that no contact stands for it; None if it is not."""
+        """The journal is so deep in a rigid bore that no contact explains it; None if it is not."""
         bearing = self.bearing
         if getattr(bearing, "bush", None) is not None:
             return None

@@ -1,4 +1,4 @@
-"""The film element on a flexible bore: a third block of coordinates beside housing and journal.
+"""The film element on a flexible bore: a third block of coordinates besides those of housing and journal.
 
 Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is
 ``Q - K q``; their mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves

@@ -128,7 +128,7 @@ class ModalInertia:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n + k, n + k) of `force` to the coordinates and to the rates.
 
-        Exact but for the change with the housing's coordinates, which is left out; so is that of the mass matrix in
+        Exact except for the change with the housing's coordinates, which is left out; so is that of the mass matrix in
         Exudyn: Newton's rate suffers by the angle of a step.
         """
         J, n, k = self._move(q), q.size, modes.size

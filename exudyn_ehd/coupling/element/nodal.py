@@ -29,7 +29,7 @@ _CURRENT = exu.ConfigurationType.Current
 class NodalFilmElement(BoreFilmElement):
     """Film on a nodal bush; see the module's docstring.
 
-    The Jacobian is exact but for the change of lever arms with the bore's displacement, which is smaller by
+    The Jacobian is exact except for the change of lever arms with the bore's displacement, which is smaller by
     displacement over radius.
 
     Parameters

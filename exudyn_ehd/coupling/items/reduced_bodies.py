@@ -46,7 +46,7 @@ def hold_fe_bore(
     bush = bearing.bush
     if not isinstance(bush, FEBore):
         raise InputError(
-            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder gives way by its own modes with "
+            "CreateLubricatedJoint.bearing: the bore of an ObjectFFRFreducedOrder deflects by its own modes with "
             f"bush=FEBore(fem=...), got {type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on "
             "the body as itemNumbers[0]."
         )

@@ -138,7 +138,7 @@ class JointResults:
         Parameters
         ----------
         path : path
-            Ending in ``.pvd``: the file to open; the data lie in a folder of the same name beside it.
+            Ending in ``.pvd``: the file to open; the data lie in a folder of the same name next to it.
         magnification : float
             Factor on the displacements of bore and bush.
 

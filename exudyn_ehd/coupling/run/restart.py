@@ -29,7 +29,7 @@ _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
 class JointState:
-    """What a joint knows beside Exudyn's coordinates.
+    """What a joint knows besides Exudyn's coordinates.
 
     Attributes
     ----------

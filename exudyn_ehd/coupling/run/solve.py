@@ -47,7 +47,7 @@ def SolveDynamic(
 ) -> bool:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
 
-    Exudyn starts Newton's method of a step at zero accelerations, beside the solution by some 0.3 h^2 a: more than a
+    Exudyn starts Newton's method of a step at zero accelerations, away from the solution by some 0.3 h^2 a: more than a
     film is thick in a crank drive at steps of a degree. Here it starts at the accelerations that last (`StartGuess`):
     the same solution with two to four times fewer iterations, without halved steps and without the errors that they
     leave in the forces.

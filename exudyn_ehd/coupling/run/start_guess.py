@@ -1,7 +1,7 @@
 """Where Newton's method starts in a step of Exudyn's generalized alpha or Newmark integrator.
 
 Exudyn starts a step at zero accelerations, as the algorithm is printed (M. Arnold and O. Bruels, Multibody System
-Dynamics 18 (2007) 185). With accelerations a the first positions are beside the solution by beta h^2 f a, f = (1 -
+Dynamics 18 (2007) 185). With accelerations a the first positions miss the solution by beta h^2 f a, f = (1 -
 alpha_f) / (1 - alpha_m), about 0.3 h^2 a for any spectral radius. A mechanism does not notice, a film does: a crank
 radius r at n steps per turn gives 0.3 r (2 pi / n)^2, 4 um for 43 mm and 360 steps, where films are 3 um thick.
 Newton's first force is then far beyond the film's: it takes two to four times the iterations, halves steps without
@@ -12,7 +12,7 @@ Accelerations that last are known from the steps before. With a guess g of them,
     q + beta h^2 f g,   dq/dt + gamma h f g,   d2q/dt2 + g,
 
 which satisfies the integrator's formulas like Exudyn's own start, so that the solution is the same. g goes on in a line
-through the last two accelerations if the last three lie in a line but for a tenth of their change, over steps of one
+through the last two accelerations if the last three lie in a line to a tenth of their change, over steps of one
 size (less straight ones prolong the ringing behind a halved step). Else it is the smaller one of the last two where
 they agree in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per
 period, there is no guess. Norms are those of all coordinates together, since what one would gain is lost where it meets

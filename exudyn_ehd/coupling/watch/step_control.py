@@ -12,7 +12,7 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number
 
-# Gap beside which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the
+# Gap against which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the
 # clearance.
 SMALLEST_GAP_SHARE = 1e-3
 ROUGHNESSES = 4.0
