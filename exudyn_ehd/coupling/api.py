@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, overload
+from typing import TYPE_CHECKING, Literal, cast, overload
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -27,6 +26,7 @@ from exudyn_ehd.coupling.record.sensors import add_sensor
 from exudyn_ehd.coupling.run.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.run.solve import joints_of, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
+from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, require_bool, require_vector
 
 if TYPE_CHECKING:
@@ -129,7 +129,8 @@ class LubricatedJoint(JointResults):
         FilmError
             If no equilibrium was found.
         """
-        place = importlib.import_module("exudyn_ehd.coupling.run.equilibrium_start").place
+        from exudyn_ehd.coupling.run.equilibrium_start import place
+
         return place(self.mbs, self.element, self.name, load, speed)
 
     def state(self) -> JointState:
@@ -187,11 +188,12 @@ class LubricatedJoint(JointResults):
             raise InputError(
                 f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
             )
-        audit = importlib.import_module("exudyn_ehd.joint.audit.audit")
-        states = importlib.import_module("exudyn_ehd.joint.audit.samples")
-        names = [field.name for field in dataclasses.fields(states.RecordedSteps)]
-        record = states.RecordedSteps(**{name: getattr(history, name) for name in names})
-        return audit.audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
+        from exudyn_ehd.joint.audit.audit import audit_record
+        from exudyn_ehd.joint.audit.samples import RecordedSteps
+
+        names = [field.name for field in dataclasses.fields(RecordedSteps)]
+        record = RecordedSteps(**{name: getattr(history, name) for name in names})
+        return audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
 
     def AddSensor(
         self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
@@ -348,15 +350,14 @@ def CreateLubricatedJoint(
     points = joint_points(housing, journal, position, useGlobalFrame)
     if housing.body is not None and getattr(bearing, "bush", None) is not None:
         # imported here: a rigid bearing needs no solid
-        bearing, housing = importlib.import_module("exudyn_ehd.coupling.items.reduced_bodies").hold_fe_bore(
-            mbs, bearing, housing, points[0], rotation
-        )
+        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
+
+        bearing, housing = hold_fe_bore(mbs, bearing, housing, points[0], rotation)
     bush = getattr(bearing, "bush", None)
     if bush is not None and not housing.nodes and getattr(bush, "body_forces", False):
         # what stands still needs no modes for its acceleration
         bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
-    # imported late: the builder compiles kernels, which input errors need not wait for
-    model = importlib.import_module("exudyn_ehd.joint.model.build").build_model(bearing)
+    model = cast(JointModel, build_model(bearing))
     joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
     if stepControl is not None:
         joint.element.steps.control = GapWatch(stepControl, bearing)
@@ -405,10 +406,12 @@ def attach(
     flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
     held = isinstance(axial, Held) and not flat
     element = FilmElement(model, *sides, name)
-    nodes, more = [node for side in sides for node in side.nodes], {}
+    nodes = [node for side in sides for node in side.nodes]
+    more: dict[str, object] = {}
     if hasattr(model, "bore"):
         # imported here: a rigid bearing needs no solid
-        attach_bush = importlib.import_module("exudyn_ehd.coupling.element.attach").attach_bush
+        from exudyn_ehd.coupling.element.attach import attach_bush
+
         element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show)
         nodes += element.bore_nodes
     display = FilmDisplay(element)

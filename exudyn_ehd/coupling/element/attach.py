@@ -9,7 +9,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
-from exudyn_ehd.coupling.contract import NodeIndex, Side
+from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
 from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
@@ -34,7 +34,7 @@ NUMERICAL_PERIOD = 1e-6
 
 def attach_bush(
     mbs: exu.MainSystem,
-    model: ElasticBearingModel,
+    model: JointModel,
     items: tuple[Item, Item],
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
@@ -63,6 +63,7 @@ def attach_bush(
     arguments : dict
         What the element's ObjectGenericODE2 needs besides nodes and functions.
     """
+    assert isinstance(model, ElasticBearingModel)
     for item, side in zip(items, sides, strict=True):
         side.frame[:] = initial_frame(mbs, item, side)
     if not isinstance(model.bore, ModalBore):
