@@ -1,7 +1,8 @@
-"""Every kind of body that a joint can hold: small scenes with the joint's item, a marker for Exudyn's own connectors, and a load.
+"""Every kind of body that a joint can hold: small scenes with the joint's item, a marker for Exudyn's own connectors,
+and a load.
 
-A scene function adds its body to a system and returns a `Body`. The joint point of beams lies at `PLACE` on an element along x, from the
-global origin to `LENGTH`.
+A scene function adds its body to a system and returns a `Body`. The joint point of beams lies at `PLACE` on an element
+along x, from the global origin to `LENGTH`.
 """
 
 from __future__ import annotations
@@ -27,7 +28,8 @@ LOAD = [0.2, -1.0, 0.0]
 class Body:
     """What a test needs of a body in a system.
 
-    ``item`` is what the joint gets, ``point`` its place (None: a marker gives it), ``marker`` the function that makes a rigid marker there.
+    ``item`` is what the joint gets, ``point`` its place (None: a marker gives it), ``marker`` the function that makes a
+    rigid marker there.
     """
 
     item: Any
@@ -129,11 +131,15 @@ def exact_beam_2d(mbs, stiffness=1.0):
     s = section(stiffness)
     body = mbs.AddObject(
         eii.ObjectBeamGeometricallyExact2D(
-            nodeNumbers=nodes, length=LENGTH, massPerLength=s.massPerLength, crossSectionInertia=s.inertia[2, 2],
-            bendingStiffness=s.stiffnessMatrix[5, 5], axialStiffness=s.stiffnessMatrix[0, 0],
+            nodeNumbers=nodes,
+            length=LENGTH,
+            massPerLength=s.massPerLength,
+            crossSectionInertia=s.inertia[2, 2],
+            bendingStiffness=s.stiffnessMatrix[5, 5],
+            axialStiffness=s.stiffnessMatrix[0, 0],
             shearStiffness=s.stiffnessMatrix[1, 1],
         )
-    )  # fmt: skip
+    )
     _load(mbs, nodes[1])
     return Body(body, [PLACE, 0, 0], None, True, nodes)
 
@@ -160,13 +166,22 @@ def tree(mbs, parents=(-1, 0, 1)):
     )
     body = mbs.AddObject(
         eii.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=types, linkParents=list(parents),
-            jointTransformations=exu.Matrix3DList([np.eye(3)] * k), jointOffsets=exu.Vector3DList([[0, 0, 0], [0.3, 0, 0], [0.3, 0, 0]]),
-            linkInertiasCOM=exu.Matrix3DList([0.02 * np.eye(3)] * k), linkCOMs=exu.Vector3DList([[0.1, 0.02, 0.0]] * k),
-            linkMasses=[1.0] * k, baseOffset=[0.0, 0, 0], gravity=LOAD, jointPositionOffsetVector=zero, jointVelocityOffsetVector=zero, jointPControlVector=[0.0, 20.0, 2e3],
+            nodeNumber=node,
+            jointTypes=types,
+            linkParents=list(parents),
+            jointTransformations=exu.Matrix3DList([np.eye(3)] * k),
+            jointOffsets=exu.Vector3DList([[0, 0, 0], [0.3, 0, 0], [0.3, 0, 0]]),
+            linkInertiasCOM=exu.Matrix3DList([0.02 * np.eye(3)] * k),
+            linkCOMs=exu.Vector3DList([[0.1, 0.02, 0.0]] * k),
+            linkMasses=[1.0] * k,
+            baseOffset=[0.0, 0, 0],
+            gravity=LOAD,
+            jointPositionOffsetVector=zero,
+            jointVelocityOffsetVector=zero,
+            jointPControlVector=[0.0, 20.0, 2e3],
             jointDControlVector=[0.1, 0.1, 1.0],
         )
-    )  # fmt: skip
+    )
     at = {"objectNumber": body, "linkNumber": k - 1, "localPosition": [0.1, 0.05, 0.0]}
     marker = mbs.AddMarker(eii.MarkerKinematicTreeRigid(**at))
     return Body(marker, None, lambda: marker, False, (node,))
@@ -250,7 +265,8 @@ AGAINST_CONNECTOR = {
 }
 
 
-# Geometrically exact beams on RotVec nodes are left out: Exudyn's own model of them needs a hundred Newton steps per time step here.
+# Geometrically exact beams on RotVec nodes are left out: Exudyn's own model of them needs a hundred Newton steps per
+# time step here.
 JACOBIANS = AGAINST_CONNECTOR | {
     "exact beam node RotVec": exact_beam("RotVec", "node"),
     "cable 3D element": cable(3),

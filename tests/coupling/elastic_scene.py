@@ -1,4 +1,5 @@
-"""A free journal in a bearing on a housing that stands, or turns and accelerates; energies, powers and momenta of every step."""
+"""A free journal in a bearing on a housing that stands, or turns and accelerates; energies, powers and momenta of every
+step."""
 
 from __future__ import annotations
 
@@ -22,9 +23,13 @@ LOAD, SWING, OFFSET = 15e3, 314.0, 3e-3
 
 def bearing(bush=None, n_theta=48, n_z=8, **options):
     given = {
-        "journal_radius": 0.03, "length": 0.066, "radial_clearance": CLEARANCE, "lubricant": ehd.Lubricant(viscosity=9e-3),
-        "film": ehd.FiniteLength(n_theta=n_theta, n_z=n_z), "bush": bush,
-    }  # fmt: skip
+        "journal_radius": 0.03,
+        "length": 0.066,
+        "radial_clearance": CLEARANCE,
+        "lubricant": ehd.Lubricant(viscosity=9e-3),
+        "film": ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+        "bush": bush,
+    }
     return ehd.JournalBearing(**(given | options))
 
 
@@ -43,8 +48,8 @@ def housing_load(t):
 class Nodes:
     """Inertia of a modal bush on a housing that moves, from sums over the mesh's nodes.
 
-    x = r + A X are the points of the rigid bush, w = A u their displacement; only what goes beyond the rigid bush, in the first order of w
-    but for the modes' own kinetic energy.
+    x = r + A X are the points of the rigid bush, w = A u their displacement; only what goes beyond the rigid bush, in
+    the first order of w but for the modes' own kinetic energy.
     """
 
     def __init__(self, modes, material):
@@ -100,16 +105,23 @@ class Scene:
             item = mbs.CreateGround()
         place = A @ [0.4 * CLEARANCE, -0.5 * CLEARANCE, 0.0]
         self.journal = mbs.CreateRigidBody(
-            referenceRotationMatrix=A, initialDisplacement=list(place), inertia=JOURNAL,
+            referenceRotationMatrix=A,
+            initialDisplacement=list(place),
+            inertia=JOURNAL,
             initialVelocity=list(np.array([0.3, -0.2, 0.1]) * moving + np.cross(turn, place)),
             initialAngularVelocity=list(A @ [0.0, 0.0, SPEED] + turn),
-        )  # fmt: skip
+        )
         self.solids.append((self.journal, JOURNAL))
         self._push(self.journal, OFFSET, journal_load)
         self.joint = ehd.CreateLubricatedJoint(
-            mbs, name="b", itemNumbers=[item, self.journal], position=[0, 0, 0], axis=list(A[:, 2]), bearing=bearing,
+            mbs,
+            name="b",
+            itemNumbers=[item, self.journal],
+            position=[0, 0, 0],
+            axis=list(A[:, 2]),
+            bearing=bearing,
             axial=ehd.Free() if moving else ehd.Held(),
-        )  # fmt: skip
+        )
         mbs.Assemble()
         self.times, self.rows, self.cancelling = [], [], []
         self._nodes = None
@@ -253,7 +265,8 @@ class Scene:
         return float(np.sum((bush.solid.force(u, v) - bush.solid.force(u)) * v))
 
     def energy_error(self):
-        """What the balance of energy lacks over the run, as a share of what the film took; integrals by the trapezoidal rule."""
+        """What the balance of energy lacks over the run, as a share of what the film took; integrals by the trapezoidal
+        rule."""
         t, rows, history = np.array(self.times), np.array(self.rows), self.joint.history
         assert np.allclose(history.time, t, rtol=0, atol=1e-12)
         kinetic, elastic, power, damping = rows[:, :4].T

@@ -22,18 +22,26 @@ def planar_tree(mbs, inertia):
     joints, k, zero = exu.JointType, 3, [0.0] * 3
     node = mbs.AddNode(
         eii.NodeGenericODE2(
-            referenceCoordinates=zero, initialCoordinates=zero, initialCoordinates_t=[*START[:2], TURN], numberOfODE2Coordinates=k
+            referenceCoordinates=zero,
+            initialCoordinates=zero,
+            initialCoordinates_t=[*START[:2], TURN],
+            numberOfODE2Coordinates=k,
         )
-    )  # fmt: skip
+    )
     none, masses = np.zeros((3, 3)), [0.0, 0.0, inertia.Mass()]
     body = mbs.AddObject(
         eii.ObjectKinematicTree(
-            nodeNumber=node, jointTypes=[joints.PrismaticX, joints.PrismaticY, joints.RevoluteZ], linkParents=[-1, 0, 1],
-            jointTransformations=exu.Matrix3DList([np.eye(3)] * k), jointOffsets=exu.Vector3DList([[0.0, 0, 0]] * k),
-            linkInertiasCOM=exu.Matrix3DList([none, none, inertia.InertiaCOM()]), linkCOMs=exu.Vector3DList([[0.0, 0, 0]] * k),
-            linkMasses=masses, baseOffset=[0.0, 0, 0],
+            nodeNumber=node,
+            jointTypes=[joints.PrismaticX, joints.PrismaticY, joints.RevoluteZ],
+            linkParents=[-1, 0, 1],
+            jointTransformations=exu.Matrix3DList([np.eye(3)] * k),
+            jointOffsets=exu.Vector3DList([[0.0, 0, 0]] * k),
+            linkInertiasCOM=exu.Matrix3DList([none, none, inertia.InertiaCOM()]),
+            linkCOMs=exu.Vector3DList([[0.0, 0, 0]] * k),
+            linkMasses=masses,
+            baseOffset=[0.0, 0, 0],
         )
-    )  # fmt: skip
+    )
 
     def marker(point):
         return mbs.AddMarker(
@@ -44,7 +52,8 @@ def planar_tree(mbs, inertia):
 
 
 def rod(housing, bush=BUSH):
-    """A free body that turns in its plane carries the bearing off its centre; its item is planar, in space, or a tree's link."""
+    """A free body that turns in its plane carries the bearing off its centre; its item is planar, in space, or a tree's
+    link."""
     mbs = scenes.new_system()
     motion = {"initialVelocity": list(START), "initialAngularVelocity": [0, 0, TURN]}
     if housing == "tree":
@@ -61,23 +70,33 @@ def rod(housing, bush=BUSH):
         centre = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body))
     place = ARM + 30e-6 * np.array([0.4, -0.5, 0.0])
     journal = mbs.CreateRigidBody(
-        referencePosition=list(ARM), initialDisplacement=list(place - ARM), inertia=JOURNAL, initialVelocity=list(START + TURN * np.array([-place[1], place[0], 0.0])),
-        initialAngularVelocity=[0, 0, TURN + 314.0], create2D=True,
-    )  # fmt: skip
+        referencePosition=list(ARM),
+        initialDisplacement=list(place - ARM),
+        inertia=JOURNAL,
+        initialVelocity=list(START + TURN * np.array([-place[1], place[0], 0.0])),
+        initialAngularVelocity=[0, 0, TURN + 314.0],
+        create2D=True,
+    )
     if housing == "tree":
         journal = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
     force = lambda mbs, t, v: [PUSH, PUSH * np.cos(2000.0 * t), 0.0]  # noqa: E731
     mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0, 0, 0], loadVectorUserFunction=force))
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[item, journal], position=[] if housing == "tree" else list(ARM),
-        axis=[0, 0, 1], rotationMatrixAxes=np.eye(3), bearing=bearing(bush),
-    )  # fmt: skip
+        mbs,
+        name="b",
+        itemNumbers=[item, journal],
+        position=[] if housing == "tree" else list(ARM),
+        axis=[0, 0, 1],
+        rotationMatrixAxes=np.eye(3),
+        bearing=bearing(bush),
+    )
     mbs.Assemble()
     return mbs, joint
 
 
 def total(mbs, modes=(), matrix=None):
-    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position, ``matrix`` the `SystemMatrix`."""
+    """Linear momentum in the plane and kinetic energy of everything; ``modes`` are nodes without position, ``matrix``
+    the `SystemMatrix`."""
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
     for part in (SystemMatrix.of(mbs) if matrix is None else matrix).parts:

@@ -59,9 +59,14 @@ def loaded_journal(bearing, load, speed=300.0):
     )
     mbs.CreateForce(itemNumber=journal, loadVector=list(load))
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="bearing", itemNumbers=[mbs.CreateGround(), journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing,
+        mbs,
+        name="bearing",
+        itemNumbers=[mbs.CreateGround(), journal],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=bearing,
         axial=ehd.Held(),
-    )  # fmt: skip
+    )
     return mbs, joint
 
 

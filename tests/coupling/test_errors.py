@@ -12,9 +12,12 @@ import exudyn_ehd as ehd
 
 CLEARANCE = 50e-6
 BEARING = ehd.JournalBearing(
-    journal_radius=0.025, length=0.025, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02),
+    journal_radius=0.025,
+    length=0.025,
+    radial_clearance=CLEARANCE,
+    lubricant=ehd.Lubricant(viscosity=0.02),
     film=ehd.FiniteLength(n_theta=32, n_z=4),
-)  # fmt: skip
+)
 
 
 def system(bearing=BEARING, load=lambda t: -500.0, offset=0.0):
@@ -236,12 +239,16 @@ def test_static_solution_without_stiffness_says_what_is_missing():
 
 
 def test_a_film_that_heats_beyond_any_oil_ends_the_run():
-    """Asperities rub where hardly any oil flows, between adiabatic surfaces: a viscosity of nothing would follow without a sign."""
+    """Asperities rub where hardly any oil flows, between adiabatic surfaces: a viscosity of nothing would follow
+    without a sign."""
     oil = ehd.oil("ISO VG 32", temperature=313.15)
     made = dataclasses.replace(
-        BEARING, lubricant=oil, thermal=ehd.FilmEnergy(supply_temperature=313.15), film=ehd.FiniteLength(n_theta=48, n_z=4),
+        BEARING,
+        lubricant=oil,
+        thermal=ehd.FilmEnergy(supply_temperature=313.15),
+        film=ehd.FiniteLength(n_theta=48, n_z=4),
         asperity=ehd.GreenwoodTripp(composite_roughness=8e-7, composite_modulus=2e10),
-    )  # fmt: skip
+    )
     mbs, joint = system(made, load=lambda t: -40e3)
     with pytest.raises(ehd.FilmError) as caught:
         ehd.SolveDynamic(mbs, settings(500))

@@ -23,9 +23,10 @@ def _run(make_bearing, **options):
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.CreateGround()
     journal = mbs.CreateRigidBody(
-        inertia=InertiaCuboid(7800.0, [0.05, 0.05, 0.05]), initialAngularVelocity=[0.0, 0.0, 150.0],
+        inertia=InertiaCuboid(7800.0, [0.05, 0.05, 0.05]),
+        initialAngularVelocity=[0.0, 0.0, 150.0],
         gravity=[0.0, -9810.0, 0.0],
-    )  # fmt: skip
+    )
     mbs.CreateGenericJoint(itemNumbers=[journal, ground], position=[0, 0, 0], constrainedAxes=[0, 0, 1, 1, 1, 0])
     ehd.CreateLubricatedJoint(mbs, itemNumbers=[ground, journal], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing)
     mbs.Assemble()
@@ -59,8 +60,8 @@ def test_impedance_map_runs_as_its_film(make_bearing, measured):
 def test_newton_needs_as_few_steps_as_the_plain_film(make_bearing, measured, options):
     """The exact tangent holds Newton's iterations at those of the plain film.
 
-    At 25 us per step. At 100 us the plain film takes 3.8 and the mass-conserving one 6.8, because more vertices change between
-    full and cavitated within a step.
+    At 25 us per step. At 100 us the plain film takes 3.8 and the mass-conserving one 6.8, because more vertices change
+    between full and cavitated within a step.
     """
     _, plain = _run(make_bearing, cavitation=ehd.Gumbel() if "film" in options else ehd.SwiftStieber())
     position, steps = _run(make_bearing, **options)

@@ -15,9 +15,13 @@ SPEED = 200.0
 
 def _bearing(**options):
     return ehd.JournalBearing(
-        journal_radius=0.025, length=0.03, radial_clearance=50e-6, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=72, n_z=8), **options,
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.03,
+        radial_clearance=50e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=72, n_z=8),
+        **options,
+    )
 
 
 def _run(bearing, steps=40):

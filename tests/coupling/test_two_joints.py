@@ -23,8 +23,12 @@ def add_journal(mbs, name, place):
         gravity=[0, -100.0, 0],
     )
     bearing = ehd.JournalBearing(
-        journal_radius=0.02, length=0.02, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02), **FILMS[name]
-    )  # fmt: skip
+        journal_radius=0.02,
+        length=0.02,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        **FILMS[name],
+    )
     return ehd.CreateLubricatedJoint(
         mbs, name=name, itemNumbers=[mbs.CreateGround(), body], position=[place, 0, 0], axis=[0, 0, 1], bearing=bearing
     )

@@ -1,4 +1,5 @@
-"""A modal bush with mass in Exudyn: free vibration, Jacobian, energy, slow and fast loads against quasi-static and nodal bushes."""
+"""A modal bush with mass in Exudyn: free vibration, Jacobian, energy, slow and fast loads against quasi-static and
+nodal bushes."""
 
 from __future__ import annotations
 
@@ -63,7 +64,8 @@ def run(bush, end, steps, radius=0.9, **options):
 
 
 def test_slow_load_finds_the_quasi_static_bush():
-    """The journal's path differs by the square of the load's frequency over the bush's: in proportion to the density."""
+    """The journal's path differs by the square of the load's frequency over the bush's: in proportion to the
+    density."""
     end, steps = 4e-3, 80
     # the start's transient has gone by then
     reference = run(STATIC, end, steps, 0.4).joint.history

@@ -1,4 +1,5 @@
-"""Energy and momentum of a run: work on the film against heat, elastic and kinetic energy, to the integrator's order."""
+"""Energy and momentum of a run: work on the film against heat, elastic and kinetic energy, to the integrator's
+order."""
 
 from __future__ import annotations
 
@@ -38,7 +39,8 @@ def slow(*case):
 @pytest.mark.parametrize(
     ("bush", "moving", "steps", "least"),
     [
-        # second order: a quarter; the first quarter millisecond carries a transient of 0.1 ms, which 2 ms / 80 just resolve
+        # second order: a quarter; the first quarter millisecond carries a transient of 0.1 ms, which 2 ms / 80 just
+        # resolve
         ("rigid", False, 80, 3.0),
         ("rigid", True, 80, 3.0),
         ("modal", False, 40, 3.0),

@@ -1,4 +1,5 @@
-"""A free journal with all six coordinates under an off-centre load that swings around: every bush with every closure, over load periods."""
+"""A free journal with all six coordinates under an off-centre load that swings around: every bush with every closure,
+over load periods."""
 
 from __future__ import annotations
 

@@ -18,9 +18,13 @@ C = 30e-6
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=3, radial=2, circumferential=20)
 BEARING = ehd.JournalBearing(
-    journal_radius=0.03, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3),
-    film=ehd.FiniteLength(n_theta=48, n_z=8), bush=ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.1),
-)  # fmt: skip
+    journal_radius=0.03,
+    length=0.066,
+    radial_clearance=C,
+    lubricant=ehd.Lubricant(viscosity=9e-3),
+    film=ehd.FiniteLength(n_theta=48, n_z=8),
+    bush=ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.1),
+)
 
 
 def scene(bearing, *, housing="ground", load=15e3, offset=3e-3, matrix=None):
@@ -31,9 +35,11 @@ def scene(bearing, *, housing="ground", load=15e3, offset=3e-3, matrix=None):
         item = mbs.CreateGround()
     else:
         item = mbs.CreateRigidBody(
-            referenceRotationMatrix=A, inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05), initialVelocity=[0.3, -0.2, 0.1],
+            referenceRotationMatrix=A,
+            inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05),
+            initialVelocity=[0.3, -0.2, 0.1],
             initialAngularVelocity=list(A @ [3.0, -2.0, 5.0]),
-        )  # fmt: skip
+        )
     e = A @ [0.4 * C, -0.5 * C, 0.0]
     spin = A @ [3.0, -2.0, 5.0 + SPEED] if housing != "ground" else [0, 0, SPEED]
     journal = mbs.CreateRigidBody(
@@ -44,9 +50,14 @@ def scene(bearing, *, housing="ground", load=15e3, offset=3e-3, matrix=None):
         inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
     )
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[item, journal], position=[0, 0, 0], axis=list(A[:, 2]), bearing=bearing,
+        mbs,
+        name="b",
+        itemNumbers=[item, journal],
+        position=[0, 0, 0],
+        axis=list(A[:, 2]),
+        bearing=bearing,
         axial=ehd.Held() if housing == "ground" else ehd.Free(),
-    )  # fmt: skip
+    )
     if load:
         marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, offset]))
 

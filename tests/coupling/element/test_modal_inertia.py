@@ -1,4 +1,5 @@
-"""Inertia of a modal bush on a housing that moves: integrals, equations, energy and momentum of runs, the nodal bush as reference."""
+"""Inertia of a modal bush on a housing that moves: integrals, equations, energy and momentum of runs, the nodal bush as
+reference."""
 
 from __future__ import annotations
 
@@ -29,7 +30,8 @@ DYNAMIC = dataclasses.replace(STATIC, dynamics=True)
 
 @pytest.mark.parametrize("kind", ["EP", "Rxyz", "RotVec", "2D"])
 def test_equations_are_those_of_energy_and_momenta_of_the_mesh(kind):
-    """Left-hand side times a rate is the rate of an energy; times a rigid motion that of a momentum: differences over 1e-5 s."""
+    """Left-hand side times a rate is the rate of an energy; times a rigid motion that of a momentum: differences over
+    1e-5 s."""
     modes, rng = bore_modes(DYNAMIC), np.random.default_rng(2)
     nodes = Nodes(modes, STEEL)
     mbs = scenes.new_system()
@@ -135,7 +137,8 @@ def test_momentum_of_a_tree_with_a_bush_is_the_impulse_of_its_load(measured):
 
 
 def accelerated(kind, density, acceleration, spin, steps=25, end=5e-4):
-    """Path of a light journal in a bush on a free housing, pushed within 0.2 ms to an acceleration, turning; body and bush weigh the same."""
+    """Path of a light journal in a bush on a free housing, pushed within 0.2 ms to an acceleration, turning; body and
+    bush weigh the same."""
     material = dataclasses.replace(STEEL, density=density)
     own, mesh = HOUSING, CYLINDER.mesh()
     mass = TotalLagrange(mesh=mesh, material=material).scalar_mass
@@ -153,9 +156,12 @@ def accelerated(kind, density, acceleration, spin, steps=25, end=5e-4):
     # the mesh of a nodal bush weighs by itself
     body = mbs.CreateRigidBody(inertia=own if kind == "nodal" else whole, initialAngularVelocity=[0, 0, spin], **common)
     journal = mbs.CreateRigidBody(
-        inertia=light, initialDisplacement=list(place), initialVelocity=list(np.cross([0, 0, spin], place)),
-        initialAngularVelocity=[0, 0, spin + SPEED], **common,
-    )  # fmt: skip
+        inertia=light,
+        initialDisplacement=list(place),
+        initialVelocity=list(np.cross([0, 0, spin], place)),
+        initialAngularVelocity=[0, 0, spin + SPEED],
+        **common,
+    )
     marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body))
     force = lambda mbs, t, v: [0.5 * push * (1 - np.cos(min(t / 2e-4, 1.0) * np.pi)), 0, 0]  # noqa: E731
     mbs.AddLoad(eii.LoadForceVector(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=force))
@@ -215,9 +221,13 @@ def test_what_is_lighter_than_its_bush_warns_when_it_is_assembled():
         journal = mbs.CreateRigidBody(referencePosition=list(body.point), inertia=HOUSING)
         bush = dataclasses.replace(DYNAMIC, material=dataclasses.replace(STEEL, density=density))
         ehd.CreateLubricatedJoint(
-            mbs, name="big end", itemNumbers=[body.item, journal], position=list(body.point), axis=[0, 0, 1],
+            mbs,
+            name="big end",
+            itemNumbers=[body.item, journal],
+            position=list(body.point),
+            axis=[0, 0, 1],
             bearing=bearing(bush),
-        )  # fmt: skip
+        )
         mbs.Assemble()
         with pytest.warns(UserWarning, match=r"'big end'.*indefinite.* 2\.58\d kg") if light else nullcontext():
             mbs.SolveDynamic(scenes.settings(1e-7, 1, tolerance=1e-6))

@@ -16,9 +16,13 @@ C = 30e-6
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=1, circumferential=12)
 BEARING = ehd.JournalBearing(
-    journal_radius=0.03, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3),
-    film=ehd.FiniteLength(n_theta=48, n_z=8), bush=ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
-)  # fmt: skip
+    journal_radius=0.03,
+    length=0.066,
+    radial_clearance=C,
+    lubricant=ehd.Lubricant(viscosity=9e-3),
+    film=ehd.FiniteLength(n_theta=48, n_z=8),
+    bush=ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
+)
 
 
 def scene(housing, bearing=BEARING, load=15e3):
@@ -33,15 +37,22 @@ def scene(housing, bearing=BEARING, load=15e3):
         item = mbs.CreateRigidBody(referenceRotationMatrix=A, inertia=inertia, initialAngularVelocity=list(turn))
         spin = A @ spin + turn
     journal = mbs.CreateRigidBody(
-        referenceRotationMatrix=A, initialDisplacement=list(A @ [0.4 * C, -0.5 * C, 0.0]),
-        initialAngularVelocity=list(spin), inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
-    )  # fmt: skip
+        referenceRotationMatrix=A,
+        initialDisplacement=list(A @ [0.4 * C, -0.5 * C, 0.0]),
+        initialAngularVelocity=list(spin),
+        inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
+    )
     if load:
         mbs.CreateForce(itemNumber=journal, localPosition=[0, 0, 3e-3], loadVector=[0, -load, 0])
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[item, journal], position=[0, 0, 0], axis=list(A[:, 2]), bearing=bearing,
+        mbs,
+        name="b",
+        itemNumbers=[item, journal],
+        position=[0, 0, 0],
+        axis=list(A[:, 2]),
+        bearing=bearing,
         axial=ehd.Held() if housing == "ground" else ehd.Free(),
-    )  # fmt: skip
+    )
     mbs.Assemble()
     return mbs, joint
 
@@ -143,16 +154,24 @@ def under_rotating_load(bush, place, load=25e3, steps=50):
     film = ehd.FiniteLength(n_theta=144, n_z=16)
     mbs = new_system()
     journal = mbs.CreateRigidBody(
-        initialDisplacement=[*place, 0.0], initialAngularVelocity=[0, 0, SPEED], inertia=InertiaCylinder(7800, 0.3, 0.03, 2)
-    )  # fmt: skip
+        initialDisplacement=[*place, 0.0],
+        initialAngularVelocity=[0, 0, SPEED],
+        inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
+    )
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[mbs.CreateGround(), journal], position=[0, 0, 0], axis=[0, 0, 1],
-        bearing=dataclasses.replace(BEARING, bush=bush, film=film), axial=ehd.Held(),
-    )  # fmt: skip
+        mbs,
+        name="b",
+        itemNumbers=[mbs.CreateGround(), journal],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=dataclasses.replace(BEARING, bush=bush, film=film),
+        axial=ehd.Held(),
+    )
     mbs.CreateForce(
-        itemNumber=journal, loadVector=[0, -load, 0],
+        itemNumber=journal,
+        loadVector=[0, -load, 0],
         loadVectorUserFunction=lambda mbs, t, v: [load * np.sin(SPEED * t), -load * np.cos(SPEED * t), 0],
-    )  # fmt: skip
+    )
     mbs.Assemble()
     solve = ehd.SolveDynamicSparse if isinstance(bush, ehd.ANCFBush) else ehd.SolveDynamic
     solve(mbs, settings(np.pi / SPEED, steps, tolerance=1e-8))
@@ -162,7 +181,8 @@ def under_rotating_load(bush, place, load=25e3, steps=50):
 
 @pytest.mark.slow
 def test_modal_bush_under_a_rotating_load(measured):
-    """Within 1 % of the nodes with the modes of the default tolerance, within 0.1 % with many; on a film that is fine for them."""
+    """Within 1 % of the nodes with the modes of the default tolerance, within 0.1 % with many; on a film that is fine
+    for them."""
     mesh = dataclasses.replace(CYLINDER, axial=4, radial=2, circumferential=40)
     start = ehd.equilibrium(dataclasses.replace(BEARING, bush=None), speed=SPEED, load=(0.0, -25e3)).position
     rigid, nodal = under_rotating_load(None, start), under_rotating_load(ehd.ANCFBush(mesh=mesh, material=STEEL), start)

@@ -1,4 +1,5 @@
-"""The bore of a dynamic modal bush on a shaken and rocked housing, with next to no oil: that of the nodal bush of the same mesh."""
+"""The bore of a dynamic modal bush on a shaken and rocked housing, with next to no oil: that of the nodal bush of the
+same mesh."""
 
 from __future__ import annotations
 
@@ -36,7 +37,8 @@ def with_bush(own):
 
 
 def shaken(bush):
-    """Radial displacement of the bore's nodes against the housing over the steps (n, nodes); the journal moves as the housing does."""
+    """Radial displacement of the bore's nodes against the housing over the steps (n, nodes); the journal moves as the
+    housing does."""
     mbs = scenes.new_system()
     whole, bodies = with_bush(HOUSING), []
     nodal = isinstance(bush, ehd.ANCFBush)
@@ -51,9 +53,13 @@ def shaken(bush):
             mbs.AddLoad(add(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=course))
         bodies.append(body)
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=bodies, position=[0, 0, 0], axis=[0, 0, 1],
+        mbs,
+        name="b",
+        itemNumbers=bodies,
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
         bearing=bearing(bush, lubricant=ehd.Lubricant(viscosity=1e-12)),
-    )  # fmt: skip
+    )
     mbs.Assemble()
     mesh, rows = CYLINDER.mesh(), []
     direction = mesh.bore.positions[:, :2] / np.linalg.norm(mesh.bore.positions[:, :2], axis=1)[:, None]

@@ -1,6 +1,8 @@
-"""Every kind of body in a joint: exact Jacobian, and motion in time against Exudyn's own connector or an equivalent body.
+"""Every kind of body in a joint: exact Jacobian, and motion in time against Exudyn's own connector or an equivalent
+body.
 
-The joint carries a linear law here, so that Exudyn's RigidBodySpringDamper is the same model: the two integrate the same equations.
+The joint carries a linear law here, so that Exudyn's RigidBodySpringDamper is the same model: the two integrate the
+same equations.
 """
 
 from __future__ import annotations
@@ -31,10 +33,15 @@ def connected(make):
     rate = np.array([DAMPING, DAMPING, 0, 1e-3 * TILTING, 1e-3 * TILTING, 0])
     mbs.AddObject(
         eii.ObjectConnectorRigidBodySpringDamper(
-            markerNumbers=[mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=ground, localPosition=list(point))), body.marker()],
-            stiffness=np.diag(law), damping=np.diag(rate), useIntrinsicFormulation=False,
+            markerNumbers=[
+                mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=ground, localPosition=list(point))),
+                body.marker(),
+            ],
+            stiffness=np.diag(law),
+            damping=np.diag(rate),
+            useIntrinsicFormulation=False,
         )
-    )  # fmt: skip
+    )
     return mbs, body
 
 
@@ -62,8 +69,8 @@ def difference(got, expected):
 @pytest.mark.parametrize("role", ["journal", "housing"])
 @pytest.mark.parametrize("kind", AGAINST_CONNECTOR)
 def test_motion_is_that_of_exudyns_own_connector(kind, role, measured):
-    """The connector takes tilt as angles, displacement without tilt times axial play, and damps in its own frame: all differences are
-    products of two small motions, here of 1e-6 m and 1e-5 rad, against the motion itself."""
+    """The connector takes tilt as angles, displacement without tilt times axial play, and damps in its own frame: all
+    differences are products of two small motions, here of 1e-6 m and 1e-5 rad, against the motion itself."""
     expected = travel(connected(AGAINST_CONNECTOR[kind])[0])
     mbs, _, _ = joined(AGAINST_CONNECTOR[kind], role)
     got = travel(mbs)
@@ -80,9 +87,9 @@ AXES = [(kind, axis) for kind in JACOBIANS for axis in ((0, 0, 1), (1, 0, 0)) if
 def test_jacobian_is_the_derivative_of_the_force(kind, axis):
     """A moving journal with the toy's film against central differences through the assembled system.
 
-    Steps of 3e-8 m beside 1 mm of clearance: 1e-9 of truncation, 1e-16 / 3e-5 of rounding. The rotation between the nodes of a
-    geometrically exact beam turns at the interpolated angular velocity but for the square of their relative rotation (3e-5 here); modes
-    of an FE body change its averaged rotation to second order.
+    Steps of 3e-8 m beside 1 mm of clearance: 1e-9 of truncation, 1e-16 / 3e-5 of rounding. The rotation between the
+    nodes of a geometrically exact beam turns at the interpolated angular velocity but for the square of their relative
+    rotation (3e-5 here); modes of an FE body change its averaged rotation to second order.
     """
     make = JACOBIANS[kind]
     mbs = scenes.new_system()
@@ -98,7 +105,8 @@ def test_jacobian_is_the_derivative_of_the_force(kind, axis):
     mbs.systemData.SetODE2Coordinates(q.tolist())
     mbs.systemData.SetODE2Coordinates_t(q_t.tolist())
     places = mbs.systemData.GetObjectLTGODE2(joint.objectNumber)
-    # the differences of Lie group nodes and of Euler parameters that leave the unit sphere are no variations that Newton takes
+    # the differences of Lie group nodes and of Euler parameters that leave the unit sphere are no variations that
+    # Newton takes
     if kind.endswith(("EP", "RotVec")):
         places = [i for i in places if i not in _rotations(mbs, body)]
 
@@ -175,10 +183,9 @@ def test_spatial_cable_along_the_axis_is_held_like_by_a_cartesian_spring(measure
 
 @pytest.mark.parametrize("role", ["journal", "housing"])
 def test_exact_beam_along_its_length_moves_like_exudyns_own_connector(role, measured):
-    """One element does not bend under a force that its velocities share linearly between the nodes: the arc that Exudyn draws between them
-    and the chord are the same line, and the two models differ by products of small motions only. Exudyn's element sums large forces, which
-    forbids a Newton tolerance below 1e-7.
-    """
+    """One element does not bend under a force that its velocities share linearly between the nodes: the arc that Exudyn
+    draws between them and the chord are the same line, and the two models differ by products of small motions only.
+    Exudyn's element sums large forces, which forbids a Newton tolerance below 1e-7."""
 
     def make(mbs):
         body = bodies.exact_beam("Rxyz")(mbs, stiffness=100.0)
@@ -197,7 +204,8 @@ def test_planar_exact_beam_along_its_length_moves_like_a_spatial_one(measured):
 
 
 def test_position_on_a_soft_exact_beam_has_the_velocity_as_its_rate():
-    """What Exudyn's own output for a point between the nodes does not have; central differences of step 1e-6 s at 1 rad/s."""
+    """What Exudyn's own output for a point between the nodes does not have; central differences of step 1e-6 s at 1
+    rad/s."""
     mbs, _, joint = joined(bodies.exact_beam("Rxyz"))
     side = joint.element.sides[1]
     rng = np.random.default_rng(4)
@@ -259,10 +267,12 @@ def test_two_links_of_one_tree_close_a_loop(measured):
         if connector:
             mbs.AddObject(
                 eii.ObjectConnectorRigidBodySpringDamper(
-                    markerNumbers=[first, body.item], stiffness=np.diag([STIFFNESS, STIFFNESS, 0, TILTING, TILTING, 0]),
-                    damping=np.diag([DAMPING, DAMPING, 0, 1e-3 * TILTING, 1e-3 * TILTING, 0]), useIntrinsicFormulation=False,
+                    markerNumbers=[first, body.item],
+                    stiffness=np.diag([STIFFNESS, STIFFNESS, 0, TILTING, TILTING, 0]),
+                    damping=np.diag([DAMPING, DAMPING, 0, 1e-3 * TILTING, 1e-3 * TILTING, 0]),
+                    useIntrinsicFormulation=False,
                 )
-            )  # fmt: skip
+            )
         else:
             toy.attach(mbs, [first, body.item], Spring(True))
         paths.append(travel(mbs))

@@ -1,4 +1,5 @@
-"""Nodal bushes on every kind of body: kinematics of the slaved nodes, Jacobian, starts in motion, runs, momentum and energy."""
+"""Nodal bushes on every kind of body: kinematics of the slaved nodes, Jacobian, starts in motion, runs, momentum and
+energy."""
 
 from __future__ import annotations
 
@@ -28,8 +29,11 @@ def carried(kind, rates=0.0, seed=3):
     item = resolve(mbs, "item", body.item)
     point = item.position if body.point is None else np.array(body.point)
     bush = CreateFlexibleBush(
-        mbs, bush=ehd.ANCFBush(mesh=RING, material=SOFT), outer=CarriedOuter(itemNumber=body.item), position=point + [0, 0, 0.02 * (kind != "ANCF beam node")]
-    )  # fmt: skip
+        mbs,
+        bush=ehd.ANCFBush(mesh=RING, material=SOFT),
+        outer=CarriedOuter(itemNumber=body.item),
+        position=point + [0, 0, 0.02 * (kind != "ANCF beam node")],
+    )
     mbs.Assemble()
     rng = np.random.default_rng(seed)
     n = mbs.systemData.ODE2Size()
@@ -48,15 +52,15 @@ def state(bush):
     return bush.coordinates()[n:], bush.coordinates_t()[n:]
 
 
-# The averaged rotation of finite elements is linear in small displacements only, 1e-3 here; a geometrically exact beam in space turns at its
-# interpolated angular velocity but for the square of its nodes' relative rotation.
+# The averaged rotation of finite elements is linear in small displacements only, 1e-3 here; a geometrically exact beam
+# in space turns at its interpolated angular velocity but for the square of its nodes' relative rotation.
 LOOSE = {"nodal FE body": 5e-3, "reduced FE body Rxyz": 3e-4, "reduced FE body EP": 3e-4, "exact beam element": 1e-4}
 
 
 @pytest.mark.parametrize("kind", [k for k in JACOBIANS if not k.endswith("RotVec") and k != "reduced FE body EP"])
 def test_slaved_nodes_move_as_their_jacobian_and_accelerations_say(kind, measured):
-    """Central differences along the rates, 1e-5 s. Random Euler parameters of Exudyn's own markers are no rotations, and rotation vectors
-    don't change by their angular velocity: those are left out."""
+    """Central differences along the rates, 1e-5 s. Random Euler parameters of Exudyn's own markers are no rotations,
+    and rotation vectors don't change by their angular velocity: those are left out."""
     mbs, _, bush = carried(kind, rates=0.3)
     carrier = bush.equations.carrier
     q, q_t = state(bush)
@@ -152,7 +156,8 @@ MODAL = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False
 
 @pytest.mark.parametrize("dynamics", [False, True])
 def test_modal_bushes_on_a_link_of_a_tree_start_and_run_as_on_a_planar_body(dynamics, measured):
-    """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by differences."""
+    """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by
+    differences."""
     records = []
     for housing in ("planar", "tree"):
         mbs, joint = rod(housing, dataclasses.replace(MODAL, dynamics=dynamics))
@@ -172,15 +177,22 @@ def held(kind, bush):
     item = resolve(mbs, "item", body.item)
     point = item.position if body.point is None else np.array(body.point)
     journal = mbs.CreateRigidBody(
-        referencePosition=list(point), initialDisplacement=[1e-5, -1e-5, 0], inertia=JOURNAL, create2D=body.planar,
+        referencePosition=list(point),
+        initialDisplacement=[1e-5, -1e-5, 0],
+        inertia=JOURNAL,
+        create2D=body.planar,
         initialAngularVelocity=[0, 0, 314.0],
-    )  # fmt: skip
+    )
     if item.is_marker:
         journal = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[body.item, journal], position=[] if item.is_marker else list(point), axis=[0, 0, 1],
+        mbs,
+        name="b",
+        itemNumbers=[body.item, journal],
+        position=[] if item.is_marker else list(point),
+        axis=[0, 0, 1],
         bearing=bearing(bush, n_theta=32, n_z=6, length=0.05),
-    )  # fmt: skip
+    )
     mbs.Assemble()
     return mbs, joint
 
@@ -203,7 +215,8 @@ def test_modal_bushes_start_in_equilibrium_on_every_body(kind, dynamics, measure
 
 
 def held_by(kind, bush, steps=10):
-    """Gain of momentum, history and Newton iterations of a short run with a body as housing, Exudyn's own full Newton."""
+    """Gain of momentum, history and Newton iterations of a short run with a body as housing, Exudyn's own full
+    Newton."""
     mbs, joint = held(kind, bush)
     before, _ = total(mbs)
     mbs.SolveDynamic(scenes.settings(steps * 2e-5, steps, tolerance=1e-8))
@@ -214,7 +227,8 @@ def held_by(kind, bush, steps=10):
     "kind", ["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"]
 )
 def test_flexible_bodies_carry_a_bush_under_a_film(kind, measured):
-    """The housing's load alone gives momentum, 2e-4 Ns beside a film force of 17 kN; as much as with a rigid bearing."""
+    """The housing's load alone gives momentum, 2e-4 Ns beside a film force of 17 kN; as much as with a rigid
+    bearing."""
     gain, history, iterations = held_by(kind, ehd.ANCFBush(mesh=RING, material=STEEL))
     assert len(history.time) == 11
     measured("Newton iterations per step", iterations / 10, 6.0)

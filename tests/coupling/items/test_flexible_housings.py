@@ -1,4 +1,5 @@
-"""Nodal bushes on beams, cables and finite-element bodies over periods of a rotating load: momentum, energy, Newton's cost.
+"""Nodal bushes on beams, cables and finite-element bodies over periods of a rotating load: momentum, energy, Newton's
+cost.
 
 The housing floats freely; the load acts on the journal and turns with its spin, in the plane normal to its axis.
 """
@@ -51,18 +52,24 @@ class Run:
         point = item.position if self.body.point is None else np.array(self.body.point)
         self.flexible = exu.ObjectIndex(0)
         journal = mbs.CreateRigidBody(
-            referencePosition=list(point), initialDisplacement=[0.3 * CLEARANCE, 0, 0], inertia=JOURNAL, create2D=True,
+            referencePosition=list(point),
+            initialDisplacement=[0.3 * CLEARANCE, 0, 0],
+            inertia=JOURNAL,
+            create2D=True,
             initialAngularVelocity=[0, 0, SPEED],
-        )  # fmt: skip
+        )
         self.journal = exu.NodeIndex(int(mbs.GetObject(journal)["nodeNumber"]))
         marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
         force = lambda mbs, t, v: [*load(t), 0.0]  # noqa: E731
         mbs.AddLoad(eii.LoadForceVector(markerNumber=marker, loadVector=[0, 0, 0], loadVectorUserFunction=force))
         self.joint = ehd.CreateLubricatedJoint(
-            mbs, name="b", itemNumbers=[self.body.item, marker if item.is_marker else journal],
-            position=[] if item.is_marker else list(point), axis=[0, 0, 1],
+            mbs,
+            name="b",
+            itemNumbers=[self.body.item, marker if item.is_marker else journal],
+            position=[] if item.is_marker else list(point),
+            axis=[0, 0, 1],
             bearing=bearing(BUSH, n_theta=32, n_z=6, length=0.05, lubricant=ehd.Lubricant(viscosity=2e-3)),
-        )  # fmt: skip
+        )
         mbs.Assemble()
         self.modes = self.body.nodes[1:] if kind == "reduced FE body" else ()
         self.stiffness = self.elements(kind)
@@ -109,7 +116,8 @@ class Run:
         return self.dead @ velocity[:2]
 
     def errors(self):
-        """Of momentum over the load's impulse in half a period, and of energy over what the film took; trapezoidal rule."""
+        """Of momentum over the load's impulse in half a period, and of energy over what the film took; trapezoidal
+        rule."""
         rows = np.array(self.rows)
         t, push, momentum, power, energy = rows[:, 0], rows[:, 1:3], rows[:, 3:5], rows[:, 5], rows[:, 6]
         history = self.joint.history

@@ -1,4 +1,5 @@
-"""The film in the bore of a user's ObjectFFRFreducedOrder: against a modal bush of the same mesh, a rigid bore, and itself moved."""
+"""The film in the bore of a user's ObjectFFRFreducedOrder: against a modal bush of the same mesh, a rigid bore, and
+itself moved."""
 
 from __future__ import annotations
 
@@ -28,19 +29,30 @@ def material(youngs_modulus):
 
 def bearing(bush):
     return ehd.JournalBearing(
-        journal_radius=0.03, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3),
-        film=ehd.FiniteLength(n_theta=48, n_z=8), bush=bush,
-    )  # fmt: skip
+        journal_radius=0.03,
+        length=0.066,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=9e-3),
+        film=ehd.FiniteLength(n_theta=48, n_z=8),
+        bush=bush,
+    )
 
 
 def bush_body(mbs, youngs_modulus=5e10, held=True, rotation=None, tolerance=TOLERANCE, tilted=True):
-    """The cylinder as reduced body, its outer surface carrying the frame; returns the parts, the FEMinterface and the report."""
+    """The cylinder as reduced body, its outer surface carrying the frame; returns the parts, the FEMinterface and the
+    report."""
     mesh = CYLINDER.mesh()
     fem = bodies.fem_of(mesh, material(youngs_modulus))
     report = ehd.add_bore_modes(
-        fem, position=[0, 0, 0], axis=[0, 0, 1], radius=0.03, length=0.066, fixed_nodes=mesh.outer.nodes, tolerance=tolerance,
+        fem,
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        radius=0.03,
+        length=0.066,
+        fixed_nodes=mesh.outer.nodes,
+        tolerance=tolerance,
         tilted=tilted,
-    )  # fmt: skip
+    )
     cms = ObjectFFRFreducedOrderInterface(fem, rigidBodyNodeType="NodeType.RotationRxyz")
     parts = cms.AddObjectFFRFreducedOrder(mbs, rotationMatrixRef=[] if rotation is None else rotation)
     if held:
@@ -63,13 +75,19 @@ def journal_run(kind, youngs_modulus=5e10, steps=60, step=1e-4):
     elif kind == "modal bush":
         bush = ehd.ModalBush(mesh=CYLINDER, material=material(youngs_modulus), tolerance=TOLERANCE, tilted=False)
     journal = mbs.CreateRigidBody(
-        initialDisplacement=[0.4 * C, -0.5 * C, 0], initialAngularVelocity=[0, 0, SPEED],
-        inertia=InertiaCylinder(7800, 0.3, 0.03, 2), nodeType=exu.NodeType.RotationRxyz,
-    )  # fmt: skip
+        initialDisplacement=[0.4 * C, -0.5 * C, 0],
+        initialAngularVelocity=[0, 0, SPEED],
+        inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
+        nodeType=exu.NodeType.RotationRxyz,
+    )
     joint = ehd.CreateLubricatedJoint(
-        mbs, name=kind, itemNumbers=[mbs.CreateGround() if housing is None else housing, journal], position=[0, 0, 0],
-        axis=[0, 0, 1], bearing=bearing(bush),
-    )  # fmt: skip
+        mbs,
+        name=kind,
+        itemNumbers=[mbs.CreateGround() if housing is None else housing, journal],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=bearing(bush),
+    )
     marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=journal, localPosition=[0, 0, 0]))
 
     def swing(mbs, t, vector):
@@ -85,7 +103,8 @@ def journal_run(kind, youngs_modulus=5e10, steps=60, step=1e-4):
 
 
 def test_reduced_body_is_the_modal_bush_of_the_same_mesh(measured):
-    """Same mesh, modes and film, but that the body's modes have mass and its frame follows the bore; both start settled."""
+    """Same mesh, modes and film, but that the body's modes have mass and its frame follows the bore; both start
+    settled."""
     rigid, modal, body = (journal_run(kind, steps=40) for kind in ("rigid", "modal bush", "reduced body"))
     after = slice(10, None)
     for name in ("peak_pressure", "minimum_gap"):
@@ -96,8 +115,8 @@ def test_reduced_body_is_the_modal_bush_of_the_same_mesh(measured):
 
 
 def test_stiff_reduced_body_is_a_rigid_bore(measured):
-    """The deviation falls with the compliance: 1.4e-2, 1.5e-3, 1.5e-4 at 1e2, 1e3, 1e4 times steel's modulus, most of it in the first
-    steps, where the bore takes up its motion."""
+    """The deviation falls with the compliance: 1.4e-2, 1.5e-3, 1.5e-4 at 1e2, 1e3, 1e4 times steel's modulus, most of
+    it in the first steps, where the bore takes up its motion."""
     rigid, body = journal_run("rigid", steps=20), journal_run("reduced body", youngs_modulus=2.1e15, steps=20)
     for name in ("peak_pressure", "eccentricity"):
         expected = getattr(rigid, name)
@@ -111,9 +130,13 @@ def moving():
     body, fem, _ = bush_body(mbs, held=False, rotation=rotation, tolerance=0.2)
     journal = scenes.add_body(mbs, "Rxyz", matrix=rotation)
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="b", itemNumbers=[body, journal], position=[0, 0, 0], axis=rotation[:, 2],
+        mbs,
+        name="b",
+        itemNumbers=[body, journal],
+        position=[0, 0, 0],
+        axis=rotation[:, 2],
         bearing=bearing(ehd.FEBore(fem=fem, settled=False)),
-    )  # fmt: skip
+    )
     mbs.Assemble()
     rng = np.random.default_rng(2)
     n = mbs.systemData.ODE2Size()
@@ -131,8 +154,8 @@ def moving():
 
 
 def test_jacobian_is_the_derivative_of_the_force():
-    """Steps of 1e-9 beside a gap of 2e-5 m: (5e-5)^2 of truncation, 1e-16 / 5e-5 of rounding, a film's kinks at its rupture; 1e-4 of a
-    coordinate's largest entry."""
+    """Steps of 1e-9 beside a gap of 2e-5 m: (5e-5)^2 of truncation, 1e-16 / 5e-5 of rounding, a film's kinks at its
+    rupture; 1e-4 of a coordinate's largest entry."""
     mbs, joint = moving()
     places = list(range(mbs.systemData.ODE2Size()))
 
@@ -192,10 +215,12 @@ def test_modes_report_and_modes_beyond_those_that_are_there():
 
 
 def test_thin_eye_on_a_shank_keeps_what_the_film_sees(measured):
-    """A ring held at one side moves and gets oval 17 times as much as it deforms locally; the modes must have the latter.
+    """A ring held at one side moves and gets oval 17 times as much as it deforms locally; the modes must have the
+    latter.
 
-    Full mesh against modes under a pressure of its own, (1 - (x / 0.8)^2)^2 over the angle x: error over the deformation beyond two waves,
-    0.009. A tolerance over the whole displacement would be met by modes of two waves, with an error of 0.12.
+    Full mesh against modes under a pressure of its own, (1 - (x / 0.8)^2)^2 over the angle x: error over the
+    deformation beyond two waves, 0.009. A tolerance over the whole displacement would be met by modes of two waves,
+    with an error of 0.12.
     """
     mesh = ehd.HollowCylinder(
         inner_radius=0.03, thickness=0.006, length=0.03, axial=2, radial=1, circumferential=40
@@ -203,8 +228,15 @@ def test_thin_eye_on_a_shank_keeps_what_the_film_sees(measured):
     fem = bodies.fem_of(mesh, material(2.1e11))
     held = mesh.outer.nodes[np.abs(mesh.outer.theta) < 0.3]
     ehd.add_bore_modes(
-        fem, position=[0, 0, 0], axis=[0, 0, 1], radius=0.03, length=0.03, fixed_nodes=held, tolerance=TOLERANCE, tilted=False
-    )  # fmt: skip
+        fem,
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        radius=0.03,
+        length=0.03,
+        fixed_nodes=held,
+        tolerance=TOLERANCE,
+        tilted=False,
+    )
     theta = 2 * np.pi * np.arange(360) / 360
     grid = np.repeat(theta, 9), np.tile(np.linspace(-0.015, 0.015, 9), 360)
     H = mesh.bore.radial_interpolation(*grid)
@@ -239,9 +271,12 @@ def test_input_that_cannot_be_meant():
     def join(item=body, position=(0, 0, 0), **options):
         spec = {"journal_radius": 0.03, "length": 0.066, "bush": ehd.FEBore(fem=fem)} | options
         return ehd.CreateLubricatedJoint(
-            mbs, itemNumbers=[item, journal], position=position, axis=[0, 0, 1],
+            mbs,
+            itemNumbers=[item, journal],
+            position=position,
+            axis=[0, 0, 1],
             bearing=ehd.JournalBearing(radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3), **spec),
-        )  # fmt: skip
+        )
 
     for options, match in (
         ({"journal_radius": 0.0375}, "nodes lie on the bore"),

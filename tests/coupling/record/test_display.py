@@ -94,7 +94,8 @@ def test_image_of_the_ray_tracer_needs_no_display(monkeypatch):
     container.renderer.SetModelView(zoom=0.08, rotationVector=[-0.9, 0.5, 0.0])
     image = np.array(container.renderer.RedrawAndGetImage(True))
     assert image.shape == (120, 160, 3)
-    # the hue of the map's yellow end (253, 231, 37), however much light falls on it; nothing else in the scene is yellow
+    # the hue of the map's yellow end (253, 231, 37), however much light falls on it; nothing else in the scene is
+    # yellow
     red, green, blue = (image[..., k].astype(int) for k in range(3))
     assert np.count_nonzero((red > 40) & (green > 0.7 * red) & (blue < 0.4 * red)) > 20
 

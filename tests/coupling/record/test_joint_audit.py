@@ -20,11 +20,17 @@ def cache(tmp_path_factory, monkeypatch):
 
 def _joint(load=2000.0, assemble=True, **options):
     bearing = ehd.JournalBearing(
-        **({
-            "journal_radius": 0.02, "length": 0.02, "radial_clearance": 20e-6, "lubricant": ehd.Lubricant(viscosity=0.02),
-            "film": ehd.FiniteLength(n_theta=48, n_z=6),
-        } | options)
-    )  # fmt: skip
+        **(
+            {
+                "journal_radius": 0.02,
+                "length": 0.02,
+                "radial_clearance": 20e-6,
+                "lubricant": ehd.Lubricant(viscosity=0.02),
+                "film": ehd.FiniteLength(n_theta=48, n_z=6),
+            }
+            | options
+        )
+    )
     mbs = scenes.new_system()
     ground = scenes.add_body(mbs, "ground")
     body = scenes.add_body(mbs, "2D", spin=(0, 0, SPEED))
@@ -79,7 +85,8 @@ def test_fields_of_a_film_that_remembers_are_those_of_the_run():
     found = joint.audit()
     law = 2e-8  # the coefficient that the audit takes where none is named
     peak = np.max(joint.history.peak_pressure[1:])
-    # The record starts flooded and is run again from its first step: the same films, up to Newton's tolerance of the run.
+    # The record starts flooded and is run again from its first step: the same films, up to Newton's tolerance of the
+    # run.
     assert found["piezoviscosity"].value == pytest.approx(law * peak, rel=1e-6)
 
 
@@ -124,7 +131,8 @@ FLEXIBLE = {
 )
 @pytest.mark.parametrize("kind", FLEXIBLE)
 def test_a_flexible_bore_is_audited_as_deformed(kind, cavitation):
-    """Against the films that the run kept. Indicators of the field are those of a settled bore, the others those of the run."""
+    """Against the films that the run kept. Indicators of the field are those of a settled bore, the others those of the
+    run."""
     scene = elastic_scene.Scene(elastic_scene.bearing(FLEXIBLE[kind], cavitation=cavitation))
     joint = scene.joint
     joint.record_films(period=0.0)

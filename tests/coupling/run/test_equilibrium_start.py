@@ -13,9 +13,12 @@ import exudyn_ehd as ehd
 
 CLEARANCE, SPEED, LOAD = 30e-6, 300.0, 600.0
 PLAIN = ehd.JournalBearing(
-    journal_radius=0.02, length=0.016, radial_clearance=CLEARANCE,
-    lubricant=ehd.oil("ISO VG 32", temperature=313.15), film=ehd.FiniteLength(n_theta=48, n_z=6),
-)  # fmt: skip
+    journal_radius=0.02,
+    length=0.016,
+    radial_clearance=CLEARANCE,
+    lubricant=ehd.oil("ISO VG 32", temperature=313.15),
+    film=ehd.FiniteLength(n_theta=48, n_z=6),
+)
 MESH = ehd.HollowCylinder(inner_radius=0.02, thickness=0.01, length=0.016, axial=2, radial=2, circumferential=16)
 SOFT = ehd.SaintVenantKirchhoff(youngs_modulus=2e9, poisson_ratio=0.3, density=1200.0)
 BEARINGS = {
@@ -37,15 +40,22 @@ def scene(bearing, frame=None, planar=False):
         body = mbs.AddObject(eii.ObjectRigidBody2D(nodeNumber=node, mass=2.0, inertia=10.0))
     else:
         body = mbs.CreateRigidBody(
-            referencePosition=[0.1, 0.2, 0.3], referenceRotationMatrix=A, inertia=_inertia(),
-            nodeType=exu.NodeType.RotationRotationVector, initialAngularVelocity=list(A @ [0, 0, SPEED]),
-        )  # fmt: skip
+            referencePosition=[0.1, 0.2, 0.3],
+            referenceRotationMatrix=A,
+            inertia=_inertia(),
+            nodeType=exu.NodeType.RotationRotationVector,
+            initialAngularVelocity=list(A @ [0, 0, SPEED]),
+        )
     marker = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
     mbs.AddLoad(eii.LoadForceVector(markerNumber=marker, loadVector=list(A @ [0.3 * LOAD, -LOAD, 0])))
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="main", itemNumbers=[ground, body], position=[0, 0, 0] if planar else [0.1, 0.2, 0.3], axis=list(A[:, 2]),
+        mbs,
+        name="main",
+        itemNumbers=[ground, body],
+        position=[0, 0, 0] if planar else [0.1, 0.2, 0.3],
+        axis=list(A[:, 2]),
         bearing=bearing,
-    )  # fmt: skip
+    )
     mbs.Assemble()
     return mbs, joint
 

@@ -1,4 +1,5 @@
-"""Newton's iterations and Jacobians on every bore, in the runs of the table of bush costs: within two of the rigid bore's, under either Newton."""
+"""Newton's iterations and Jacobians on every bore, in the runs of the table of bush costs: within two of the rigid
+bore's, under either Newton."""
 
 from __future__ import annotations
 
@@ -54,7 +55,8 @@ def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, state
 
 @pytest.mark.slow
 def test_iterations_and_factors_of_nodal_bores():
-    """`SolveDynamicSparse` keeps the mesh's factor while it serves: full Newton's iterations with a factor in every other step."""
+    """`SolveDynamicSparse` keeps the mesh's factor while it serves: full Newton's iterations with a factor in every
+    other step."""
     rigid = counts("rigid, tilted", False, 20)[0]
     for name in ("`ANCFBush`, 4 x 1 x 24 elements", "`ANCFBush`, 4 x 2 x 40 elements"):
         iterations, factors = counts(name, False, 20)

@@ -13,9 +13,12 @@ import exudyn_ehd as ehd
 
 CLEARANCE = 30e-6
 PLAIN = ehd.JournalBearing(
-    journal_radius=0.02, length=0.02, radial_clearance=CLEARANCE,
-    lubricant=ehd.oil("ISO VG 32", temperature=313.15), film=ehd.FiniteLength(n_theta=48, n_z=6),
-)  # fmt: skip
+    journal_radius=0.02,
+    length=0.02,
+    radial_clearance=CLEARANCE,
+    lubricant=ehd.oil("ISO VG 32", temperature=313.15),
+    film=ehd.FiniteLength(n_theta=48, n_z=6),
+)
 ROUGH = ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=2e10)
 BEARINGS = {
     "plain": PLAIN,
@@ -39,18 +42,20 @@ def system(bearing):
     ground = mbs.CreateGround()
     body = mbs.AddNode(
         eii.NodeRigidBodyRxyz(
-            referenceCoordinates=[0.0] * 6, initialCoordinates=[0, -0.3 * CLEARANCE, 0, 0, 0, 0],
+            referenceCoordinates=[0.0] * 6,
+            initialCoordinates=[0, -0.3 * CLEARANCE, 0, 0, 0, 0],
             initialVelocities=[0, 0, 0, 0, 0, 200.0],
         )
-    )  # fmt: skip
+    )
     body = mbs.AddObject(eii.ObjectRigidBody(mass=2.0, inertia=[2e-3, 2e-3, 1e-3, 0, 0, 0], nodeNumber=body))
     marker = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body, localPosition=[0, 0, 1e-3]))
     mbs.AddLoad(
         eii.LoadForceVector(
-            markerNumber=marker, loadVector=[0, 0, 0],
+            markerNumber=marker,
+            loadVector=[0, 0, 0],
             loadVectorUserFunction=lambda mbs, t, v: [800.0 * np.sin(300 * t), -1500.0, 0],
         )
-    )  # fmt: skip
+    )
     joint = ehd.CreateLubricatedJoint(
         mbs,
         name="main",
@@ -204,8 +209,11 @@ def test_files_are_whole_and_foreign_ones_are_refused(tmp_path):
     damaged = bytearray(raw)
     damaged[len(raw) // 2] ^= 0xFF
     files = {
-        "empty": b"", "text": b"not a state", "cut": raw[: len(raw) // 2], "damaged": bytes(damaged),
-    }  # fmt: skip
+        "empty": b"",
+        "text": b"not a state",
+        "cut": raw[: len(raw) // 2],
+        "damaged": bytes(damaged),
+    }
     np.savez(tmp_path / "other.npz", a=np.zeros(3))
     for name, content in files.items():
         (tmp_path / f"{name}.npz").write_bytes(content)

@@ -27,9 +27,15 @@ EFFECTS = {
 
 def run(laws, thermal, cavitation):
     bearing = ehd.JournalBearing(
-        journal_radius=0.02, length=0.02, radial_clearance=20e-6, lubricant=dataclasses.replace(OIL, **laws),
-        thermal=thermal, cavitation=cavitation, end_pressures=(1e5, 1e5), film=ehd.FiniteLength(n_theta=48, n_z=8),
-    )  # fmt: skip
+        journal_radius=0.02,
+        length=0.02,
+        radial_clearance=20e-6,
+        lubricant=dataclasses.replace(OIL, **laws),
+        thermal=thermal,
+        cavitation=cavitation,
+        end_pressures=(1e5, 1e5),
+        film=ehd.FiniteLength(n_theta=48, n_z=8),
+    )
     mbs = scenes.new_system()
     ground = scenes.add_body(mbs, "ground")
     body = scenes.add_body(mbs, "RotVec", spin=(0, 0, SPEED), gravity=[0, -500.0, 0])
@@ -51,7 +57,8 @@ def test_run_with_every_law(name, plain):
     cavitation, expected, reference = plain
     iterations, joint = run(*EFFECTS[name], cavitation)
     print(
-        f"{name} {type(cavitation).__name__}: {iterations / STEPS:.2f} iterations per step, plain {expected / STEPS:.2f}"
+        f"{name} {type(cavitation).__name__}: {iterations / STEPS:.2f} iterations per step, plain "
+        f"{expected / STEPS:.2f}"
     )
     # a quarter of an iteration more: piezoviscosity makes the film more nonlinear where the cavity moves
     assert iterations <= expected + 0.25 * STEPS

@@ -20,9 +20,12 @@ def _model(load=-500.0, function=0):
     centre = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body))
     mbs.AddLoad(eii.LoadForceVector(markerNumber=centre, loadVector=[0, load, 0], loadVectorUserFunction=function))
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.025, radial_clearance=50e-6, lubricant=ehd.Lubricant(viscosity=0.02),
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=50e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
         film=ehd.FiniteLength(n_theta=48, n_z=6),
-    )  # fmt: skip
+    )
     joint = ehd.CreateLubricatedJoint(
         mbs, name="film", itemNumbers=[ground, body], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing
     )

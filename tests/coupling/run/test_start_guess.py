@@ -1,4 +1,5 @@
-"""Where Newton's method starts in a step: the same motion with fewer iterations, for every integrator and node type, and hooks given back."""
+"""Where Newton's method starts in a step: the same motion with fewer iterations, for every integrator and node type,
+and hooks given back."""
 
 import math
 
@@ -22,7 +23,8 @@ BEARING = ehd.JournalBearing(
 
 
 def crank_pin(node="Rxyz", speed=SPEED):
-    """A body that a crank pin carries around: 4.5 km/s2, and a film in between. Housing free of rotation by soft springs."""
+    """A body that a crank pin carries around: 4.5 km/s2, and a film in between. Housing free of rotation by soft
+    springs."""
     mbs = scenes.new_system()
     origin = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
     crank_node = mbs.AddNode(eii.NodeRigidBody2D(referenceCoordinates=[0, 0, 0], initialVelocities=[0, 0, speed]))

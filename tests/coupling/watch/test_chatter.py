@@ -1,4 +1,5 @@
-"""Explicit solvers beyond their stability limit: a linear film with the limit in closed form, a real film, and no false alarm."""
+"""Explicit solvers beyond their stability limit: a linear film with the limit in closed form, a real film, and no false
+alarm."""
 
 import exudyn as exu
 import numpy as np

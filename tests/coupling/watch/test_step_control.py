@@ -10,9 +10,12 @@ import exudyn_ehd as ehd
 
 CLEARANCE = 50e-6
 BEARING = ehd.JournalBearing(
-    journal_radius=0.025, length=0.025, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02),
+    journal_radius=0.025,
+    length=0.025,
+    radial_clearance=CLEARANCE,
+    lubricant=ehd.Lubricant(viscosity=0.02),
     film=ehd.FiniteLength(n_theta=32, n_z=4),
-)  # fmt: skip
+)
 
 
 def run(control, step=1e-3, solver=None):
@@ -25,8 +28,14 @@ def run(control, step=1e-3, solver=None):
         gravity=[0, -500.0, 0],
     )
     joint = ehd.CreateLubricatedJoint(
-        mbs, name="j", itemNumbers=[ground, body], position=[0, 0, 0], axis=[0, 0, 1], bearing=BEARING, stepControl=control
-    )  # fmt: skip
+        mbs,
+        name="j",
+        itemNumbers=[ground, body],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=BEARING,
+        stepControl=control,
+    )
     mbs.Assemble()
     settings = ehd.ConfigureSolver(scenes.settings(0.01, round(0.01 / step)))
     mbs.SolveDynamic(settings, **({} if solver is None else {"solverType": solver}))
