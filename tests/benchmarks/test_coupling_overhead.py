@@ -18,12 +18,12 @@ class ConstantFilm:
     """No film at all: what remains is the coupling."""
 
     bearing = SimpleNamespace(radial_clearance=1e-3, journal_radius=0.02, length=0.03)
-    remembers = False
+    remembers = needs_spin = False
     status = Status.CONVERGED
     wrench = np.array([1.0, 2.0, 3.0, 0.1, 0.2, 0.3])
     slope = np.ones((6, 10))
 
-    def evaluate(self, motion, history=None, step=0.0):
+    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
         return self
 
     def tangent(self):
@@ -46,7 +46,7 @@ def test_force_evaluation(benchmark, pair):
     element = joint.element
 
     def evaluate():
-        element._trial = None
+        element.forget()
         mbs.ComputeItem(joint.objectNumber, exu.ComputeItemType.ODE2LHS)
 
     evaluate()
