@@ -154,7 +154,7 @@ def check_film(
     """
     if isinstance(film, ClassicSOR) and not isinstance(closure, Gumbel):
         raise InputError(
-            f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Guembel condition, got "
+            f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Gümbel condition, got "
             f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
         )
     if not isinstance(film, LongBearing):

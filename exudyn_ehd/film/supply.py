@@ -42,7 +42,7 @@ class AxialGroove:
     width_angle : float
         Angle that it spans, rad, below 2 pi.
     length : float or None
-        Axial length, m; None: the whole bearing but for the last interval at each end.
+        Axial length, m; None: the whole bearing except the last interval at each end.
     pressure : float
         Gauge pressure, Pa.
     rotating : bool

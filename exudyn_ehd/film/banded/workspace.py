@@ -30,7 +30,7 @@ class Transport(NamedTuple):
         U and 1 / D.
     driven_from, driven_to, driven_by : (4 size,) arrays
         K as a list: full unknown, place, conductance.
-    taken_from, taken_to, taken_by : (2 size,) arrays
+    received_from, received_to, received_by : (2 size,) arrays
         R as a list: place, front vertex, flux of a full film.
     front : (size,) int array
         Full unknown of every front vertex, ascending.
@@ -53,9 +53,9 @@ class Transport(NamedTuple):
     driven_from: np.ndarray
     driven_to: np.ndarray
     driven_by: np.ndarray
-    taken_from: np.ndarray
-    taken_to: np.ndarray
-    taken_by: np.ndarray
+    received_from: np.ndarray
+    received_to: np.ndarray
+    received_by: np.ndarray
     front: np.ndarray
     band: np.ndarray
     diagonal: np.ndarray
@@ -64,7 +64,7 @@ class Transport(NamedTuple):
 
 
 def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
-    """Buffers for a grid of n columns and m rows; ``band`` (n m, >= 2 m + 6) is taken over."""
+    """Buffers for a grid of n columns and m rows; ``band`` (n m, >= 2 m + 6) is shared."""
     size, longest = n * m, FRONT_ROWS * (m + 2)
 
     def places(*shape: int) -> np.ndarray:
@@ -82,9 +82,9 @@ def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
         driven_from=places(4 * size),
         driven_to=places(4 * size),
         driven_by=np.zeros(4 * size),
-        taken_from=places(2 * size),
-        taken_to=places(2 * size),
-        taken_by=np.zeros(2 * size),
+        received_from=places(2 * size),
+        received_to=places(2 * size),
+        received_by=np.zeros(2 * size),
         front=places(size),
         band=band,
         diagonal=np.zeros(size),
@@ -100,8 +100,8 @@ class Workspace:
     ----------
     active : (n, m) bool array
         The active set of the last solution: the warm start of the next one.
-    carried : bool
-        Whether the last mass-conserving film was factored along the flow of its cavity, with ``transport``.
+    convected : bool
+        Whether the last mass-conserving film was factored along the flow of its cavity, in ``transport``.
     """
 
     def __init__(self, n: int, m: int) -> None:
@@ -115,7 +115,7 @@ class Workspace:
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
         self.warm = False
-        self.carried = False
+        self.convected = False
         self.count = 0
         self.width = 1
 

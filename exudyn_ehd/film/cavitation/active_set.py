@@ -39,7 +39,7 @@ class FilmSystem:
     pressure : (n, m) array
         In: prescribed values at fixed vertices. Out: the film's pressure.
     linear_pressure : (n, m) array
-        Pressure before clipping, on which the adjoint is taken; the same array as ``pressure`` unless the closure
+        Pressure before clipping, on which the adjoint is received; the same array as ``pressure`` unless the closure
         clips.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.

@@ -12,13 +12,13 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.many_sides import solve_columns
-from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, STRIDE, TAKEN, WIDTH
+from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, fastmath=_FAST)
-def _carry_back(t, placed, mu):
+def _convect_back(t, placed, mu):
     """mu = T^T mu for every column of mu (cavitated vertices, sides), in place."""
     sides = mu.shape[1]
     for c in range(placed - 1, -1, -1):
@@ -47,7 +47,7 @@ def solve_transport_transposed(t, unknowns, x):
     g, mu = x[:count], x[count:unknowns]
     if fronts > 0:
         back = mu.copy()
-        _carry_back(t, placed, back)
+        _convect_back(t, placed, back)
         z = np.zeros((fronts, sides))
         V = t.spread[: count * stride].reshape(count, stride)
         trial = g.copy()
@@ -75,13 +75,13 @@ def solve_transport_transposed(t, unknowns, x):
                 f = t.loop[b, a]
                 for q in range(sides):
                     z[a, q] -= f * z[b, q]
-        for e in range(t.shape[TAKEN]):
-            target = mu[t.taken_from[e]]
-            f = t.taken_by[e]
-            known = z[t.taken_to[e]]
+        for e in range(t.shape[RECEIVED]):
+            target = mu[t.received_from[e]]
+            f = t.received_by[e]
+            known = z[t.received_to[e]]
             for q in range(sides):
                 target[q] += f * known[q]
-    _carry_back(t, placed, mu)
+    _convect_back(t, placed, mu)
     for e in range(t.shape[DRIVEN]):
         target = g[t.driven_from[e]]
         k = t.driven_by[e]
@@ -92,7 +92,7 @@ def solve_transport_transposed(t, unknowns, x):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _carry_back_one(t, placed, mu):
+def _convect_back_one(t, placed, mu):
     """mu = T^T mu in place, for one film."""
     for c in range(placed - 1, -1, -1):
         m = mu[c] * t.inverse[c]
@@ -117,7 +117,7 @@ def reduce_transposed(t, unknowns, x):
             trial[:] = g
             if np.any(mu != 0.0):
                 back = mu.copy()
-                _carry_back_one(t, placed, back)
+                _convect_back_one(t, placed, back)
                 for e in range(t.shape[DRIVEN]):
                     trial[t.driven_from[e]] += t.driven_by[e] * back[t.driven_to[e]]
             z[:] = 0.0
@@ -136,8 +136,8 @@ def reduce_transposed(t, unknowns, x):
                 for b in range(a + 1, fronts):
                     s -= t.loop[b, a] * z[b]
                 z[a] = s
-            for e in range(t.shape[TAKEN]):
-                mu[t.taken_from[e]] += t.taken_by[e] * z[t.taken_to[e]]
-        _carry_back_one(t, placed, mu)
+            for e in range(t.shape[RECEIVED]):
+                mu[t.received_from[e]] += t.received_by[e] * z[t.received_to[e]]
+        _convect_back_one(t, placed, mu)
         for e in range(t.shape[DRIVEN]):
             g[t.driven_from[e]] += t.driven_by[e] * mu[t.driven_to[e]]

@@ -7,14 +7,14 @@ With the pressures P of the full vertices and the fills of the cavitated ones th
 
 A is the symmetric matrix of the Poiseuille conductances between full vertices; they end at the cavity, where the ring
 is cut. D (diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K what the pressure
-drives in from full neighbours, and w, one number per vertex of the reformation front, what the front takes over from
-the cavity. As the carriers in theta and in z have one sign each, the fills follow from each other along the flow,
+drives in from full neighbours, and w, one number per vertex of the reformation front, what the front receives from the
+cavity. As the carriers in theta and in z have one sign each, the fills follow from each other along the flow,
 ``fill = T (K (P - Pc) + c)`` with ``T = (D - U)^-1``, and
 
     (I - G) w = R T (K (y - Pc) + c),    G = R T K V,    A y = b,    A V = E,    P = y + V w,
 
 is left: as many unknowns as the front has vertices, column diagonally dominant and non-negative in G (no pivoting),
-because no more oil comes round than the front has taken in. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same
+because no more oil comes back than the front has received. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same
 way backwards.
 
 Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs
@@ -35,7 +35,7 @@ from exudyn_ehd.film.banded.numbering import number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, TAKEN = range(6)
+FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED = range(6)
 
 
 @njit(cache=True)
@@ -56,7 +56,7 @@ def flow_direction(f):
 def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
     """Append the cavitated vertices to ``order`` along the flow.
 
-    Returns their number, -1 if oil goes round in one of the rows.
+    Returns their number, -1 if oil circulates in one of the rows.
     """
     n, m = full.shape
     placed = 0
@@ -96,7 +96,7 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
     """
     n, m = full.shape
     kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
-    driven = taken = fronts = 0
+    driven = received = fronts = 0
     for r in range(count + placed):
         i = order[r] // m
         j = order[r] - i * m
@@ -149,10 +149,10 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                     t.front[fronts] = r
                     fronts += 1
                     fresh = False
-                t.taken_from[taken] = t.place[a, b]
-                t.taken_to[taken] = fronts - 1
-                t.taken_by[taken] = inflow
-                taken += 1
+                t.received_from[received] = t.place[a, b]
+                t.received_to[received] = fronts - 1
+                t.received_by[received] = inflow
+                received += 1
             elif side < 2:
                 along = t.place[a, b]
                 by_along = inflow
@@ -171,12 +171,12 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
         t.by_across[c] = by_across
         t.inverse[c] = 1.0 / store
     t.shape[DRIVEN] = driven
-    t.shape[TAKEN] = taken
+    t.shape[RECEIVED] = received
     return fronts
 
 
 @njit(cache=True)
-def _carry(t, placed, P, fill):
+def _convect(t, placed, P, fill):
     """fill = T (K P + fill), in place, for one film."""
     e = 0
     driven = t.shape[DRIVEN]
@@ -193,7 +193,7 @@ def _carry(t, placed, P, fill):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _carry_columns(t, placed, P, fill_out):
+def _convect_columns(t, placed, P, fill_out):
     """fill_out = T K P, for every column of P (full vertices, sides)."""
     e = 0
     driven = t.shape[DRIVEN]
@@ -228,14 +228,14 @@ def _factor_loop(t, placed):
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
     loop = t.loop
     fill = np.empty((placed, stride))
-    _carry_columns(t, placed, t.spread[: count * stride].reshape(count, stride), fill)
+    _convect_columns(t, placed, t.spread[: count * stride].reshape(count, stride), fill)
     for a in range(fronts):
         for b in range(fronts):
             loop[a, b] = 1.0 if a == b else 0.0
-    for e in range(t.shape[TAKEN]):
-        row = loop[t.taken_to[e]]
-        known = fill[t.taken_from[e]]
-        f = t.taken_by[e]
+    for e in range(t.shape[RECEIVED]):
+        row = loop[t.received_to[e]]
+        known = fill[t.received_from[e]]
+        f = t.received_by[e]
         for b in range(fronts):
             row[b] -= f * known[b]
     for k in range(fronts):
@@ -302,10 +302,10 @@ def solve_transport(t, unknowns, x):
     solve_ldl(t.band, t.diagonal, count, t.shape[WIDTH], P.reshape(1, count))
     if fronts > 0:
         trial = fill.copy()
-        _carry(t, placed, P, trial)
+        _convect(t, placed, P, trial)
         w = np.zeros(fronts)
-        for e in range(t.shape[TAKEN]):
-            w[t.taken_to[e]] += t.taken_by[e] * trial[t.taken_from[e]]
+        for e in range(t.shape[RECEIVED]):
+            w[t.received_to[e]] += t.received_by[e] * trial[t.received_from[e]]
         for a in range(fronts):
             for b in range(a):
                 w[a] -= t.loop[a, b] * w[b]
@@ -319,4 +319,4 @@ def solve_transport(t, unknowns, x):
             for b in range(fronts):
                 s += V[r, b] * w[b]
             P[r] += s
-    _carry(t, placed, P, fill)
+    _convect(t, placed, P, fill)

@@ -63,7 +63,7 @@ class FullSommerfeld(SymmetricClosure):
 
 @dataclass(frozen=True, kw_only=True)
 class Gumbel(SymmetricClosure):
-    """Half-Sommerfeld (Guembel) condition: solve the linear film, then cut off what lies below the cavity pressure.
+    """Half-Sommerfeld (Gümbel) condition: solve the linear film, then cut off what lies below the cavity pressure.
 
     Violates mass conservation at the rupture line; load 15 % low against `SwiftStieber` at eccentricity ratio 0.8. It
     is the paper's condition.

@@ -9,11 +9,11 @@ with the Poiseuille conductance k and the Couette flux f of a full film (gap on 
 Euler in the mass (fill H), whose old value is the film's history. Without a history the film is steady and the last
 term is ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth
 Newton method in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so
-that the film exists and is unique. Should the sets not settle, the steady film is approached through growing pseudo
+that the film exists and is unique. Should the sets not converge, the steady film is approached through growing pseudo
 time steps, whose storage makes the matrices dominant enough.
 
 Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
-the oil through the cavity and is left with a symmetric film, and for the rest (oil that goes round in a cavity, fronts
+the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity, fronts
 longer than a few columns) a band of the folded ring. The sets alone decide which.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
@@ -104,7 +104,7 @@ class ElrodAdams:
         inverse_step: float,
         mass_old: np.ndarray,
     ) -> tuple[bool, int]:
-        ok, steps, work.count, work.width, work.carried = solve_elrod(
+        ok, steps, work.count, work.width, work.convected = solve_elrod(
             s.coefficients,
             inverse_step,
             mass_old,
@@ -153,7 +153,7 @@ class ElrodAdams:
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
-        if work.carried:
+        if work.convected:
             t = work.transport
             if t.shape[FULL_COUNT] < work.count:
                 reduce_transposed(t, work.count, rhs)
@@ -163,7 +163,7 @@ class ElrodAdams:
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every column of tiles rhs, in place."""
-        if work.carried:
+        if work.convected:
             for tile in rhs:
                 solve_transport_transposed(work.transport, work.count, tile[: work.count])
             return
@@ -171,7 +171,7 @@ class ElrodAdams:
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
-        if work.carried:
+        if work.convected:
             solve_transport(work.transport, work.count, rhs)
             return
         solve_lu(work.lower, work.upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
@@ -260,7 +260,7 @@ def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width,
 
 @njit(cache=True)
 def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
-    """Unknowns x for the given sets; returns (ok, count, width, carried).
+    """Unknowns x for the given sets; returns (ok, count, width, convected).
 
     ``directions``: `flow_direction` of fx and fz.
     """
@@ -281,9 +281,9 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
 
 @njit(cache=True)
 def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill):
-    """Newton on the sets; returns (ok, steps, count, width, carried). ``full`` is the start and, on return, the result.
+    """Newton on the sets from ``full``, which also returns them; returns (ok, steps, count, width, convected).
 
-    ``film``: `Coefficients`. ``t`` holds the factor if ``carried``, else ``lower``, ``upper`` and ``inv_diag`` do.
+    ``film``: `Coefficients`. ``t`` holds the factor if ``convected``, else ``lower``, ``upper`` and ``inv_diag`` do.
     """
     n, m = full.shape
     for i in range(n):
@@ -293,11 +293,11 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
                 fill[i, j] = 1.0
     directions = flow_direction(film.fx), flow_direction(film.fz)
     for step in range(MAX_NEWTON_STEPS):
-        ok, count, width, carried = _solve_sets(
+        ok, count, width, convected = _solve_sets(
             film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P
         )
         if not ok:
-            return False, step + 1, count, width, carried
+            return False, step + 1, count, width, convected
         peak = 0.0
         for r in range(count):
             if full[order[r] // m, order[r] % m]:
@@ -327,5 +327,5 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
                     else:
                         sound = sound and fill[i, j] > -LARGEST_DEFICIT
                         fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
-            return sound, step + 1, count, width, carried
-    return False, MAX_NEWTON_STEPS, count, width, carried
+            return sound, step + 1, count, width, convected
+    return False, MAX_NEWTON_STEPS, count, width, convected

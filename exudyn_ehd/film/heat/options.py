@@ -25,7 +25,7 @@ class LumpedThermal:
     dissipates, Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing,
     ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Backward Euler
     at every accepted step, first order; the force of a step sees the temperature at its start. `steady` and
-    `equilibrium` take the settled temperature; a static solution of a multibody model takes the initial one.
+    `equilibrium` take the steady temperature; a static solution of a multibody model takes the initial one.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class FilmEnergy:
     backward Euler. Oil enters through the ends and supplies with the supply temperature. Cavitation models that do not
     conserve mass lose oil at the end of the film and find it again at its beginning: it returns fully mixed, the
     leakage replaced by supply oil. The viscosity of a step follows from the temperatures at its start: the coupling is
-    explicit, of first order. `steady` and `equilibrium` take the settled field; a static solution of a multibody model
+    explicit, of first order. `steady` and `equilibrium` take the steady field; a static solution of a multibody model
     takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K

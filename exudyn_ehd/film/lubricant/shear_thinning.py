@@ -222,7 +222,7 @@ def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io,
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def thin_flux(H, HF, vx, per_speed, n, r_inf, table, gap_z_out, gx_out, gx_h_out, gx_v_out, gz_out, gz_h_out, gz_v_out):
-    """`flux.plain_flux` over the viscosity ratios, with the derivatives of `thin_conductance`."""
+    """`plain_flux` over the viscosity ratios, with the derivatives of `thin_conductance`."""
     rows, cols = H.shape
     for i in range(rows):
         for j in range(cols - 1):

@@ -1,7 +1,7 @@
 """Derivatives of the film's balances at its unknowns, as a stencil for gaps whose links are the mean of their columns.
 
-With the derivatives of every link's flow to its gap (symbols as in `sweep`) the balance of vertex (i, j) changes with
-the true gap by
+With the derivatives of every link's flow to its gap (symbols as in `exudyn_ehd.film.reynolds.link_derivatives`) the
+balance of vertex (i, j) changes with the true gap by
 
     dr = DX_i dHF_i - DX_i-1 dHF_i-1 + DZ_j dHZ_j - DZ_j-1 dHZ_j-1 + AC dH + AR dH_t,   HF, HZ means over the two ends
     of a link.
@@ -26,7 +26,7 @@ def gap_stencil(order, count, DX, DZ, slope, AR, AC, by_gap, by_rate, weight_out
     order, count
         Flat vertices of the unknowns.
     DX, DZ, slope, AR, AC : (n, m) arrays
-        As `gradients.swept_derivatives` returns them.
+        As `swept_derivatives` returns them.
     by_gap, by_rate : float
         Factors.
     weight_out, place_out : (count, 5) float and int arrays

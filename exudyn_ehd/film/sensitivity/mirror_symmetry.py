@@ -133,7 +133,7 @@ def transpose_stencil(weight, numbers, first, columns, weight_out, row_out):
     Parameters
     ----------
     weight : (count, 5) array
-        Of the unknowns' rows, see `stencil.gap_stencil`.
+        Of the unknowns' rows, see `gap_stencil`.
     numbers : (n, m) int array
         Unknown of every vertex, -1 where there is none.
     first, columns : int
@@ -240,7 +240,7 @@ def fold_adjoints(weight, row, shape, mirrored, along_even, along_odd, fields):
     along_even, along_odd : (u, .) and (v, .) arrays
         See `courses`.
     fields : (rows, TILE) array
-        At the unknowns: one tile, see `tiles.make_tiles`.
+        At the unknowns: one tile, see `make_tiles`.
 
     Returns
     -------

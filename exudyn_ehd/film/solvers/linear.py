@@ -102,7 +102,7 @@ class FilmSolver:
         Scaled pressure (prescribed where ``grid.fixed``) and, for closures that conserve mass, the film fraction.
     """
 
-    # False where a film model has equations of its own, so that only `sensitivities` knows its gradients.
+    # False where a film model has equations of its own, so that its gradients are those of `sensitivities`.
     plain_links = True
 
     def __init__(
@@ -260,7 +260,7 @@ class FilmSolver:
         self.closure.direct(self.work, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
+        """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
         self.closure.adjoint_columns(self.work, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:

@@ -5,7 +5,7 @@ In scaled form (lengths over R, H = h/c, P = p c^2 / (12 mu R^2)) Eq. (8) reads
     H^3 (P_xx + P_zz) + 3 H^2 (H_x P_x + H_z P_z) = vx H_x + vz H_z + H_t,   vx = omega / 2,
 
 with central differences on a uniform grid (second order, not conservative), solved by successive over-relaxation in
-place until sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Guembel).
+place until sum |P_new - P_old| <= tolerance sum |P_new|, rule (11); then negative pressures are cut off (Gümbel).
 
 Misprints of the paper, mended here:
 
@@ -46,7 +46,7 @@ LARGEST_SUM = 1e100
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicSOR:
-    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Guembel.
+    """The paper's scheme as a selectable film: central differences, SOR, rule (11), Gümbel.
 
     See the module's docstring.
 
@@ -222,7 +222,7 @@ def sor_solve(H, H_t, squeeze, vx, vz, dx, dz, fixed, relaxation, tolerance, lar
 
 @njit(cache=True)
 def assemble_differences(H, dx, dz, number, order, count, width, lower, upper):
-    """The difference operator on the numbered vertices (fixed ones are known) in the storage of `band_lu`."""
+    """The difference operator on the numbered vertices (fixed ones are known) in the storage of `lu`."""
     n, m = H.shape
     ix, iz = 1.0 / (dx * dx), 1.0 / (dz * dz)
     for r in range(count):

@@ -149,7 +149,7 @@ class AsperityContact(AverageGap):
     def settle(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
-        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `joint.effects.Contact`."""
+        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `seams.Contact`."""
         settle_asperities(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
 
 

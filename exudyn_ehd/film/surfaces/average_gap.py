@@ -55,7 +55,7 @@ class AverageGap:
         bend_out: np.ndarray,
         face_slope_out: np.ndarray,
     ) -> None:
-        """Replace scaled gaps and the rate (n, m) by those of the average gap; as `joint.effects.GapLimiter`."""
+        """Replace scaled gaps and the rate (n, m) by those of the average gap; as `seams.GapLimiter`."""
         average_gap(H, HF, H_t, self.sigma, self.residual, slope_out, bend_out, face_slope_out)
 
 

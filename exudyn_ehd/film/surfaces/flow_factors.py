@@ -118,7 +118,7 @@ def multiply_by_table(gap, inverse_sigma, table, base, share, value, value_h):
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def rough_flux(H, HF, inverse_sigma, table_x, table_z, gap_z_out, gx, gx_h, gz, gz_h):
-    """`flux.plain_flux` times the tables' factors."""
+    """`plain_flux` times the tables' factors."""
     n, m = H.shape
     for i in range(n):
         for j in range(m - 1):
@@ -203,7 +203,7 @@ def rough_friction(H, inverse_sigma, table, ratio_out, ratio_h_out, ratio_v_out)
 
 @njit(cache=True)
 def _aligned(gap):
-    """Whether there is one gap per column, as of an aligned journal."""
+    """Whether there is one gap per column, as with an aligned journal."""
     n, m = gap.shape
     for i in range(n):
         differing = 0
