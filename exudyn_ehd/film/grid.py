@@ -32,6 +32,16 @@ class Mesh(NamedTuple):
     area: np.ndarray
 
 
+class Directions(NamedTuple):
+    """Normals of a ring as kernels take them: cosine and sine (n,) at vertices and at links i -> i+1; rows z (m,)."""
+
+    cos_x: np.ndarray
+    sin_x: np.ndarray
+    cos_f: np.ndarray
+    sin_f: np.ndarray
+    z: np.ndarray
+
+
 @dataclass(frozen=True, eq=False)
 class FilmGrid:
     """Tensor-product film grid in scaled lengths (divided by ``reference_length``).
@@ -77,6 +87,11 @@ class FilmGrid:
         """The metric for kernels; ``fixed`` is this grid's own array."""
         area = np.outer(self.width_x, self.width_z)
         return Mesh(self.width_x, self.width_z, self.link_x, self.link_z, self.fixed, area)
+
+    @cached_property
+    def directions(self) -> Directions:
+        """Normals of a bearing, whose x is the angle theta."""
+        return Directions(np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z)
 
     def coarser(self) -> FilmGrid | None:
         """Grid with every second vertex, or None if it can't be halved; only used to guess active sets."""

@@ -79,7 +79,7 @@ EFFECTS = {
 # Modules that every film uses, that describe a scene, or (the last line) whose kernels only other kernels of their effect call.
 SHARED = {
     "banded.lu", "cavitation.closures", "cavitation.active_set", "models", "banded.numbering", "banded.substitution", "banded.workspace", "banded.ldl", "sensitivity.mirror_symmetry", "reynolds.gap", "grid", "loads", "lubricant.lubricant", "lubricant.named_oils",
-    "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.many_sides",
+    "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "sensitivity.rigid", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.many_sides",
     "solvers.compliant_parts", "solvers.density_matrix",
 }  # fmt: skip
 

@@ -43,8 +43,6 @@ class FilmSystem:
         clips.
     fx, fz, H, H_t, area : (n, m) arrays
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
-    coefficients : Coefficients
-        These arrays as kernels take them.
     fill, mass_old : (n, m) arrays
         Film fraction, and the old value of fill H; only used by closures that conserve mass.
     inverse_step : float
@@ -66,7 +64,11 @@ class FilmSystem:
         self.inverse_step = 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
-        self.coefficients = Coefficients(self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed)
+
+    @property
+    def coefficients(self) -> Coefficients:
+        """These arrays as kernels take them."""
+        return Coefficients(self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed)
 
 
 @njit(cache=True)

@@ -158,9 +158,10 @@ def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity
 
 
 @njit(cache=True)
-def exchange_sums_fill(P, q, H, H_t, fill, mass_old, inverse_step, squeeze, kx, kz, fx, fz, area, fixed, cavity):
-    """As `exchange_sums`, for cavitation models that conserve mass, with the rates of `content_rate`."""
-    n, m = H.shape
+def exchange_sums_fill(P, q, fill, mass_old, inverse_step, squeeze, film, cavity):
+    """As `exchange_sums` where the closure conserves mass; rates as in `content_rate`, ``film``: `Coefficients`."""
+    n, m = q.shape
+    kx, kz, fx, fz, H, H_t, area, fixed = film
     leaving = 0.0
     work = 0.0
     for i in range(n):

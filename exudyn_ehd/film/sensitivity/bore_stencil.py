@@ -18,21 +18,22 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
-def gap_stencil(order, count, DX, DZ, slope, AR, AC, by_gap, by_rate, weight_out, place_out):
+def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, place_out):
     """Rows of ``by_gap dr/dH + by_rate dr/dH_t`` at the unknowns for elastic gaps.
 
     Parameters
     ----------
     order, count
         Flat vertices of the unknowns.
-    DX, DZ, slope, AR, AC : (n, m) arrays
+    d, slope, AR, AC : LinkDerivatives, (n, m) arrays
         As `swept_derivatives` returns them.
     by_gap, by_rate : float
         Factors.
     weight_out, place_out : (count, 5) float and int arrays
         Weight and flat vertex: itself, next and last in theta, next and last in z.
     """
-    n, m = DX.shape
+    n, m = slope.shape
+    DX, DZ = d.DX, d.DZ
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
@@ -121,12 +122,15 @@ def balance_change(motion, by_place, place, by_rate, change, moved, speed, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def motion_columns(order, count, DX, DZ, SX, SZ, SZX, slope, AR, AC, cos_x, sin_x, cos_f, sin_f, z, out):
+def motion_columns(order, count, d, slope, AR, AC, at, out):
     """Derivatives of the balances at the unknowns to (scaled pose, scaled rates, vx, vz): out (count, 10).
 
-    The gap is ``-(x + z bx) cos - (y + z by) sin``, on links in theta with the true angle.
+    The gap is ``-(x + z bx) cos - (y + z by) sin``, on links in theta with the true angle; ``at``:
+    `Directions`.
     """
-    n, m = DX.shape
+    n, m = slope.shape
+    DX, DZ, SX, SZ, SZX = d.DX, d.DZ, d.SX, d.SZ, d.SZX
+    z = at.z
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
@@ -145,14 +149,14 @@ def motion_columns(order, count, DX, DZ, SX, SZ, SZX, slope, AR, AC, cos_x, sin_
             tilt -= 0.5 * DZ[i, j - 1] * (slope[i, j] * z[j] + slope[i, j - 1] * z[j - 1])
             vx -= SZX[i, j - 1]
             vz -= SZ[i, j - 1]
-        c = DX[i, j] * cos_f[i] - DX[prv, j] * cos_f[prv]
-        s = DX[i, j] * sin_f[i] - DX[prv, j] * sin_f[prv]
-        out[r, 0] = -(c + own * cos_x[i])
-        out[r, 1] = -(s + own * sin_x[i])
-        out[r, 2] = -(c * z[j] + tilt * cos_x[i])
-        out[r, 3] = -(s * z[j] + tilt * sin_x[i])
-        out[r, 4] = -AR[i, j] * cos_x[i]
-        out[r, 5] = -AR[i, j] * sin_x[i]
+        c = DX[i, j] * at.cos_f[i] - DX[prv, j] * at.cos_f[prv]
+        s = DX[i, j] * at.sin_f[i] - DX[prv, j] * at.sin_f[prv]
+        out[r, 0] = -(c + own * at.cos_x[i])
+        out[r, 1] = -(s + own * at.sin_x[i])
+        out[r, 2] = -(c * z[j] + tilt * at.cos_x[i])
+        out[r, 3] = -(s * z[j] + tilt * at.sin_x[i])
+        out[r, 4] = -AR[i, j] * at.cos_x[i]
+        out[r, 5] = -AR[i, j] * at.sin_x[i]
         out[r, 6] = out[r, 4] * z[j]
         out[r, 7] = out[r, 5] * z[j]
         out[r, 8] = vx
@@ -281,19 +285,3 @@ def spread_gradient(tiles, by_bore, order, weights, direct, by_gap, scale, motio
             if w != 0.0:
                 for b in range(k):
                     bore_out[i, b] += w * by_bore[c, b]
-
-
-@njit(cache=True)
-def integral_weights(pose, R, force, shear, omega, w, out):
-    """Weights (6, 8) of (S_c, S_s, S_zc, S_zs, C, slopes in theta and z, ends' force) in the wrench.
-
-    Symbols as in `wrench_gradient`.
-    """
-    x, y, bx, by = pose[0], pose[1], pose[2], pose[3]
-    out[:] = 0.0
-    out[0, 0] = out[1, 1] = -force
-    out[3, 3], out[4, 2] = force * R, -force * R
-    axial, turning = -6.0 * shear * R, -6.0 * shear * R * R
-    out[2, 0], out[2, 1], out[2, 4], out[2, 6], out[2, 7] = -axial * bx, -axial * by, -shear * w, -axial, -axial
-    out[5, 0], out[5, 1], out[5, 2], out[5, 3] = -turning * y, turning * x, -turning * by, turning * bx
-    out[5, 4], out[5, 5] = -shear * R * R * omega, -turning

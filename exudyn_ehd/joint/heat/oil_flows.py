@@ -97,9 +97,15 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     if s.closure.conserves_mass:
         stepped = y.inverse_step > 0.0 and not s.instant
         leaving, work = exchange_sums_fill(
-            P, s.pressure, s.H, s.H_t, s.fill, y.mass_old if stepped else s.H, y.inverse_step if stepped else 0.0,
-            s.squeeze, y.kx, y.kz, y.fx, y.fz, s.area, g.fixed, cavity,
-        )  # fmt: skip
+            P,
+            s.pressure,
+            s.fill,
+            y.mass_old if stepped else s.H,
+            y.inverse_step if stepped else 0.0,
+            s.squeeze,
+            y.coefficients,
+            cavity,
+        )
     else:
         leaving, work = exchange_sums(
             P, s.pressure, y.kx, y.kz, y.fz, y.b, s.H_t, s.area, g.fixed, s.work.active, s.squeeze, cavity

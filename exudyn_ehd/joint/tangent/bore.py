@@ -24,11 +24,11 @@ from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     balance_change,
     gap_stencil,
-    integral_weights,
     motion_columns,
     shear_fields,
     spread_gradient,
 )
+from exudyn_ehd.film.sensitivity.rigid import integral_weights
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
@@ -91,11 +91,10 @@ class Balances:
         self.clearance = p.bearing.radial_clearance
         self.places = work.order[: work.count]
         self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(film)
-        d, self.motion = self.links, np.empty((work.count, MOTION_SIZE))
+        self.motion = np.empty((work.count, MOTION_SIZE))
         motion_columns(
-            self.places, work.count, d.DX, d.DZ, d.SX, d.SZ, d.SZX, self.slope, self.by_rate, self.by_gap,
-            p.cos_x, p.sin_x, p.cos_f, p.sin_f, p.grid.z, self.motion,
-        )  # fmt: skip
+            self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
+        )
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
@@ -103,12 +102,20 @@ class Balances:
 
     def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
-        count, c, d = len(self.places), self.clearance, self.links
+        count, c = len(self.places), self.clearance
         weight, vertices = np.empty((count, 5)), np.empty((count, 5), dtype=np.int64)
         gap_stencil(
-            self.places, count, d.DX, d.DZ, self.slope, self.by_rate, self.by_gap, by_place / c, by_rate / c,
-            weight, vertices,
-        )  # fmt: skip
+            self.places,
+            count,
+            self.links,
+            self.slope,
+            self.by_rate,
+            self.by_gap,
+            by_place / c,
+            by_rate / c,
+            weight,
+            vertices,
+        )
         return weight, vertices
 
 

@@ -11,8 +11,8 @@ import numpy as np
 
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, pose_gradient, wrench_gradient
-from exudyn_ehd.film.sensitivity.bore_stencil import integral_weights
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
+from exudyn_ehd.film.sensitivity.rigid import integral_weights, pose_gradient, wrench_gradient
 from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.compliant_links import compliant_shear_row
 from exudyn_ehd.film.solvers.linear import Sensitivities
@@ -105,15 +105,12 @@ def _following_deflection(
 
 def swept_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> None:
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
-    p = film.parts
     d, slope, by_rate, by_gap = swept_derivatives(film)
-    pose_gradient(
-        lam, d.DX, d.DZ, d.SX, d.SZ, d.SZX, slope, by_rate, by_gap, p.cos_x, p.sin_x, p.cos_f, p.sin_f, p.grid.z, gradient,
-    )  # fmt: skip
+    pose_gradient(lam, d, slope, by_rate, by_gap, film.grid.directions, gradient)
 
 
 def swept_derivatives(film: SolvedFilm) -> tuple[LinkDerivatives, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives to the true gap: of the links, and slope, AR, AC (n, m) as `sweep.pose_gradient` takes them."""
+    """Derivatives to the true gap: of the links, and slope, AR, AC (n, m) as `pose_gradient` takes them."""
     s = film.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()

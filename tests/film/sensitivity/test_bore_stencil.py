@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     add_transposed,
     gap_slopes,
@@ -32,6 +33,7 @@ def test_stencil_is_the_derivative_of_the_balances():
     n, m = 9, 5
     DX, DZ, slope, AR, AC = rng.normal(size=(5, n, m))
     DZ[:, -1] = 0.0
+    d = LinkDerivatives(DX, DZ, DX, DX, DX)
     H, H_t = rng.normal(size=(2, n, m))
     balance = AC * H + AR * H_t * 0.7
     link = DX * 0.5 * (H + np.roll(H, -1, axis=0))
@@ -41,9 +43,9 @@ def test_stencil_is_the_derivative_of_the_balances():
     balance[:, 1:] -= across
     order = rng.permutation(n * m)[:20]
     weight, place = np.empty((20, 5)), np.empty((20, 5), dtype=np.int64)
-    gap_stencil(order, 20, DX, DZ, slope, AR, AC, 1.0, 0.0, weight, place)
+    gap_stencil(order, 20, d, slope, AR, AC, 1.0, 0.0, weight, place)
     got = np.sum(weight * H.ravel()[place], axis=1)
-    gap_stencil(order, 20, DX, DZ, slope, AR, AC, 0.0, 0.7, weight, place)
+    gap_stencil(order, 20, d, slope, AR, AC, 0.0, 0.7, weight, place)
     got += np.sum(weight * H_t.ravel()[place], axis=1)
     np.testing.assert_allclose(got, balance.ravel()[order], rtol=1e-12, atol=1e-13)
 

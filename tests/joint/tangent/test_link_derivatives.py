@@ -46,11 +46,11 @@ def test_sweep_is_the_sum_of_the_fields(cavitation, effect, remembered):
         )
     )
     history = model.initial_history(0.99 * MOTION) if remembered else None
-    model.evaluate(MOTION, history, 1e-4)
+    film = model.evaluate(MOTION, history, 1e-4).film
     rng = np.random.default_rng(1)
     lam = model.solver.adjoint(rng.normal(size=(3, model.solver.work.count)))
     expected, got = np.zeros((3, 10)), np.empty((3, 10))
-    field_gradient(model, lam, expected)
-    swept_gradient(model, lam, got)
+    field_gradient(film, lam, expected)
+    swept_gradient(film, lam, got)
     # the same sums in another order
     assert np.allclose(got, expected, rtol=1e-10, atol=1e-11 * np.abs(expected).max(axis=0))
