@@ -31,10 +31,10 @@ if TYPE_CHECKING:
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
-# Beyond them a film is none, and lengths are in other units.
+# Beyond them nothing is a thin film, or lengths are in other units.
 THICKEST_FILM_RATIO, LARGEST_RADIUS = 0.1, 10.0
 
-# Far beyond what oil or steel bears, and far from overflow.
+# Pa; far beyond what oil or steel bears, and far from overflow.
 LARGEST_PRESSURE = 1e12
 # Pa s; of a gas far from cold, and of pitch.
 LEAST_VISCOSITY, LARGEST_VISCOSITY = 1e-7, 1e9
@@ -123,48 +123,18 @@ class JournalBearing:
     wear: ArchardWear | None = None
 
     def __post_init__(self) -> None:
-        require_number(
-            "JournalBearing.journal_radius", self.journal_radius, "m", above=0.0, hint="it is half the diameter."
-        )
-        require_number("JournalBearing.length", self.length, "m", above=0.0)
-        require_number(
-            "JournalBearing.radial_clearance",
-            self.radial_clearance,
-            "m",
-            above=0.0,
-            hint="it is bore radius minus journal radius; if yours is diametral, halve it.",
-        )
-        if self.journal_radius > LARGEST_RADIUS:
-            raise InputError(
-                f"JournalBearing.journal_radius must be at most {LARGEST_RADIUS:g} m, got {self.journal_radius!r}; "
-                "lengths are in metres, not millimetres."
-            )
-        if self.radial_clearance > THICKEST_FILM_RATIO * self.journal_radius:
-            raise InputError(
-                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
-                f"thin film, got {self.radial_clearance!r} m at {self.journal_radius!r} m; lengths are in metres, "
-                "usual clearances a thousandth of the radius."
-            )
-        _require_type("lubricant", self.lubricant, (Lubricant,))
-        _require_type("film", self.film, (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap))
-        _require_type("cavitation", self.cavitation, (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams))
-        _require_type("inlet", self.inlet, (Periodic, MaximumGap))
-        _require_type("contact", self.contact, (RegularisedWall, type(None)))
-        _require_type("thermal", self.thermal, (LumpedThermal, FilmEnergy, type(None)))
+        self._check_sizes()
+        for name, types in _OPTIONS.items():
+            _require_type(name, getattr(self, name), types)
         _check_temperatures(self)
-        _require_type("asperity", self.asperity, (GreenwoodTripp, type(None)))
-        _require_type("roughness", self.roughness, (PatirCheng, type(None)))
-        _require_type("wear", self.wear, (ArchardWear, type(None)))
         for profile in self.profiles:
             _require_type("profile", profile, PROFILE_TYPES)
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
         require_areas(self.supply)
-        for name, pressure in [
-            ("end_pressures", ends.tolist()),
-            *(("supply", [area.pressure]) for area in self.supply),
-        ]:
+        given = [("end_pressures", ends.tolist()), *(("supply", [area.pressure]) for area in self.supply)]
+        for name, pressure in given:
             if max(map(abs, pressure)) > LARGEST_PRESSURE:
                 raise InputError(
                     f"JournalBearing.{name}: pressures must be within +-{LARGEST_PRESSURE:g} Pa (gauge), got "
@@ -182,8 +152,26 @@ class JournalBearing:
         if self.bush is not None and not isinstance(self.bush, ElasticLiner):
             _check_bush(self)
 
+    def _check_sizes(self) -> None:
+        radius, clearance = self.journal_radius, self.radial_clearance
+        require_number("JournalBearing.journal_radius", radius, "m", above=0.0, hint="it is half the diameter.")
+        require_number("JournalBearing.length", self.length, "m", above=0.0)
+        hint = "it is bore radius minus journal radius; if yours is diametral, halve it."
+        require_number("JournalBearing.radial_clearance", clearance, "m", above=0.0, hint=hint)
+        if radius > LARGEST_RADIUS:
+            raise InputError(
+                f"JournalBearing.journal_radius must be at most {LARGEST_RADIUS:g} m, got {radius!r}; lengths are in "
+                "metres, not millimetres."
+            )
+        if clearance > THICKEST_FILM_RATIO * radius:
+            raise InputError(
+                f"JournalBearing.radial_clearance must be at most {THICKEST_FILM_RATIO:g} of the journal radius for a "
+                f"thin film, got {clearance!r} m at {radius!r} m; lengths are in metres, usual clearances a thousandth "
+                "of the radius."
+            )
+
     def _check_plain(self) -> None:
-        """What `ImpedanceMap` needs: nothing beside geometry, viscosity and a closure at ambient cavity pressure."""
+        """What `ImpedanceMap` needs: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
         expected = "the map holds plain bearings only; use film=FiniteLength(...)."
         own = {"journal_radius", "length", "radial_clearance", "lubricant", "film", "cavitation"}
         for item, known in ((self, own), (self.lubricant, {"viscosity", "density"})):
@@ -280,6 +268,19 @@ def advice(status: Status, bearing: object) -> str:
     return status.advice
 
 
+_OPTIONS: dict[str, tuple[type, ...]] = {
+    "lubricant": (Lubricant,),
+    "film": (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap),
+    "cavitation": (FullSommerfeld, Gumbel, SwiftStieber, ElrodAdams),
+    "inlet": (Periodic, MaximumGap),
+    "contact": (RegularisedWall, type(None)),
+    "thermal": (LumpedThermal, FilmEnergy, type(None)),
+    "asperity": (GreenwoodTripp, type(None)),
+    "roughness": (PatirCheng, type(None)),
+    "wear": (ArchardWear, type(None)),
+}
+
+
 def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None:
     if not isinstance(value, types):
         names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
@@ -307,7 +308,7 @@ def _check_temperatures(bearing: JournalBearing) -> None:
 
 
 def _check_bush(bearing: JournalBearing) -> None:
-    """Refuse a bush that is none, or whose bore is another than the film's."""
+    """Refuse what is no bush, or one whose bore is not the film's."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore

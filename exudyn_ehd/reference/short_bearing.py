@@ -1,13 +1,13 @@
 """Short journal bearing (no pressure flow in the circumference) with the half Sommerfeld condition.
 
-Sources: F. W. Ocvirk, NACA TN 2808 (1952), for load and attitude; stiffness and damping follow by differentiation of the
-force with the rates of the journal,
+Sources: F. W. Ocvirk, NACA TN 2808 (1952), for load and attitude; stiffness and damping follow by differentiation of
+the force with the rates of the journal,
 
     f_r = (mu R L^3 / c^2) [(omega - 2 phi') eps^2 / s^2 + pi (1 + 2 eps^2) eps' / (2 s^(5/2))],         s = 1 - eps^2,
     f_t = (mu R L^3 / c^2) [(omega - 2 phi') pi eps / (4 s^(3/2)) + 2 eps eps' / s^2],
 
-f_r against the eccentricity, f_t in the direction of rotation, phi' the precession of the line of centres. (Cavitated region
-of the pure rotation: exact to first order in the rates, because the pressure vanishes on its edge.)
+f_r against the eccentricity, f_t in the direction of rotation, phi' the precession of the line of centres. (Cavitated
+region of the pure rotation: exact to first order in the rates, because the pressure vanishes on its edge.)
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def attitude(eps: float) -> float:
 
 
 def _along_load(rr: float, rt: float, tr: float, tt: float, eps: float) -> Matrix:
-    """Matrix from (radial, tangential) axes to x along the load, y ahead in the sense of rotation; divided by the load."""
+    """Matrix from (radial, tangential) axes to x along the load, y ahead in the rotation; divided by the load."""
     phi, size = attitude(eps), load(eps, 1.0) / 2.0
     cos, sin = math.cos(phi), math.sin(phi)
     xx = rr * cos**2 - (rt + tr) * sin * cos + tt * sin**2
@@ -60,7 +60,8 @@ def damping(eps: float) -> Matrix:
 def whirl_threshold(eps: float) -> tuple[float, float]:
     """Whirl ratio and ``M c omega^2 / W`` of a rigid rotor at the threshold of stability; (0, inf) if always stable.
 
-    ``s = i gamma omega`` in ``det(M s^2 + C s + K) = 0``: the imaginary part gives ``M gamma^2 = k``, the real part gamma.
+    ``s = i gamma omega`` in ``det(M s^2 + C s + K) = 0``: the imaginary part gives ``M gamma^2 = k``, the real part
+    gamma.
     """
     (kxx, kxy), (kyx, kyy) = stiffness(eps)
     (cxx, cxy), (cyx, cyy) = damping(eps)

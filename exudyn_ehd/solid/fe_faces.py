@@ -81,10 +81,8 @@ class BoreFaces:
             bad = lost[0] if lost.size else point[first[np.argmax(outside[first])]]
             raise InputError(
                 f"FEBore: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m of the film lies on no face of the "
-                "bore, whose nodes span z = "
-                f"{self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes in the bore are not "
-                "supported: check position, "
-                "axis, length and radius_tolerance."
+                f"bore, whose nodes span z = {self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes "
+                "in the bore are not supported: check position, axis, length and radius_tolerance."
             )
         values, _ = self._shapes(natural[first])
         rows = np.repeat(point[first], self.faces.shape[1])
@@ -133,8 +131,7 @@ def surface_faces(fem: BodyMesh) -> np.ndarray:
     if len(triangles) == 0:
         raise InputError(
             "FEBore.fem has neither elements nor surface triangles: import the mesh with its elements (fem.elements), "
-            "which tell how the "
-            "nodes share the pressure."
+            "which tell how the nodes share the pressure."
         )
     return np.asarray(triangles, dtype=int)
 
@@ -157,8 +154,7 @@ def bore_faces(where: str, fem: BodyMesh, positions: np.ndarray, chosen: np.ndar
     if len(faces) == 0:
         raise InputError(
             f"{where}: none of the mesh's surface faces has all of its nodes among the {len(chosen)} on the bore; "
-            "check "
-            "radius_tolerance, and that the FEMinterface is the body's own."
+            "check radius_tolerance, and that the FEMinterface is the body's own."
         )
     used, local = np.unique(faces, return_inverse=True)
     return BoreFaces(positions=positions[used], faces=local.reshape(faces.shape)), used
@@ -210,24 +206,20 @@ def find_bore(
         nearest = np.sort(np.abs(r - radius))[:12].max() / radius if len(r) >= 12 else np.inf
         raise InputError(
             f"{where}: {chosen.size} nodes lie on the bore of radius {radius:g} m within {tolerance:g} of it and "
-            f"{0.75 * length:g} m of "
-            f"the mid-plane, at least 12 are needed; the twelve nearest are within {nearest:.2g}. Check position, "
-            "axis, journal radius and "
-            "units, or raise radius_tolerance."
+            f"{0.75 * length:g} m of the mid-plane, at least 12 are needed; the twelve nearest are within "
+            f"{nearest:.2g}. Check position, axis, journal radius and units, or raise radius_tolerance."
         )
     angle = np.sort(np.arctan2(positions[chosen, 1], positions[chosen, 0]))
     gap = np.diff(np.append(angle, angle[0] + 2.0 * np.pi)).max()
     if gap > LARGEST_SPACING:
         raise InputError(
             f"{where}: the nodes on the bore leave {gap:.3g} rad of it without any, at most {LARGEST_SPACING:g} rad "
-            "are allowed; give a "
-            "closed bore, or a finer mesh."
+            "are allowed; give a closed bore, or a finer mesh."
         )
     z = positions[chosen, 2]
     if max(z.min() + 0.5 * length, 0.5 * length - z.max()) > BEYOND_END * length:
         raise InputError(
             f"{where}: the bore's nodes must span the film, z = -{0.5 * length:g} to {0.5 * length:g} m about the "
-            "mid-plane, got "
-            f"{z.min():.6g} to {z.max():.6g} m; check position and bearing length."
+            f"mid-plane, got {z.min():.6g} to {z.max():.6g} m; check position and bearing length."
         )
     return chosen

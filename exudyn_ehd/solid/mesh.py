@@ -99,9 +99,8 @@ class Surface:
             bad = int(np.argmax(best))
             raise InputError(
                 f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
-                "which "
-                f"spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush or lengthen the "
-                "bush."
+                f"which spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush or lengthen "
+                "the bush."
             )
         chosen = np.full(len(theta), -1)
         hits = np.flatnonzero(inside <= best[point])

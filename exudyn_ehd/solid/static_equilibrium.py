@@ -179,7 +179,6 @@ def _follower_matrix(load: FollowerPressure, positions: np.ndarray) -> csr_matri
 def _failure(step: int, steps: int, error: float) -> EquilibriumError:
     return EquilibriumError(
         f"equilibrium: load step {step} of {steps} did not converge, relative residual {error:.2e}; give more steps, "
-        "check "
-        "that the supports hold all rigid motions, or follow the motion dynamically: the load may lie above a limit "
-        "point."
+        "check that the supports hold all rigid motions, or follow the motion dynamically: the load may lie above a "
+        "limit point."
     )

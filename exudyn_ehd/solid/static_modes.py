@@ -292,8 +292,7 @@ def enough_modes(
     if best is None:
         raise InputError(
             f"the modes' tolerance {tolerance:g} can't be met with {LARGEST_WAVE} waves around the bore and axial "
-            "order "
-            f"{LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
+            f"order {LARGEST_AXIAL} (error {error:.2g}); raise it, or take an ANCFBush."
         )
     return best
 

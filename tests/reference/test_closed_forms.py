@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from exudyn_ehd.reference import long_bearing, petroff, short_bearing, slider, thick_cylinder, thin_ring
+from exudyn_ehd.reference import elastic_rings, long_bearing, petroff, short_bearing, slider
 
 EPS = (0.1, 0.5, 0.9)
 
@@ -94,14 +94,14 @@ def test_conical_gap_published_pressures():
     ],
 )
 def test_thick_cylinder_table(a, b, E, strain, stress, hoop):
-    assert thick_cylinder.bore_displacement(a, b, 1.0, E, 0.3, plane_strain=True) == pytest.approx(strain, rel=1e-8)
-    assert thick_cylinder.bore_displacement(a, b, 1.0, E, 0.3, plane_strain=False) == pytest.approx(stress, rel=1e-8)
-    assert thick_cylinder.stresses(a, b, 1.0, a) == pytest.approx((-1.0, hoop), rel=1e-8)
-    assert thick_cylinder.stresses(a, b, 1.0, b)[0] == pytest.approx(0.0, abs=1e-14)
+    assert elastic_rings.bore_displacement(a, b, 1.0, E, 0.3, plane_strain=True) == pytest.approx(strain, rel=1e-8)
+    assert elastic_rings.bore_displacement(a, b, 1.0, E, 0.3, plane_strain=False) == pytest.approx(stress, rel=1e-8)
+    assert elastic_rings.lame_stresses(a, b, 1.0, a) == pytest.approx((-1.0, hoop), rel=1e-8)
+    assert elastic_rings.lame_stresses(a, b, 1.0, b)[0] == pytest.approx(0.0, abs=1e-14)
 
 
 def test_thin_ring_table():
     stiffness = 1e6 * 0.05**3 / 12.0
-    assert thin_ring.diametral_shortening(1000.0, 0.25, stiffness) == pytest.approx(0.223168, rel=1e-5)
-    assert thin_ring.diametral_lengthening(1000.0, 0.25, stiffness) == pytest.approx(0.204930, rel=1e-5)
-    assert thin_ring.moment_under_load(1000.0, 0.25) == pytest.approx(79.577472, rel=1e-8)
+    assert elastic_rings.diametral_shortening(1000.0, 0.25, stiffness) == pytest.approx(0.223168, rel=1e-5)
+    assert elastic_rings.diametral_lengthening(1000.0, 0.25, stiffness) == pytest.approx(0.204930, rel=1e-5)
+    assert elastic_rings.moment_under_load(1000.0, 0.25) == pytest.approx(79.577472, rel=1e-8)

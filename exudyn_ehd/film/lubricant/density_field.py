@@ -1,11 +1,12 @@
-"""Density, pressure and viscosity at the vertices of a film from transformed pressures, see `exudyn_ehd.film.lubricant.density`.
+"""Density, pressure and viscosity at the vertices of a film from transformed pressures; the law is in `density`.
 
-The iterations of a film, and one film after the other, ask for the law at nearly the same pressures again and again. So every vertex
-remembers a pressure at which the law is known with its derivatives, ``known`` (6, size): transformed pressure q, p, s = dp/dq and s's first
-three derivatives; Taylor's polynomial about it is the law near by, in loops that the compiler vectorises.
+The iterations of a film, and one film after the other, ask for the law at nearly the same pressures again and again. So
+every vertex remembers a pressure at which the law is known with its derivatives, ``known`` (6, size): transformed
+pressure q, p, s = dp/dq and s's first three derivatives; Taylor's polynomial about it is the law near by, in loops that
+the compiler vectorises.
 
-Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``floor`` the scaled pressure below which the density stays;
-``share`` = 1: the law's density, less: that share of its difference to a constant one.
+Symbols: P scaled transformed pressures (n, m), ``scale`` Pa per unit of P, ``floor`` the scaled pressure below which
+the density stays; ``share`` = 1: the law's density, less: that share of its difference to a constant one.
 """
 
 from __future__ import annotations
@@ -15,8 +16,8 @@ from numba import njit
 from exudyn_ehd.film.lubricant.density import density_ratio
 from exudyn_ehd.film.lubricant.pressure_viscosity import hermite_fourth_at
 
-# Change of dp/dq, as a share, up to which Taylor's polynomial about a known value is the law: to 1e-14 in the density, which the balance is
-# solved with, 3e-13 in p and 1e-10 in their slopes.
+# Change of dp/dq, as a share, up to which Taylor's polynomial about a known value is the law: to 1e-14 in the density,
+# which the balance is solved with, 3e-13 in p and 1e-10 in their slopes.
 NEAR = 5e-4
 # Tension times the density's coefficient, of a p, up to which five terms of exp(a p) are the exponential to rounding.
 WEAK = 1e-3
@@ -25,17 +26,13 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 @njit(cache=True)
 def density_at(P, scale, floor, law, share, known, rho_out):
-    """Density ratio (n, m); what is not known near by is looked up. Pressures beyond the law's range have the density at its end."""
+    """Density ratio (n, m); what is not known near by is looked up. Beyond the law's range it is that at its end."""
     x, rho = P.reshape(-1), rho_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    far, tense = _ratio_near(
-        x, scale, lowest, highest, share, law.a, law.b, known[0], known[1], known[2], known[3], known[4], known[5], rho
-    )  # fmt: skip
+    far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
     if far > 0.0:
         look_up(x, scale, lowest, highest, law, known)
-        far, tense = _ratio_near(
-            x, scale, lowest, highest, share, law.a, law.b, known[0], known[1], known[2], known[3], known[4], known[5], rho
-        )  # fmt: skip
+        far, tense = _ratio_near(x, scale, lowest, highest, share, law.a, law.b, known, rho)
     if tense > 0.0:
         for c in range(rho.size):
             p, _ = _taylor(x[c], scale, lowest, highest, known, c)
@@ -44,12 +41,10 @@ def density_at(P, scale, floor, law, share, known, rho_out):
 
 @njit(cache=True)
 def density_slope_at(P, scale, floor, law, share, known, rho_P_out):
-    """Derivative (n, m) of the density ratio to P at pressures that `density_at` has been asked for last; 0 where it stays."""
+    """Derivative (n, m) of the density ratio to P at the pressures of the last `density_at`; 0 where it stays."""
     x, slope = P.reshape(-1), rho_P_out.reshape(-1)
     lowest, highest = max(floor, law.lowest / scale), law.highest / scale
-    tense = _slope_near(
-        x, scale, lowest, highest, share, law.a, law.b, known[0], known[1], known[2], known[3], known[4], known[5], slope
-    )  # fmt: skip
+    tense = _slope_near(x, scale, lowest, highest, share, law.a, law.b, known, slope)
     if tense > 0.0:
         for c in range(slope.size):
             p, s = _taylor(x[c], scale, lowest, highest, known, c)
@@ -94,8 +89,9 @@ def _taylor(x, scale, lowest, highest, known, c):
 
 # Checks for a division by zero would keep the compiler from vectorising the next ones.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _ratio_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3, rho_out):
-    """Density ratio but for strong tension; returns how many are far from known pressures, and how many in such tension."""
+def _ratio_near(x, scale, lowest, highest, share, a, b, known, rho_out):
+    """Density ratio, strong tension excepted; counts what is far from known pressures, and what is in such tension."""
+    at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
     far = 0.0
     tense = 0.0
     for c in range(rho_out.size):
@@ -114,8 +110,9 @@ def _ratio_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _slope_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3, rho_P_out):
-    """Derivative of the density ratio but for strong tension; returns how many are in it."""
+def _slope_near(x, scale, lowest, highest, share, a, b, known, rho_P_out):
+    """Derivative of the density ratio, strong tension excepted; returns how many are in it."""
+    at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
     tense = 0.0
     for c in range(rho_P_out.size):
         y = x[c] if x[c] > lowest else lowest
@@ -133,18 +130,17 @@ def _slope_near(x, scale, lowest, highest, share, a, b, at, p, s, s_q, s_qq, s_3
 
 @njit(cache=True)
 def pressure_at(P, scale, floor, law, known, p_out, p_P_out):
-    """Pressure over ``scale`` and its derivative to P (n, m) from what is known; False where that is not near, or has no pressure."""
+    """Pressure over ``scale`` and its derivative to P (n, m) from what is known near by; False if it has none."""
     x, slope = P.reshape(-1), p_P_out.reshape(-1)
-    far = _pressure_near(
-        x, scale, max(floor, law.lowest / scale), law.highest / scale, known[0], known[1], known[2], known[3], known[4],
-        known[5], p_out.reshape(-1),
-    )  # fmt: skip
-    _pressure_slope_near(x, scale, known[0], known[2], known[3], known[4], known[5], slope)
+    lowest, highest = max(floor, law.lowest / scale), law.highest / scale
+    far = _pressure_near(x, scale, lowest, highest, known, p_out.reshape(-1))
+    _pressure_slope_near(x, scale, known, slope)
     return far == 0.0
 
 
 @njit(cache=True, fastmath=_FAST)
-def _pressure_near(x, scale, lowest, highest, at, p, s, s_q, s_qq, s_3, p_out):
+def _pressure_near(x, scale, lowest, highest, known, p_out):
+    at, p, s, s_q, s_qq, s_3 = known[0], known[1], known[2], known[3], known[4], known[5]
     far = 0.0
     per_scale = 1.0 / scale
     for c in range(p_out.size):
@@ -159,7 +155,8 @@ def _pressure_near(x, scale, lowest, highest, at, p, s, s_q, s_qq, s_3, p_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _pressure_slope_near(x, scale, at, s, s_q, s_qq, s_3, p_P_out):
+def _pressure_slope_near(x, scale, known, p_P_out):
+    at, s, s_q, s_qq, s_3 = known[0], known[2], known[3], known[4], known[5]
     for c in range(p_P_out.size):
         d = x[c] * scale - at[c]
         p_P_out[c] = s[c] + d * (s_q[c] + d * (0.5 * s_qq[c] + d * s_3[c] * (1.0 / 6.0)))
@@ -167,22 +164,21 @@ def _pressure_slope_near(x, scale, at, s, s_q, s_qq, s_3, p_P_out):
 
 @njit(cache=True)
 def viscosity_at(P, scale, floor, law, known, rho, p_out, ratio_out, ratio_P_out, p_P_out):
-    """Pressure over ``scale``, viscosity ratio and both derivatives to P (n, m) from what is known and the density ratio rho there.
+    """Pressure over ``scale``, viscosity ratio and both derivatives to P (n, m), with the density ratio rho there.
 
-    False as `pressure_at`.
+    From what is known near by; False as `pressure_at`.
     """
     if not pressure_at(P, scale, floor, law, known, p_out, p_P_out):
         return False
-    _viscosity_near(
-        P.reshape(-1), scale, law.a, law.b, known[0], known[3], known[4], known[5], rho.reshape(-1), p_out.reshape(-1),
-        p_P_out.reshape(-1), ratio_out.reshape(-1), ratio_P_out.reshape(-1),
-    )  # fmt: skip
+    p, p_P, ratio, ratio_P = p_out.reshape(-1), p_P_out.reshape(-1), ratio_out.reshape(-1), ratio_P_out.reshape(-1)
+    _viscosity_near(P.reshape(-1), scale, law.a, law.b, known, rho.reshape(-1), p, p_P, ratio, ratio_P)
     return True
 
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _viscosity_near(x, scale, a, b, at, s_q, s_qq, s_3, rho, p, p_P, ratio_out, ratio_P_out):
+def _viscosity_near(x, scale, a, b, known, rho, p, p_P, ratio_out, ratio_P_out):
     """Viscosity ratio ``mu = rho s`` and its derivative to P."""
+    at, s_q, s_qq, s_3 = known[0], known[3], known[4], known[5]
     for c in range(ratio_out.size):
         d = x[c] * scale - at[c]
         denser = 1.0 / (1.0 + b * scale * p[c])
