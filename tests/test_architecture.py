@@ -94,7 +94,7 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 411, 96, 28, 16
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE = 85, 180, 17100
+MOST_SKIPS, MOST_ANY, MOST_CODE = 100, 200, 17500
 # Files that import each other in a circle, imports for types alone included.
 IN_CIRCLES = 5
 
