@@ -1,4 +1,4 @@
-"""What a compressible film must keep with every closure: exact tangent, the incompressible limit, oil mass, a solution, no cost when off."""
+"""A compressible film with every closure: exact tangent, incompressible limit, oil mass, a solution, no cost when off."""
 
 import dataclasses
 
@@ -42,7 +42,7 @@ def start(model):
 
 
 def tangent_error(model, history, step=STEP, columns=range(10)):
-    """Largest difference to fourth-order central differences, relative to the rows; the best of several steps (moving rupture lines)."""
+    """Largest difference to fourth-order central differences, over the rows; the best of several steps (rupture moves)."""
     columns = list(columns)
     exact = (model.evaluate(MOTION, history, step).tangent() * UNIT)[:, columns]
     size, errors = np.abs(exact).max(axis=1, keepdims=True), []
@@ -155,7 +155,7 @@ def test_oil_mass_is_conserved_over_a_transient(pressure):
 
 @pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
 def test_leakage_is_what_supplies_and_squeeze_leave(cavitation):
-    """Mass flows at rest of the journal: nothing is stored, so that both ends together lose what the closure creates: nothing."""
+    """Mass flows at rest of the journal: nothing is stored, so that both ends together lose nothing."""
     model = make(cavitation=cavitation)
     still = MOTION.copy()
     still[4:8] = 0.0
@@ -179,7 +179,7 @@ def random_motion(rng):
 @pytest.mark.parametrize("cavitation", CLOSURES, ids=lambda c: type(c).__name__)
 @pytest.mark.parametrize("pressure", PRESSURE, ids=lambda p: type(p).__name__)
 def test_every_random_state_is_solved_or_beyond_the_law(pressure, cavitation):
-    """Up to eccentricity ratio 0.99, tilted, squeezing, in both senses of rotation: the only failure is oil beyond its law."""
+    """Up to eccentricity ratio 0.99, tilted, squeezing, turning both ways: the only failure is oil beyond its law."""
     model, rng = make(pressure=pressure, cavitation=cavitation), np.random.default_rng(11)
     solved = 0
     for _ in range(40):

@@ -1,4 +1,4 @@
-"""Every pair of effects, with every closure: it is refused when described, or it is finite, balanced and differentiated exactly."""
+"""Every pair of effects, with every closure: refused when described, or finite, balanced and differentiated exactly."""
 
 import itertools
 import math

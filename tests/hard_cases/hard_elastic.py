@@ -50,7 +50,7 @@ def very_stiff():
 # processors, decides which steps are refused
 @hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.2)
 def very_soft():
-    """Softer than rubber: the bore gives way by more than the clearance, and no mass is stable on it at this speed."""
+    """Softer than rubber: the bore deflects by more than the clearance, and no mass is stable on it at this speed."""
     load = 20.0
     made = bearing(bush=ring(1e6))
     rigid = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -load))
@@ -142,7 +142,7 @@ def liner_touches():
 
 @hard_case("soft liner pressed onto its edges", newton=5.0)
 def liner_on_its_edges():
-    """The same with a wall, that presses on the liner: the ends give way, by more than the clearance leaves."""
+    """The same with a wall, that presses on the liner: the ends deflect, by more than the clearance leaves."""
     rotor, period = swinging_liner(1500.0, contact=ehd.RegularisedWall(onset=0.02 * CLEARANCE))
     run = rotor.run(6 * period, period / 60)
     h = run.history

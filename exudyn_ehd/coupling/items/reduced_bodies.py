@@ -17,7 +17,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
-from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore, bore_faces, find_bore
+from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
 from exudyn_ehd.status import InputError
 
 _WHERE = "CreateLubricatedJoint.bearing with bush=FEBore(...)"
