@@ -15,10 +15,10 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import PROFILE_TYPES, Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall

@@ -30,7 +30,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, require_bool, require_vector
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.solvers.liner import ElasticLiner
+    from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
     from exudyn_ehd.joint.audit.audit import Audit
     from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
 

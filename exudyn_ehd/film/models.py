@@ -16,12 +16,9 @@ from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
-from exudyn_ehd.film.solvers.compliant_parts import ColumnContact, ColumnLimiter, ColumnOil
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, SupplyArea
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
@@ -217,26 +214,4 @@ def film_solver(
         squeeze=squeeze,
         flux_effects=flux_effects,
         circumferential_pressure_flow=film.circumferential_pressure_flow,
-    )
-
-
-def liner_film_solver(
-    grid: FilmGrid,
-    closure: Closure,
-    *,
-    squeeze: bool,
-    contact: ColumnContact | None,
-    limiter: ColumnLimiter | None,
-    flux_effects: tuple[FluxEffect, ...],
-    oil: ColumnOil | None,
-) -> LinerFilmSolver | CompliantFilmSolver:
-    """Solver of a film on an elastic liner.
-
-    ``contact`` presses on it beside the film, whose gap the ``limiter`` keeps open; ``oil``: of a viscosity that
-    follows the pressure.
-    """
-    if contact is None and limiter is None and oil is None and not flux_effects and not closure.conserves_mass:
-        return LinerFilmSolver(grid, closure, squeeze=squeeze)
-    return CompliantFilmSolver(
-        grid, closure, squeeze=squeeze, contact=contact, limiter=limiter, flux_effects=flux_effects, oil=oil
     )

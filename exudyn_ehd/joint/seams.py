@@ -12,7 +12,7 @@ import numpy as np
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
 __all__ = [

@@ -22,10 +22,9 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply import SupplyMap
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
@@ -117,8 +116,8 @@ class FilmParts:
     grid : FilmGrid
     solver : FilmSolver
         Holds gaps, links, factor and active set of the last evaluation.
-    liner, compliant, compressible : film solvers or None
-        The same solver, if it is one of an elastic liner, of one with contacts or oil laws, or of a compressible film.
+    liner, compressible : film solvers or None
+        The same solver, if it is one of an elastic liner or of a compressible film.
     supply : SupplyMap or None
     contacts, limiter : buffers or None
     cos_x, sin_x, cos_f, sin_f : (n,) arrays
@@ -137,9 +136,8 @@ class FilmParts:
     bearing: JournalBearing
     grid: FilmGrid
     solver: FilmSolver
-    liner: LinerFilmSolver | CompliantFilmSolver | None
-    compliant: CompliantFilmSolver | None
-    compressible: CompressibleFilmSolver | None
+    liner: NonlinearFilmSolver | None
+    compressible: CompressibleFilmSolver | NonlinearFilmSolver | None
     supply: SupplyMap | None
     contacts: ContactFields | None
     limiter: LimiterFields | None

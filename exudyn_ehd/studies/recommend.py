@@ -10,7 +10,7 @@ from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.models import Film
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.status import InputError, require_number

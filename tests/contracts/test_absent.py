@@ -50,11 +50,11 @@ EFFECTS = {
     ),
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
-    "liner": (("film.solvers.liner", "film.solvers.liner_newton"), {"bush": LINER}),
-    "liner in contact": (
-        ("film.solvers.compliant", "film.solvers.compliant_columns", "film.solvers.compliant_iteration", "film.solvers.compliant_links", "film.solvers.compliant_newton", "film.solvers.compliant_start"),
-        {"bush": LINER, "asperity": ASPERITY},
+    "liner": (
+        ("film.solvers.nonlinear", "film.solvers.liner.balance", "film.solvers.liner.elements", "film.solvers.liner.gap_response", "film.solvers.liner.continuation", "film.solvers.liner.compiled"),
+        {"bush": LINER},
     ),
+    "liner in contact": (("film.solvers.newton", "film.solvers.liner.kernels"), {"bush": LINER, "asperity": ASPERITY}),
     "bush": (
         ("joint.bore.shapes", "joint.model.flexible", "joint.tangent.bore", "joint.bore.equilibrium", "solid.static_modes"),
         {
@@ -80,7 +80,7 @@ EFFECTS = {
 SHARED = {
     "banded.lu", "cavitation.closures", "cavitation.active_set", "models", "banded.numbering", "banded.substitution", "banded.workspace", "banded.ldl", "sensitivity.mirror_symmetry", "reynolds.gap", "grid", "loads", "lubricant.lubricant", "lubricant.named_oils",
     "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "sensitivity.rigid", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.many_sides",
-    "solvers.compliant_parts", "solvers.density_matrix",
+    "surfaces.patir_cheng", "solvers.liner.parts", "surfaces.elastic_liner", "solvers.balance", "banded.assemble",
 }  # fmt: skip
 
 

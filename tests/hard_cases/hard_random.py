@@ -33,7 +33,6 @@ import numpy as np
 import exudyn_ehd as ehd
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
 from exudyn_ehd.film.reynolds.links import fill_balance, vertex_balance
-from exudyn_ehd.film.solvers.compliant_columns import LOAD_P
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
@@ -259,9 +258,9 @@ def beyond_law(model, motion, past):
             model.bearing, lubricant=ehd.Lubricant(viscosity=model.bearing.lubricant.viscosity)
         )
         return build_model(bearing).evaluate(motion, *past).quantities()["peak_pressure"] > LARGEST_PRESSURE
-    if model.parts.compliant is not None:
+    if model.parts.liner is not None:
         # the last film that pseudo time reached on its way
-        highest = float(model.parts.compliant.load[LOAD_P].max()) * model.scales.pressure
+        highest = float(model.parts.liner.elements.load.p.max()) * model.scales.pressure
         return highest > 0.9 * law.largest_pressure
     highest = float(law.transform(np.array([law.largest_pressure]))[0])
     return float(model.solver.pressure.max()) * model.scales.pressure > highest * (1.0 - 1e-9)

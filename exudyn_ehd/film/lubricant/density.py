@@ -141,6 +141,12 @@ class CompressibleLaw(HermiteTable):
         (mu, mu_p), rho, rho_p = self._viscosity(p), self.density.ratio(p), self.density.ratio_slope(p)
         return mu / rho * (mu_p * rho - mu * rho_p) / rho**2
 
+    def pressure(self, q: np.ndarray, p_out: np.ndarray, slope_out: np.ndarray, bend_out: np.ndarray) -> bool:
+        """p(q) with its first two derivatives for fields (n, m); False where q has no p."""
+        table = self.kernel_table
+        inside = bool(np.all(q > table.lowest) and np.all(q < table.highest))
+        return inside and super().inverse(q, p_out, slope_out, bend_out)
+
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
         """p(q), r = mu(p)/mu_0 and dr/dq (1/Pa) for fields (n, m); False where q has no p."""
         return bool(viscosity_of_transformed(q, self.kernel_table, p_out, ratio_out, ratio_q_out))

@@ -2,10 +2,13 @@
 
 Module map
 ----------
-linear         linear for given sets: rigid surfaces, incompressible
-liner          film on a liner
-compliant      gap that yields to the pressure, with contact and laws
-compressible   density that follows the pressure
-impedance_map  fitted map for plain bearings
-sor            finite differences and successive over-relaxation
+linear          linear for given sets: rigid surfaces, incompressible
+newton          the driver for gaps or densities that answer to the pressure
+balance         their mass balance with its derivatives
+nonlinear       film on an elastic liner, with contact, laws of the oil and density
+liner           what it is made of
+compressible    density that follows the pressure, on rigid surfaces
+density_newton  its iteration
+impedance_map   fitted map for plain bearings
+sor             finite differences and successive over-relaxation
 """

@@ -24,6 +24,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.grid import FilmGrid
@@ -32,7 +33,7 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, link_derivatives, link_factors
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.density_matrix import Balance, compressible_balance, dense_band
+from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance
 from exudyn_ehd.film.solvers.density_newton import (
     CLIPPED,
     COMPLEMENTARY,
@@ -84,7 +85,7 @@ class CompressibleFilmSolver(FilmSolver):
         w, s = self.work, self.system
         # without a history, what full films store grows with the gap
         grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
-        self.film = Balance(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
+        self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
         lower, upper = w.lower, w.upper
         self.buffers = Buffers(
             w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
@@ -175,7 +176,7 @@ class CompressibleFilmSolver(FilmSolver):
             self._set_store()
 
     def _set_store(self) -> None:
-        """Coefficients of a mass-conserving film's storage term; see `Balance`."""
+        """Coefficients of a mass-conserving film's storage term; see `FilmTerms`."""
         s, f = self.system, self.film
         f.known[:] = 0.0
         f.kept[:] = 0.0
@@ -281,7 +282,7 @@ class CompressibleFilmSolver(FilmSolver):
     def inflow(self) -> np.ndarray:
         """Scaled mass flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
         balance = np.empty(self.grid.shape)
-        compressible_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
+        film_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
         return np.where(self.grid.fixed, balance, 0.0)
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:

@@ -11,17 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
-from exudyn_ehd.film.solvers.density_matrix import (
-    assemble_compressible,
-    assemble_full,
-    compressible_balance,
-    dense_band,
-    full_balance,
-)
+from exudyn_ehd.film.solvers.balance import film_balance, film_slopes
 
 MAX_NEWTON_STEPS = 60
 # Shares of the peak pressure: where a vertex changes sides, and the error at which the solution stands.
@@ -72,10 +67,12 @@ def factor_compressible(P, fill, film, kind, scale, floor, law, share, full, b):
     else:
         count, width = number_cells(np.logical_not(film.fixed), film.kx, b.order, b.number)
     lower, upper = dense_band(b.lower, count, width), dense_band(b.upper, count, width)
+    slopes = np.empty((5, P.size))
     if kind == FILLED:
-        assemble_compressible(fill, b.rho, b.rho_P, film, full, b.number, b.order, count, lower, upper)
+        film_slopes(fill, full, b.rho, b.rho_P, film, slopes)
     else:
-        assemble_full(b.rho_P, film, b.number, b.order, count, lower, upper)
+        film_slopes(None, None, b.rho, b.rho_P, film, slopes)
+    assemble(film.kx, film.kz, slopes, b.number, b.order, count, lower, upper)
     return factor_lu(lower, upper, count, width, b.inv_diag), count, width
 
 
@@ -195,9 +192,9 @@ def _start(P, fill, film, full, pc, kind):
 @njit(cache=True)
 def _balance(P, fill, film, kind, b):
     if kind == FILLED:
-        compressible_balance(P, fill, b.rho, film, b.residual)
+        film_balance(P, fill, b.rho, film, b.residual)
     else:
-        full_balance(P, b.rho, film, b.residual)
+        film_balance(P, None, b.rho, film, b.residual)
 
 
 @njit(cache=True)

@@ -9,5 +9,6 @@ average_gap     mean gap of rough surfaces
 asperity        Greenwood-Tripp
 wall            RegularisedWall
 contact_wrench  forces of the contacts
+elastic_liner   ElasticLiner, the option
 wear            Archard
 """

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Case, Finding, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.model.build import build_study_model

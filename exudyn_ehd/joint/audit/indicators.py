@@ -28,7 +28,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, SwiftStieber
 from exudyn_ehd.film.models import LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.ringing import LIMIT, REMEDY, WINDOW, watched
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
 

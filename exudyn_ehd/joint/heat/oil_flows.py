@@ -15,6 +15,7 @@ from exudyn_ehd.film.heat.energy import (
     outside_flows,
 )
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.joint.heat.power import power_loss
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
@@ -121,7 +122,7 @@ def _end_work(film: SolvedFilm) -> float:
     return film.journal.axial_speed / g.reference_length * end_section(film.oil.P, film.solver.H, g.width_x)
 
 
-def _compressible_work(film: SolvedFilm, oil: CompressibleFilmSolver) -> tuple[float, float]:
+def _compressible_work(film: SolvedFilm, oil: CompressibleFilmSolver | NonlinearFilmSolver) -> tuple[float, float]:
     """Work on the oil of a compressible film, scaled, and the flow that leaves.
 
     With the density ratio rho, the flow work ``w = integral of dp / rho`` and a volume flow q per width, the mass balance times w

@@ -25,7 +25,7 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
     P_q = ratio
     if film is not None:
         P_q = np.empty(shape)
-        if film.law.viscosity is None and shear is None:
+        if film.law is not None and film.law.viscosity is None and shear is None:
             return OilFields(P, P_q) if film.pressure_of_solution(P, P_q) else None
         if not film.viscosity(P, ratio, ratio_q, P_q):
             return None

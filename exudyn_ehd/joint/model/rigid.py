@@ -16,12 +16,11 @@ from operator import is_
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.models import film_grid, film_solver, liner_film_solver
+from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.reynolds.gap import add_to_gap, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply import SupplyMap
 from exudyn_ehd.joint.model.film_laws import oil_fields
 from exudyn_ehd.joint.model.loads import film_loads
@@ -155,8 +154,7 @@ class BearingModel:
         self._prescribed: list[float] = prescribed.tolist()
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
-        if p.compliant is not None:
-            p.compliant.pressure_scale = pressure
+            p.liner.pressure_scale = pressure
         if p.compressible is not None:
             p.compressible.pressure_scale = pressure
 
@@ -237,7 +235,7 @@ class BearingModel:
             return self._result(status, journal, _no_wrench(), iterations, c * smallest, None)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()
-            if p.compliant is not None and p.contacts is not None:
+            if p.liner is not None and p.contacts is not None:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
         loads = film_loads(p, self.scales, journal, oil, extra, pressing)
         film = SolvedFilm(
@@ -294,7 +292,7 @@ class BearingModel:
         extra = None
         if self.effects.gap_terms:
             smallest, extra = self._add_gap_terms(history)
-        if p.compliant is not None:
+        if p.liner is not None:
             return smallest, extra, None, None
         pressing = None if p.contacts is None else self._press(p.contacts, smallest)
         limiter, limited = self.effects.limiter, None
@@ -368,9 +366,9 @@ def _film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -
     open_ring = isinstance(bearing.inlet, MaximumGap)
     grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring)
     supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
-    liner: LinerFilmSolver | CompliantFilmSolver | None = None
+    liner: NonlinearFilmSolver | None = None
     if effects.liner is not None:
-        liner = liner_film_solver(
+        liner = NonlinearFilmSolver(
             grid,
             bearing.cavitation,
             squeeze=bearing.squeeze,
@@ -378,6 +376,7 @@ def _film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -
             limiter=effects.limiter,
             flux_effects=effects.flux,
             oil=effects.pressure_law,
+            density=effects.density,
         )
     solver = liner or film_solver(
         bearing.film,
@@ -387,25 +386,24 @@ def _film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -
         flux_effects=effects.flux,
         density=effects.density,
     )
-    # contact and film gap on a liner come out of its film solve
-    compliant = liner if isinstance(liner, CompliantFilmSolver) else None
+    compressible = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
     contacts = None
     if effects.contacts:
         friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
         contacts = ContactFields(grid.shape, friction, max(f.presses_below for f in effects.contacts))
-        if compliant is not None:
-            contacts.P, contacts.slope = [compliant.contact_pressure], [compliant.contact_slope]
+        if liner is not None:
+            # contact and film gap on a liner come out of its film solve
+            contacts.P, contacts.slope = [liner.contact_pressure], [liner.contact_slope]
     pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
     return FilmParts(
         bearing=bearing,
         grid=grid,
         solver=solver,
         liner=liner,
-        compliant=compliant,
-        compressible=solver if isinstance(solver, CompressibleFilmSolver) else None,
+        compressible=None if effects.density is None else compressible,
         supply=supply,
         contacts=contacts,
-        limiter=LimiterFields(grid.shape) if effects.limiter is not None and compliant is None else None,
+        limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
         cos_x=np.cos(grid.x),
         sin_x=np.sin(grid.x),
         cos_f=np.cos(grid.x_face),

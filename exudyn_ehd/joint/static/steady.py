@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.model.build import build_study_model

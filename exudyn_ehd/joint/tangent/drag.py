@@ -7,8 +7,8 @@ import numpy as np
 from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
@@ -28,10 +28,10 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
     On a liner: to the gap of the undeformed surfaces, whose contact follows.
     """
-    if film.parts.compliant is None:
+    if film.parts.liner is None:
         face, cell = _slopes(film, *_gap_slopes(film))
         return face[None], np.stack((np.zeros_like(cell), cell))
-    c = film.parts.compliant.columns
+    c = film.parts.liner.gap_slopes
     face, cell = _slopes(film, film.solver.ones, c.link)
     return face[None], np.stack((_ends(face) * c.D_r, cell * c.H_r))
 
@@ -39,7 +39,7 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     """Add the gradients of E_x and E_z at fixed pressure to the scaled pose to ``gradient`` (2, 10)."""
     p, g = film.parts, film.grid
-    if p.compliant is not None:
+    if p.liner is not None:
         face, cell = drag_by_gap(film)
         contract_pose(face, p.cos_f, p.sin_f, g.z, gradient[:1, :4])
         contract_pose(cell[1:], p.cos_x, p.sin_x, g.z, gradient[1:, :4])
@@ -48,9 +48,9 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     drag_pose_gradient(film.oil.P, _flux(film.solver), *_gap_slopes(film), g.mesh, g.directions, gradient)
 
 
-def drag_by_deflection(film: SolvedFilm, liner: CompliantFilmSolver) -> np.ndarray:
+def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
-    face, cell = _slopes(film, liner.ones, liner.columns.link)
+    face, cell = _slopes(film, liner.ones, liner.gap_slopes.link)
     return np.stack((_ends(face) * liner.deflection_by_pressure, cell * liner.gap_by_pressure))
 
 

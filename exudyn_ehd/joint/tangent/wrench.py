@@ -13,11 +13,8 @@ from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjo
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, pose_gradient, wrench_gradient
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
-from exudyn_ehd.film.solvers.compliant_links import compliant_shear_row
 from exudyn_ehd.film.solvers.linear import Sensitivities
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver
-from exudyn_ehd.film.solvers.liner_newton import liner_shear_rhs
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_limiter,
     chain_links,
@@ -68,8 +65,8 @@ def film_gradient(film: SolvedFilm, slow_motion: bool, weights: np.ndarray | Non
         rows = weights @ rows
     lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], MOTION_SIZE))
-    if p.compliant is not None and not slow_motion:
-        p.compliant.pose_gradient(lam, p.cos_x, p.sin_x, p.cos_f, p.sin_f, gradient)
+    if p.liner is not None and not slow_motion:
+        p.liner.pose_gradient(lam, p.cos_x, p.sin_x, p.cos_f, p.sin_f, gradient)
     elif s.plain_links and not slow_motion:
         swept_gradient(film, lam, gradient)
     else:
@@ -88,9 +85,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     return gradient[:4], dc, extra
 
 
-def _following_deflection(
-    film: SolvedFilm, solver: LinerFilmSolver | CompliantFilmSolver, by_rate: np.ndarray
-) -> np.ndarray:
+def _following_deflection(film: SolvedFilm, solver: NonlinearFilmSolver, by_rate: np.ndarray) -> np.ndarray:
     """Gradient (k, 4) to the scaled rates through the deflection's rate: a second adjoint solve, of ``by_rate`` (k, n, m) times beta."""
     p, w, z = film.parts, solver.work, film.grid.z
     rows = (by_rate * solver.deflection_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
@@ -98,8 +93,7 @@ def _following_deflection(
     out = np.zeros((by_rate.shape[0], 4))
     contract_pose(sens.cell, p.cos_x, p.sin_x, z, out)
     contract_pose(sens.face, p.cos_f, p.sin_f, z, out)
-    if p.compliant is not None:
-        contract_pose(by_rate * p.compliant.columns.D_r, p.cos_x, p.sin_x, z, out)
+    contract_pose(by_rate * solver.gap_slopes.D_r, p.cos_x, p.sin_x, z, out)
     return out
 
 
@@ -156,7 +150,7 @@ def shape_rows(film: SolvedFilm) -> int:
 
 def _pressed_contact(film: SolvedFilm) -> bool:
     """Whether a contact acts on a liner, and so answers to the film's pressure."""
-    return film.parts.compliant is not None and film.pressing is not None
+    return film.parts.liner is not None and film.pressing is not None
 
 
 def _wrench_weights(film: SolvedFilm) -> np.ndarray:
@@ -190,10 +184,10 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             add_drag_rows(film, extra)
         if P_q is not None:
             weigh_rows(w.order, w.count, P_q, extra)
-        if p.uneven_drag and p.compliant is not None:
-            extra += drag_by_deflection(film, p.compliant).reshape(2, -1)[:, w.order[: w.count]]
-    if rows.shape[0] > own and p.compliant is not None:
-        by_pressure = p.compliant.contact_by_pressure
+        if p.uneven_drag and p.liner is not None:
+            extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
+    if rows.shape[0] > own and p.liner is not None:
+        by_pressure = p.liner.contact_by_pressure
         contact_adjoint_rhs(w.order, w.count, g.weight, by_pressure, p.cos_x, p.sin_x, g.z, rows[own:])
     return rows
 
@@ -203,27 +197,13 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
     ratio = s.ones if oil.ratio is None else oil.ratio
     ratio_q = s.nothing if oil.ratio_q is None else oil.ratio_q
-    if p.compliant is not None:
-        # by the pressure's deflection at unknown pressures, by the fill elsewhere
-        ratio_h = s.nothing if oil.ratio_h is None else oil.ratio_h
-        compliant_shear_row(
-            p.compliant.fields,
-            w.order,
-            w.count,
-            g.weight,
-            w.active,
-            s.closure.conserves_mass,
-            ratio,
-            ratio_q,
-            ratio_h,
-            row,
-        )
-        return
+    by_pressure = ratio_q
     if p.liner is not None:
-        liner_shear_rhs(w.order, w.count, g.weight, s.H, w.active, p.liner.beta, row)
-        return
+        # and by the gap that the pressure leaves
+        ratio_h = s.nothing if oil.ratio_h is None else oil.ratio_h
+        by_pressure = ratio_q + (ratio_h - ratio / s.H) * p.liner.gap_slopes.H_P
     by_fill = ratio if s.closure.conserves_mass else s.nothing
-    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, ratio_q, by_fill, row)
+    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
 
 
 def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:
@@ -257,8 +237,8 @@ def _contract_couette(film: SolvedFilm, gradient: np.ndarray, dc: np.ndarray) ->
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
     """d(film gap)/d(gap of the undeformed surfaces) (n, m) at fixed pressure; None where it is one."""
-    if film.parts.compliant is not None:
-        return film.parts.compliant.columns.H_r
+    if film.parts.liner is not None:
+        return film.parts.liner.gap_slopes.H_r
     return None if film.limited is None else film.limited.slope
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import Film, FiniteLength
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder

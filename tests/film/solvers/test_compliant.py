@@ -9,11 +9,16 @@ from scipy.optimize import brentq, root
 from scipy.special import ndtr
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.banded.assemble import assemble
+from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.solvers.compliant import CompliantFilmSolver
+from exudyn_ehd.film.reynolds.links import FilmState
+from exudyn_ehd.film.solvers.balance import film_slopes
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver
+from exudyn_ehd.film.solvers.liner.elements import Rates
+from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.asperity import AsperityContact, greenwood_tripp_integral
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow
 from exudyn_ehd.film.surfaces.patir_cheng import pressure_flow_factor, shear_flow_factor
@@ -66,7 +71,7 @@ def flux_of(effect):
 def solver_of(closure, contact, grid=GRID, effect="none"):
     surfaces = CONTACTS[contact]()
     oil = BARUS if effect == "barus" else None
-    made = CompliantFilmSolver(grid, closure, contact=surfaces, limiter=surfaces, flux_effects=flux_of(effect), oil=oil)
+    made = NonlinearFilmSolver(grid, closure, contact=surfaces, limiter=surfaces, flux_effects=flux_of(effect), oil=oil)
     made.pressure_scale = SCALE
     return made
 
@@ -79,7 +84,7 @@ def unknown(oil, p):
 def solve(solver, beta, eps=0.6, rate=0.0, cold=True, mass_old=None, delta_old=None, step=0.0):
     solver.beta = beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(solver.grid, eps, rate=rate)
-    solver.pressure[:, 0], solver.pressure[:, -1] = unknown(solver.oil, ENDS) if hasattr(solver, "oil") else ENDS
+    solver.pressure[:, 0], solver.pressure[:, -1] = unknown(solver.elements.oil, ENDS)
     solver.delta_old = delta_old
     if cold:
         solver.forget()
@@ -231,34 +236,27 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     """Assembled from Newton's pieces against central differences of the solver's own balance, unknown by unknown."""
     rng = np.random.default_rng(4)
     s = solver_of(closure, contact, SMALL, effect)
-    s.beta, s.vx, s.vz, s.inverse = 0.02, 2.0, -1.0, 3.0
+    e, w = s.elements, s.work
+    s.beta, s.vx, s.vz = 0.02, 2.0, -1.0
     s.system.cavity_pressure = 0.1
     s.H[:], s.HF[:], s.H_t[:] = 0.2 + rng.random((3, *SMALL.shape))
     if contact != "none":
         s.H -= 0.25
-    s._take_rigid()
-    s.deflection_old[:] = 0.1 * rng.random(SMALL.shape)
-    conserves = closure.conserves_mass
-    s.mass_inverse = 2.0 if conserves else 0.0
-    s.with_rate = True
-    P, fill = 1.0 + rng.normal(size=SMALL.shape), np.ones(SMALL.shape)
-    if conserves:
-        s.full[:] = rng.random(SMALL.shape) < 0.6
-        fill[~s.full] = rng.random(SMALL.shape)[~s.full]
-        fill[SMALL.fixed] = 1.0
-    s.balance(P, fill, conserves, 0.5, s.nothing)
-    s.answer(P, fill, conserves, 0.5)
-    free = ~SMALL.fixed
-    from exudyn_ehd.film.banded.numbering import number_cells
-    from exudyn_ehd.film.solvers.compliant_newton import assemble_compliant
-
-    w, g = s.work, SMALL
-    lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
-    count, width = number_cells(free, s.links, w.order, w.number)
-    assemble_compliant(
-        s.fields, s.link_flux, P, fill, s.full, s.gain_P, s.gain_fill, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z,
-        w.number, count, width, lower, upper,
-    )  # fmt: skip
+    e.take_rigid(True)
+    e.deflection_old[:] = 0.1 * rng.random(SMALL.shape)
+    e.rates = Rates(mass=2.0 if closure.conserves_mass else 0.0, liner=3.0, pseudo=0.5, own=1.0)
+    P, fill, full = e.u
+    P[:] = 1.0 + rng.normal(size=SMALL.shape)
+    if closure.conserves_mass:
+        full[:] = SMALL.fixed | (rng.random(SMALL.shape) < 0.6)
+        fill[~full] = rng.random(SMALL.shape)[~full]
+    e.balance(e.u)
+    e.gradients()
+    lower, upper = (np.zeros((P.size, 2 * SMALL.z.size + 6)) for _ in range(2))
+    count, width = number_cells(~SMALL.fixed, e.metric[0], w.order, w.number)
+    film_slopes(*(e._sides(e.u)[1:]), None, None, e.terms, e.slopes)
+    add_gap_slopes(*e._sides(e.u), None, e.terms, e.answer, e.load, e.rates, e.beta, e.by, e.slopes)
+    assemble(e.metric[0], e.metric[1], e.slopes, w.number, w.order, count, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
         for d in range(min(width, count - 1 - k) + 1):
@@ -269,28 +267,30 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     for k in range(count):
         sides = []
         for sign in (1.0, -1.0):
-            moved = [P.copy(), fill.copy()]
-            moved[0 if s.full.ravel()[at[k]] else 1].ravel()[at[k]] += sign * h
-            s.balance(*moved, conserves, 0.5, s.nothing)
-            sides.append(s.residual.ravel()[at].copy())
+            moved = FilmState(P.copy(), fill.copy(), full)
+            (moved.P if full.ravel()[at[k]] else moved.fill).ravel()[at[k]] += sign * h
+            e.balance(moved)
+            sides.append(e.residual.ravel()[at].copy())
         B[:, k] = (sides[0] - sides[1]) / (2.0 * h)
     # differences of smooth functions; the wall's curvature over its onset of a tenth makes them good to 1e-7
     np.testing.assert_allclose(A, B, atol=1e-6 * np.abs(B).max())
 
 
 @every_closure
-def test_without_contact_it_is_the_plain_liner(closure):
-    """Two programs for one discretisation: 1e-11 of the peak, steady and with the liner's rate."""
+def test_the_driver_compiled_as_a_whole_finds_the_same_film(closure):
+    """`solve_plain` and `newton` by turns on one film: 1e-11 of the peak, steady and with the liner's rate."""
     if closure.conserves_mass:
         return
     for eps, rate, step in ((0.6, 10.0, 0.0), (0.95, -4.0, 1e-3)):
         old = None if step == 0.0 else np.full(GRID.shape, 0.01)
-        plain = solve(LinerFilmSolver(GRID, closure), 0.003, eps, rate, delta_old=old, step=step)
-        other = solve(solver_of(closure, "none"), 0.003, eps, rate, delta_old=old, step=step)
-        peak = np.abs(plain.pressure).max()
-        np.testing.assert_allclose(other.pressure, plain.pressure, atol=1e-11 * peak)
-        np.testing.assert_allclose(other.H, plain.H, atol=1e-11)
-        assert other.stored_power() == pytest.approx(plain.stored_power(), rel=1e-9, abs=1e-12)
+        compiled, other = solver_of(closure, "none"), solver_of(closure, "none")
+        other.elements.plain = False
+        for made in (compiled, other):
+            solve(made, 0.003, eps, rate, delta_old=old, step=step)
+        peak = np.abs(compiled.pressure).max()
+        np.testing.assert_allclose(other.pressure, compiled.pressure, atol=1e-11 * peak)
+        np.testing.assert_allclose(other.H, compiled.H, atol=1e-11)
+        assert other.stored_power() == pytest.approx(compiled.stored_power(), rel=1e-9, abs=1e-12)
 
 
 CASES = [
@@ -304,7 +304,7 @@ CASES = [
 def pressures(solver):
     """Scaled pressures of the last film (n, m), below the cavity pressure where it is cut off."""
     q = solver.system.linear_pressure
-    return q if solver.oil is None else -np.log1p(-BARUS.coefficient * SCALE * q) / (BARUS.coefficient * SCALE)
+    return q if solver.elements.oil is None else -np.log1p(-BARUS.coefficient * SCALE * q) / (BARUS.coefficient * SCALE)
 
 
 @pytest.mark.parametrize("motion", ["steady", "step"])
@@ -407,7 +407,7 @@ def test_surfaces_that_overlap_have_a_film(closure, contact):
     for eps in (0.9, 1.0, 1.2, 2.0, 4.0):
         solve(s, 0.02, eps, cold=eps == 0.9)
         assert s.H.min() > 0.0 and s.HF.min() > 0.0
-        np.testing.assert_allclose(s.true_gap - s.rigid[0], s.deflection, atol=1e-15)
+        np.testing.assert_allclose(s.elements.true_gap - s.elements.rigid[0], s.deflection, atol=1e-15)
         expected = s.beta * (s.pressure + s.contact_pressure / SCALE)
         np.testing.assert_allclose(s.deflection, expected, atol=1e-12 * (1.0 + np.abs(expected).max()))
         taken.append(s.deflection[:, 0].max())

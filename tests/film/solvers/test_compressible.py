@@ -6,15 +6,10 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance, film_slopes
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.solvers.density_matrix import (
-    Balance,
-    assemble_compressible,
-    assemble_full,
-    compressible_balance,
-    full_balance,
-)
 from exudyn_ehd.joint.model.build import build_model
 
 MU, U, LENGTH, H0, H1 = 0.04, 10.0, 0.05, 8e-6, 4e-6
@@ -94,7 +89,7 @@ def test_mass_flow_is_uniform_along_a_cavitated_slider():
 def test_balance_vanishes_where_pressure_is_unknown_and_oil_leaves_nowhere_else(closure):
     s = bare_solver(closure, 3.0)
     r = np.empty(s.grid.shape)
-    compressible_balance(s.system.linear_pressure, s._fill, s.rho, s.film, r)
+    film_balance(s.system.linear_pressure, s._fill, s.rho, s.film, r)
     free = ~s.grid.fixed if closure.clips or closure.conserves_mass else s.work.active
     size = np.abs(s.system.fx).max()
     assert np.abs(r[free]).max() < 1e-12 * size  # rounding of the fluxes
@@ -108,9 +103,9 @@ def test_balance_equals_its_twin():
     P, fill, rho = rng.random((3, n, m))
     fields = rng.normal(size=(8, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
-    film = Balance(*fields, np.zeros((n, m), dtype=bool))
+    film = FilmTerms(*fields, np.zeros((n, m), dtype=bool))
     out = np.empty((n, m))
-    compressible_balance(P, fill, rho, film, out)
+    film_balance(P, fill, rho, film, out)
     expected = film.area * (rho * (film.grow * fill + film.known) + film.kept)
     for axis, k, f in ((0, film.kx, film.fx), (1, film.kz, film.fz)):
         P_b, rho_b, fill_b = (np.roll(v, -1, axis=axis) for v in (P, rho, fill))
@@ -119,17 +114,17 @@ def test_balance_equals_its_twin():
     np.testing.assert_allclose(out, expected, atol=1e-14)
 
 
-def test_full_balance_equals_the_general_one():
+def test_balance_of_a_full_film_equals_the_general_one():
     rng = np.random.default_rng(4)
     n, m = 5, 4
     P, rho = rng.random((2, n, m))
     fields = rng.normal(size=(8, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
     fields[5:7] = 0.0  # no history
-    film = Balance(*fields, np.zeros((n, m), dtype=bool))
+    film = FilmTerms(*fields, np.zeros((n, m), dtype=bool))
     out, expected = np.empty((2, n, m))
-    full_balance(P, rho, film, out)
-    compressible_balance(P, np.ones((n, m)), rho, film, expected)
+    film_balance(P, None, rho, film, out)
+    film_balance(P, np.ones((n, m)), rho, film, expected)
     np.testing.assert_allclose(out, expected, atol=1e-14)
 
 
@@ -146,12 +141,14 @@ def test_matrix_of_a_full_film_equals_the_general_one(count):
     full[:, 0] = False
     if count is not None:
         full[2 : n - count + 2] = False
-    film = Balance(*fields, ~full)
+    film = FilmTerms(*fields, ~full)
     order, number = np.zeros(n * m, dtype=np.int64), np.zeros((n, m), dtype=np.int64)
     unknowns, width = number_cells(full, film.kx, order, number)
     found, expected = np.full((2, 2, unknowns, width + 5), np.nan)
-    assemble_full(rho_P, film, number, order, unknowns, *found)
-    assemble_compressible(np.ones((n, m)), rho, rho_P, film, full, number, order, unknowns, *expected)
+    for fill, sides, bands in ((None, None, found), (np.ones((n, m)), full, expected)):
+        slopes = np.empty((5, n * m))
+        film_slopes(fill, sides, rho, rho_P, film, slopes)
+        assemble(film.kx, film.kz, slopes, number, order, unknowns, *bands)
     np.testing.assert_allclose(found, expected, atol=1e-14)
 
 
@@ -176,11 +173,13 @@ def test_matrix_is_the_derivative_of_the_balance(case):
     if case == "across a cavity":
         numbered = full = ~fixed & (np.arange(n) < 5)[:, None] & (rng.random((n, m)) < 0.8)
     fill[full | fixed] = 1.0
-    film = Balance(*fields, fixed)
+    film = FilmTerms(*fields, fixed)
     order, number = np.zeros(n * m, dtype=np.int64), np.zeros((n, m), dtype=np.int64)
     count, width = number_cells(numbered, film.kx, order, number)
     lower, upper = np.full((2, count, width + 5), np.nan)
-    assemble_compressible(fill, rho, rho_P, film, full, number, order, count, lower, upper)
+    slopes = np.empty((5, n * m))
+    film_slopes(fill, full, rho, rho_P, film, slopes)
+    assemble(film.kx, film.kz, slopes, number, order, count, lower, upper)
     A = np.zeros((count, count))
     for r in range(count):
         for d in range(min(width, count - 1 - r) + 1):
@@ -199,7 +198,7 @@ def test_matrix_is_the_derivative_of_the_balance(case):
                 d[at] += h * rho_P[at]
             else:
                 f[at] += h
-            compressible_balance(p, f, d, film, out)
+            film_balance(p, f, d, film, out)
             sides.append(out.ravel()[order[:count]])
         expected[:, q] = sides[0] - sides[1]
     np.testing.assert_allclose(A, expected, atol=1e-13)

@@ -5,17 +5,12 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
-from exudyn_ehd.film.solvers import liner_newton
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner import LinerFilmSolver, failed_film
+from exudyn_ehd.film.solvers.liner.balance import CLIPPED, COMPLEMENTARY, FULL
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()]
-KINDS = {
-    "FullSommerfeld": liner_newton.FULL,
-    "Gumbel": liner_newton.CLIPPED,
-    "SwiftStieber": liner_newton.COMPLEMENTARY,
-}
 every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
 
 
@@ -29,7 +24,7 @@ def gaps(eps, angle=0.3, rate=0.0):
 
 
 def solve(closure, beta, eps=0.6, rate=0.0, cold=True, solver=None, delta_old=None, step=0.0):
-    solver = solver or LinerFilmSolver(GRID, closure)
+    solver = solver or NonlinearFilmSolver(GRID, closure)
     solver.beta = beta
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(eps, rate=rate)
     solver.delta_old = delta_old
@@ -65,48 +60,23 @@ def balance(rigid, P, D, vx, vz, beta, inverse_step, delta_old):
 
 
 @every_closure
-def test_balance_and_matrix(closure):
-    """The kernels' balance against its twin, and the assembled matrix against central differences of the twin.
-
-    Differences with step 1e-6 of quartic polynomials around one: 1e-9 of the largest entry.
-    """
-    rng = np.random.default_rng(4)
-    kind, beta, inverse, pc = KINDS[type(closure).__name__], 0.02, 3.0, 0.1
-    rigid = np.array([0.3 + rng.random(GRID.shape), 0.3 + rng.random(GRID.shape), rng.normal(size=GRID.shape)])
-    P, old = 1.0 + rng.normal(size=GRID.shape), rng.random(GRID.shape)
-
-    def twin(P):
-        D = np.where(GRID.fixed | (kind != liner_newton.CLIPPED), P, np.maximum(P, pc))
-        return balance(rigid, P, D, 2.0, -1.0, beta, inverse, old)
-
-    g, r = GRID, np.empty(GRID.shape)
-    liner_newton.liner_residual(
-        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, inverse, old, r
-    )
-    np.testing.assert_allclose(r, twin(P), atol=1e-12)
-    solver = LinerFilmSolver(GRID, closure)
-    w = solver.work
-    lower, upper = (np.zeros((P.size, 2 * g.z.size + 6)) for _ in range(2))
-    active = ~g.fixed
-    count, width = liner_newton.number_cells(active, solver.links, w.order, w.number)
-    liner_newton.assemble_liner(
-        rigid, P, 2.0, -1.0, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, pc, kind, beta, inverse, w.number, count,
-        width, lower, upper,
-    )  # fmt: skip
-    A = np.zeros((count, count))
-    for k in range(count):
-        for d in range(min(width, count - 1 - k) + 1):
-            A[k, k + d] = upper[k, d]
-            if d:
-                A[k + d, k] = lower[k, d]
-    at = w.order[:count]
-    B = np.zeros((count, count))
-    for k in range(count):
-        step = np.zeros(P.size)
-        step[at[k]] = 1e-6
-        step = step.reshape(P.shape)
-        B[:, k] = (twin(P + step) - twin(P - step)).ravel()[at] / 2e-6
-    np.testing.assert_allclose(A, B, atol=1e-8 * np.abs(B).max())
+def test_balance(closure):
+    """The kernels' balance of a state that no film has, against its twin: rounding."""
+    rng, pc = np.random.default_rng(4), 0.1
+    solver = NonlinearFilmSolver(GRID, closure)
+    e = solver.elements
+    e.beta, solver.vx, solver.vz, e.rates = 0.02, 2.0, -1.0, e.rates._replace(liner=3.0)
+    solver.system.cavity_pressure = pc
+    e.rigid[:] = [0.3 + rng.random(GRID.shape), 0.3 + rng.random(GRID.shape), rng.normal(size=GRID.shape)]
+    e.rigid_film[:] = e.rigid[0]
+    e.deflection_old[:] = rng.random(GRID.shape)
+    P = e.u.P
+    P[:] = 1.0 + rng.normal(size=GRID.shape)
+    D = np.where(GRID.fixed | (e.kind != CLIPPED), P, np.maximum(P, pc))
+    norm, smallest = e.balance(e.u)
+    assert smallest > 0.0 and norm > 0.0
+    expected = balance(e.rigid, P, D, 2.0, -1.0, 0.02, 3.0, e.deflection_old)
+    np.testing.assert_allclose(e.residual, expected, atol=1e-12)
 
 
 @every_closure
@@ -156,7 +126,7 @@ def test_heavy_and_soft_films_converge():
 
 def test_a_bore_that_touches_at_its_ends_has_no_film():
     """Where the pressure is prescribed a column can't give way."""
-    solver = LinerFilmSolver(GRID, ehd.SwiftStieber())
+    solver = NonlinearFilmSolver(GRID, ehd.SwiftStieber())
     solver.beta = 0.01
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(1.01)
     assert solver.solve(50.0, 0.0, 0.0)[0] is ehd.Status.NO_FILM
@@ -198,7 +168,7 @@ def test_refused_values(option, value):
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_film_at_rest_carries_nothing(closure):
     """A soft liner, all but touched, without speed or rate: no pressure beside the one that would open it to its clearance, 1 / beta."""
-    solver = LinerFilmSolver(GRID, closure)
+    solver = NonlinearFilmSolver(GRID, closure)
     solver.beta = 0.1
     solver.H[:], solver.HF[:], _ = gaps(0.994)
     solver.H_t[:] = 0.0
@@ -209,7 +179,7 @@ def test_a_film_at_rest_carries_nothing(closure):
 def test_a_film_that_breaks_always_exists():
     """Soft to stiff liners, nearly touched, under speeds and rates of any direction and two orders of size: 150 films from afar and from
     a dry guess."""
-    rng, solver = np.random.default_rng(3), LinerFilmSolver(GRID, ehd.SwiftStieber())
+    rng, solver = np.random.default_rng(3), NonlinearFilmSolver(GRID, ehd.SwiftStieber())
     for k in range(150):
         x, rate = 0.3 + GRID.x, 10.0 ** rng.uniform(-1.0, 4.0) * rng.choice([0.0, 1.0])
         waves = rng.normal(size=2)[:, None] * np.array([np.cos(x), np.sin(x)])
@@ -277,12 +247,10 @@ def test_suction_that_is_cut_off_spoils_no_balance():
     s = model.solver
     P = s.system.linear_pressure
     assert P.min() < -1e5 * P.max() < 0.0
-    g, r = model.grid, np.empty(model.grid.shape)
-    liner_newton.liner_residual(
-        s.rigid, P, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, 0.0, s.kind, s.beta, 0.0, s.none, r
-    )
-    flow = np.abs(s.rigid[2] * s.area).max()
-    assert np.abs(r[~g.fixed]).max() < 1e-9 * flow
+    e = s.elements
+    e.balance(e.u)
+    flow = np.abs(e.rigid[2] * s.area).max()
+    assert np.abs(e.residual[~model.grid.fixed]).max() < 1e-9 * flow
 
 
 def test_suction_that_runs_away_is_balanced_or_refused():
@@ -292,13 +260,9 @@ def test_suction_that_runs_away_is_balanced_or_refused():
     rates = [5.530549888546489e-08, 2.4800040097862752e-08, 5.4381030559481384e-06, 4.051467557530033e-06]
     evaluation = model.evaluate(np.array([*pose, *rates, 0.0, -1.2016321297850399]))
     if evaluation.status is ehd.Status.CONVERGED:
-        s, g = model.solver, model.grid
-        r = np.empty(g.shape)
-        liner_newton.liner_residual(
-            s.rigid, s.system.linear_pressure, s.vx, s.vz, g.width_x, g.width_z, g.link_x, g.link_z, g.fixed, 0.0, s.kind,
-            s.beta, 0.0, s.none, r,
-        )  # fmt: skip
-        assert np.abs(r[~g.fixed]).max() < 1e-6 * np.abs(s.system.fz).max()
+        e = model.solver.elements
+        e.balance(e.u)
+        assert np.abs(e.residual[~model.grid.fixed]).max() < 1e-6 * np.abs(e.terms.fz).max()
     else:
         assert evaluation.status is ehd.Status.NOT_CONVERGED
         assert np.isnan(evaluation.wrench).all()
@@ -306,11 +270,13 @@ def test_suction_that_runs_away_is_balanced_or_refused():
 
 def test_status_of_films_that_are_not_found():
     """Tension that may pull the liner shut: no film to be found; else the closure did not settle."""
-    gap = np.array([[0.1, 0.5]])
-    for kind, cavity, status in (
-        (liner_newton.FULL, -np.inf, ehd.Status.NO_FILM),
-        (liner_newton.COMPLEMENTARY, -20.0, ehd.Status.NO_FILM),
-        (liner_newton.COMPLEMENTARY, -1.0, ehd.Status.NOT_CONVERGED),
-        (liner_newton.CLIPPED, 0.0, ehd.Status.NOT_CONVERGED),
+    solver = NonlinearFilmSolver(GRID, ehd.SwiftStieber())
+    e = solver.elements
+    e.beta, e.rigid[0] = 0.01, 0.1
+    for e.kind, e.cavity_load, status in (
+        (FULL, 0.0, ehd.Status.NO_FILM),
+        (COMPLEMENTARY, -20.0, ehd.Status.NO_FILM),
+        (COMPLEMENTARY, -1.0, ehd.Status.NOT_CONVERGED),
+        (CLIPPED, 0.0, ehd.Status.NOT_CONVERGED),
     ):
-        assert failed_film(kind, gap, 0.01, cavity) is status
+        assert solver._failure() is status

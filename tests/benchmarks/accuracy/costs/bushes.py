@@ -28,7 +28,7 @@ from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.coupling.run.sparse import SolveDynamicSparse
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import FiniteLength
-from exudyn_ehd.film.solvers.liner import ElasticLiner
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature

@@ -31,10 +31,10 @@ from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.liner import ElasticLiner
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import Crown
 from exudyn_ehd.film.surfaces.wall import RegularisedWall

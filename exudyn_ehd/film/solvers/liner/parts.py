@@ -1,4 +1,4 @@
-"""What a film on columns of liner may be made of beside its closure; see `exudyn_ehd.film.solvers.compliant`."""
+"""What a film on columns of liner may be made of beside its closure; see `exudyn_ehd.film.solvers.nonlinear`."""
 
 from __future__ import annotations
 

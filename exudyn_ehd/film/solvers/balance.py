@@ -1,0 +1,183 @@
+"""Mass balance of a film and its derivatives, for every film whose gap or density answers to the pressure.
+
+The film at one state is a set of coefficients, `FilmTerms`. With the mean density rho of a link's ends and the fill of its upstream end,
+
+    flow over the link a -> b    k (P_a - P_b) + f fill_upstream (rho_a + rho_b) / 2,
+    storage of a vertex          area (rho (grow fill + known) + kept),
+
+the balance is what leaves a vertex and what it stores. Its derivatives to the unknowns (P where ``full``, else the fill) are kept per link, the
+slopes that `banded.assemble` takes: what the density answers here, what the gap answers in `exudyn_ehd.film.solvers.liner.gap_response`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+class FilmTerms(NamedTuple):
+    """One film's coefficients, (n, m) each: conductances and Couette fluxes of the links, storage, areas, prescribed vertices."""
+
+    kx: np.ndarray
+    kz: np.ndarray
+    fx: np.ndarray
+    fz: np.ndarray
+    grow: np.ndarray
+    known: np.ndarray
+    kept: np.ndarray
+    area: np.ndarray
+    fixed: np.ndarray
+
+
+@njit(cache=True)
+def terms_of(f, fixed):
+    """`FilmTerms` of their fields (8, n, m)."""
+    return FilmTerms(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], fixed)
+
+
+@njit(cache=True)
+def part(x, start, stop):
+    """Part of a field, flat; None of None."""
+    if x is None:
+        return None
+    return x.reshape(-1)[start:stop]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _link_flows(k, f, P_a, P_b, fill_a, fill_b, rho_a, rho_b, out):
+    for c in range(out.size):
+        couette = f[c]
+        if fill_a is not None:
+            couette *= fill_a[c] if f[c] >= 0.0 else fill_b[c]
+        if rho_a is not None:
+            couette *= 0.5 * (rho_a[c] + rho_b[c])
+        out[c] = k[c] * (P_a[c] - P_b[c]) + couette
+
+
+@njit(cache=True, fastmath=_FAST)
+def _gather_flows(area, grow, known, kept, fill, rho, across, across_in, along, along_in, out):
+    """Flows that leave and the mass in store, less the flows that come in, flat."""
+    for c in range(out.size):
+        store = grow[c]
+        if fill is not None:
+            store *= fill[c]
+        store += known[c]
+        if rho is not None:
+            store *= rho[c]
+        out[c] = area[c] * (store + kept[c]) + across[c] - across_in[c] + along[c] - along_in[c]
+
+
+@njit(cache=True)
+def film_balance(P, fill, rho, film, out):
+    """Mass that leaves every vertex (n, m) and that it stores: 0 where the film is solved; None for a fill or density of one everywhere."""
+    n, m = P.shape
+    size = n * m
+    last = size - m
+    p, q = P.reshape(-1), out.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    along = np.empty(size + m)
+    across = np.empty(size + 1)
+    _link_flows(
+        kx[:last], fx[:last], p[:last], p[m:], part(fill, 0, last), part(fill, m, size), part(rho, 0, last), part(rho, m, size),
+        along[m:size],
+    )  # fmt: skip
+    _link_flows(
+        kx[last:], fx[last:], p[last:], p[:m], part(fill, last, size), part(fill, 0, m), part(rho, last, size), part(rho, 0, m),
+        along[size:],
+    )  # fmt: skip
+    along[:m] = along[size:]
+    # nothing flows over the last row's links in z
+    e = size - 1
+    _link_flows(
+        kz[:e],
+        fz[:e],
+        p[:e],
+        p[1:],
+        part(fill, 0, e),
+        part(fill, 1, size),
+        part(rho, 0, e),
+        part(rho, 1, size),
+        across[1:size],
+    )
+    across[0] = across[size] = 0.0
+    _gather_flows(
+        film.area.reshape(-1), film.grow.reshape(-1), film.known.reshape(-1), film.kept.reshape(-1), part(fill, 0, size),
+        part(rho, 0, size), across[1:], across[:size], along[m:], along[:size], q,
+    )  # fmt: skip
+
+
+@njit(cache=True, fastmath=_FAST)
+def violation(r, P, fixed, pc, complementary):
+    """Norm of the balances that do not hold; at pc oil may be drawn away if ``complementary``."""
+    leaves, x, known = r.reshape(-1), P.reshape(-1), fixed.reshape(-1)
+    total = 0.0
+    for c in range(x.size):
+        v = 0.0 if known[c] else leaves[c]
+        v = min(v, 0.0) if complementary & (x[c] <= pc) else v
+        total += v * v
+    return np.sqrt(total)
+
+
+@njit(cache=True, fastmath=_FAST)
+def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, out):
+    """Derivatives of the flows over links a -> b at fixed gaps to the unknown at one end, b (side 1) or a (-1); by: of its density."""
+    for c in range(out.size):
+        half, mean = 0.5 * f[c], f[c]
+        if fill_a is not None:
+            half *= fill_a[c] if f[c] >= 0.0 else fill_b[c]
+        slope = -side * k[c]
+        if rho_a is not None:
+            mean *= 0.5 * (rho_a[c] + rho_b[c])
+            slope += half * by[c]
+        if full is not None:
+            slope = slope if full[c] else (mean if side * f[c] < 0.0 else 0.0)
+        out[c] = slope
+
+
+@njit(cache=True, fastmath=_FAST)
+def _storage_slopes(area, full, fill, rho, by, grow, known, out):
+    """Derivatives of the storage at fixed gaps to the unknowns, flat."""
+    for c in range(out.size):
+        by_fill = area[c] * grow[c]
+        slope = 0.0
+        if rho is not None:
+            content = by_fill
+            if fill is not None:
+                content *= fill[c]
+            slope = by[c] * (content + area[c] * known[c])
+            by_fill *= rho[c]
+        if full is not None:
+            slope = slope if full[c] else by_fill
+        out[c] = slope
+
+
+@njit(cache=True)
+def film_slopes(fill, full, rho, rho_P, film, slopes):
+    """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps; unknowns are pressures where ``full``, else fills.
+
+    ``fill`` and ``full``, ``rho`` and ``rho_P`` are None together: a film that is full everywhere, an incompressible one.
+    """
+    n, m = film.kx.shape
+    size = n * m
+    last, e = size - m, size - 1
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        k, f = kx[start:stop], fx[start:stop]
+        fill_a, fill_b = part(fill, start, stop), part(fill, there, end)
+        rho_a, rho_b = part(rho, start, stop), part(rho, there, end)
+        full_a, full_b = part(full, start, stop), part(full, there, end)
+        _end_slopes(k, f, -1.0, full_a, fill_a, fill_b, rho_a, rho_b, part(rho_P, start, stop), slopes[0, start:stop])
+        _end_slopes(k, f, 1.0, full_b, fill_a, fill_b, rho_a, rho_b, part(rho_P, there, end), slopes[1, start:stop])
+    k, f = kz[:e], fz[:e]
+    fill_a, fill_b, rho_a, rho_b = part(fill, 0, e), part(fill, 1, size), part(rho, 0, e), part(rho, 1, size)
+    _end_slopes(k, f, -1.0, part(full, 0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, 0, e), slopes[2, :e])
+    _end_slopes(k, f, 1.0, part(full, 1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, 1, size), slopes[3, :e])
+    slopes[2:4, e] = 0.0
+    _storage_slopes(
+        film.area.reshape(-1), part(full, 0, size), part(fill, 0, size), part(rho, 0, size), part(rho_P, 0, size),
+        film.grow.reshape(-1), film.known.reshape(-1), slopes[4],
+    )  # fmt: skip

@@ -1,0 +1,266 @@
+"""What flows over links answer to gaps that follow the pressure: Newton's matrix and the gradients of a film on an elastic liner.
+
+Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap and d half the difference of E, up its upstream fill times its mean
+density. A link's flow is ``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.solvers.balance import part, terms_of
+from exudyn_ehd.film.solvers.liner.elements import gaps_of, slopes_of
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True)
+def of_axis(links, axis):
+    """Conductance, its slope and that of the carrier of the links in theta (0) or z (1), flat; None for a plain film."""
+    if links is None:
+        return None, None, None
+    if axis == 0:
+        return links.gx.reshape(-1), links.gx_h.reshape(-1), links.cx_h.reshape(-1)
+    return links.gz.reshape(-1), links.gz_h.reshape(-1), links.cz_h.reshape(-1)
+
+
+@njit(cache=True, fastmath=_FAST, error_model="numpy")
+def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
+    """What the pressure flow over links with the gaps ``mean`` and half differences ``lean`` of E answers to h and d."""
+    for c in range(by_d.size):
+        slant = lean[c] / mean[c]
+        by_d[c] = -k[c] * (P_b[c] - P_a[c]) * 2.0 * slant / ((1.0 + slant * slant) * mean[c])
+    if g is None:
+        for c in range(by_h.size):
+            by_h[c] = (-3.0 * k[c] * (P_b[c] - P_a[c]) - by_d[c] * lean[c]) / mean[c]
+    else:
+        for c in range(by_h.size):
+            by_h[c] = -k[c] * (P_b[c] - P_a[c]) * (g_h[c] / g[c]) - by_d[c] * lean[c] / mean[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_carriers(f, v, linked, carrier_h, fill_a, fill_b, rho_a, rho_b, by_h):
+    """Add what the Couette flow answers to h."""
+    for c in range(f.size):
+        up = v * linked[c]
+        if carrier_h is not None:
+            up *= carrier_h[c]
+        if fill_a is not None:
+            up *= fill_a[c] if f[c] >= 0.0 else fill_b[c]
+        if rho_a is not None:
+            up *= 0.5 * (rho_a[c] + rho_b[c])
+        by_h[c] += up
+
+
+@njit(cache=True, fastmath=_FAST)
+def _half_difference(a, b, out):
+    for c in range(out.size):
+        out[c] = 0.5 * (b[c] - a[c])
+
+
+@njit(cache=True, fastmath=_FAST)
+def _half_sum(a, b, out):
+    for c in range(out.size):
+        out[c] = 0.5 * (a[c] + b[c])
+
+
+@njit(cache=True)
+def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz, by):
+    """by (4, n m): derivatives of the flows over links to h and d, in theta, then in z.
+
+    ``links``: `LinkFlux`, or None for a plain film; ``metric`` as in `columns.plain_links`.
+    """
+    n, m = P.shape
+    film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
+    size = n * m
+    last, e = size - m, size - 1
+    p, H, HF, E = P.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.E.reshape(-1)
+    kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    wide, deep = metric[2].reshape(-1), metric[3].reshape(-1)
+    lean, mean = np.empty(size), np.empty(size)
+    g, g_h, c_h = of_axis(links, 0)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        _half_difference(E[start:stop], E[there:end], lean[start:stop])
+        _conductance_gradients(
+            p[start:stop], p[there:end], kx[start:stop], HF[start:stop], lean[start:stop], part(g, start, stop),
+            part(g_h, start, stop), by[0, start:stop], by[1, start:stop],
+        )  # fmt: skip
+        _add_carriers(
+            fx[start:stop], vx, wide[start:stop], part(c_h, start, stop), part(fill, start, stop), part(fill, there, end),
+            part(rho, start, stop), part(rho, there, end), by[0, start:stop],
+        )  # fmt: skip
+    _half_difference(E[:e], E[1:], lean[:e])
+    _half_sum(H[:e], H[1:], mean[:e])
+    g, g_h, c_h = of_axis(links, 1)
+    _conductance_gradients(
+        p[:e], p[1:], kz[:e], mean[:e], lean[:e], part(g, 0, e), part(g_h, 0, e), by[2, :e], by[3, :e]
+    )
+    _add_carriers(
+        fz[:e], vz, deep[:e], part(c_h, 0, e), part(fill, 0, e), part(fill, 1, size), part(rho, 0, e), part(rho, 1, size),
+        by[2, :e],
+    )  # fmt: skip
+    by[2:, e] = 0.0
+
+
+@njit(cache=True, fastmath=_FAST)
+def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
+    """by (3, n, m): derivatives of the flows over links in theta to vx, and in z to vx and to vz; the rest as for `link_gradients`."""
+    n, m = P.shape
+    film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            carrier = gaps.HF[i, j]
+            slower = 0.0
+            if links is not None:
+                carrier = links.cx[i, j]
+                slower = links.gx_v[i, j] / links.gx[i, j] * film.kx[i, j] * (P[nxt, j] - P[i, j])
+            if fill is not None:
+                carrier *= fill[i, j] if film.fx[i, j] >= 0.0 else fill[nxt, j]
+            if rho is not None:
+                carrier *= 0.5 * (rho[i, j] + rho[nxt, j])
+            by[0, i, j] = metric[2, i, j] * carrier - slower
+        for j in range(m - 1):
+            carrier = 0.5 * (gaps.H[i, j] + gaps.H[i, j + 1])
+            slower = 0.0
+            if links is not None:
+                carrier = links.cz[i, j]
+                slower = links.gz_v[i, j] / links.gz[i, j] * film.kz[i, j] * (P[i, j + 1] - P[i, j])
+            if fill is not None:
+                carrier *= fill[i, j] if film.fz[i, j] >= 0.0 else fill[i, j + 1]
+            if rho is not None:
+                carrier *= 0.5 * (rho[i, j] + rho[i, j + 1])
+            by[1, i, j] = -slower
+            by[2, i, j] = metric[3, i, j] * carrier
+        by[1:, i, m - 1] = 0.0
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_end(by_h, by_d, side, steep, lean, full, out):
+    """Add what a link's flow answers to the unknown at one of its ends, which bends it (side 1: b) or its other end (-1: a)."""
+    for c in range(out.size):
+        slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
+        if full is not None:
+            slope = slope if full[c] else 0.0
+        out[c] += slope
+
+
+@njit(cache=True, fastmath=_FAST)
+def _product(a, b, out):
+    for c in range(out.size):
+        out[c] = a[c] * b[c]
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
+    """What the storage answers through the gap."""
+    for c in range(out.size):
+        by = rate_P[c]
+        if fill is not None:
+            by = fill[c] * (by * rates.own + H_P[c] * (rates.mass + rates.pseudo))
+        if rho is not None:
+            by *= rho[c]
+        if full is not None:
+            by = by if full[c] else 0.0
+        out[c] += area[c] * by
+
+
+@njit(cache=True, fastmath=_FAST)
+def _add_pseudo(area, P, drive, slope, factor, out):
+    """What the pseudo storage answers of a film that keeps no mass."""
+    for c in range(out.size):
+        out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
+
+
+@njit(cache=True)
+def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slopes):
+    """Add what the flows and the storage answer through the gap to ``slopes`` of `balance.film_slopes`; ``by`` of `link_gradients`."""
+    n, m = P.shape
+    size = n * m
+    last, e = size - m, size - 1
+    D, H, link, area = answer.D_P.reshape(-1), answer.H_P.reshape(-1), answer.link.reshape(-1), film.area.reshape(-1)
+    face = np.empty(size)
+    _product(by[0], link, face)
+    for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
+        h, d = face[start:stop], by[1, start:stop]
+        _add_end(h, d, -1.0, D[start:stop], H[start:stop], part(full, start, stop), slopes[0, start:stop])
+        _add_end(h, d, 1.0, D[there:end], H[there:end], part(full, there, end), slopes[1, start:stop])
+    h, d = by[2, :e], by[3, :e]
+    _add_end(h, d, -1.0, H[:e], H[:e], part(full, 0, e), slopes[2, :e])
+    _add_end(h, d, 1.0, H[1:], H[1:], part(full, 1, size), slopes[3, :e])
+    _add_storage(
+        area,
+        part(fill, 0, size),
+        part(full, 0, size),
+        part(rho, 0, size),
+        H,
+        answer.rate_P.reshape(-1),
+        rates,
+        slopes[4],
+    )
+    if fill is None and rates.pseudo != 0.0:
+        _add_pseudo(area, P.reshape(-1), load.drive.reshape(-1), load.slope.reshape(-1), rates.pseudo * beta, slopes[4])
+
+
+@njit(cache=True, fastmath=_FAST)
+def gap_gradient(lam, by, by_v, slope_fields, gain_r, gain_t, cos_x, sin_x, cos_f, sin_f, z, gradient):
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) to (scaled pose, scaled rates, vx, vz).
+
+    ``by`` (4, n, m) of `link_gradients`; ``by_v`` (3, n, m): of the flows over links in theta to vx, in z to vx and to vz; ``gain_r``,
+    ``gain_t`` (n, m): of the storage to the undeformed gap and rate.
+    """
+    count, n, m = lam.shape
+    answer = slopes_of(slope_fields)
+    x = np.empty((3, n, m))
+    y = np.zeros((2, n, m))
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            face = by[0, i, j] * answer.link[i, j]
+            x[0, i, j] = face
+            x[1, i, j] = 0.5 * (face * answer.D_r[i, j] - by[1, i, j] * answer.E_r[i, j])
+            x[2, i, j] = 0.5 * (face * answer.D_r[nxt, j] + by[1, i, j] * answer.E_r[nxt, j])
+        for j in range(m - 1):
+            y[0, i, j] = 0.5 * (by[2, i, j] * answer.H_r[i, j] - by[3, i, j] * answer.E_r[i, j])
+            y[1, i, j] = 0.5 * (by[2, i, j] * answer.H_r[i, j + 1] + by[3, i, j] * answer.E_r[i, j + 1])
+    for k in range(count):
+        g = gradient[k]
+        g[:] = 0.0
+        for i in range(n):
+            nxt = i + 1 if i + 1 < n else 0
+            cell0 = cell1 = next0 = next1 = face0 = face1 = rate0 = rate1 = sx = sz = 0.0
+            for j in range(m):
+                own = lam[k, i, j]
+                out = lam[k, nxt, j] - own
+                cell = out * x[1, i, j] - own * gain_r[i, j]
+                other = out * x[2, i, j]
+                face = out * x[0, i, j]
+                rate = own * gain_t[i, j]
+                sx += out * by_v[0, i, j]
+                cell0 += cell
+                cell1 += cell * z[j]
+                next0 += other
+                next1 += other * z[j]
+                face0 += face
+                face1 += face * z[j]
+                rate0 -= rate
+                rate1 -= rate * z[j]
+            for j in range(m - 1):
+                out = lam[k, i, j + 1] - lam[k, i, j]
+                a = out * y[0, i, j]
+                b = out * y[1, i, j]
+                cell0 += a + b
+                cell1 += a * z[j] + b * z[j + 1]
+                sx += out * by_v[1, i, j]
+                sz += out * by_v[2, i, j]
+            g[0] -= cell0 * cos_x[i] + next0 * cos_x[nxt] + face0 * cos_f[i]
+            g[1] -= cell0 * sin_x[i] + next0 * sin_x[nxt] + face0 * sin_f[i]
+            g[2] -= cell1 * cos_x[i] + next1 * cos_x[nxt] + face1 * cos_f[i]
+            g[3] -= cell1 * sin_x[i] + next1 * sin_x[nxt] + face1 * sin_f[i]
+            g[4] -= rate0 * cos_x[i]
+            g[5] -= rate0 * sin_x[i]
+            g[6] -= rate1 * cos_x[i]
+            g[7] -= rate1 * sin_x[i]
+            g[8] += sx
+            g[9] += sz

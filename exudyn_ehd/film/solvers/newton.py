@@ -1,0 +1,193 @@
+"""Newton's method for a film whose gap or density answers to its pressure, together with its sets.
+
+The chord method: a factor serves further steps while the sets stay and the steps contract, and the contraction also says what is left after a
+step (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 1996, section IV.8). Steps are halved while the balances do not improve.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.reynolds.links import FilmState
+
+
+class Rule(NamedTuple):
+    """Tolerances of the driver; sizes are shares of the peak pressure."""
+
+    # cold films of soft liners at their limits need some 40
+    most_steps: int = 60
+    # rounding of a pressure that comes out of a factor: what is left of a converged film
+    converged: float = 1e-13
+    # what a step with a fresh factor leaves is its square times the curvature, which is some 10 in thin films
+    square: float = 1e-14
+    # below it the change of a balance is rounding, and says nothing about a step
+    silent: float = 1e-8
+    # an error so small leaves the factor that of the solution to the rounding of a tangent
+    exact: float = 1e-7
+    # a last step so small needs no other look at gaps and balances
+    final: float = 1e-10
+    # a factor whose steps shrink less than five times is slower than a new one
+    contraction: float = 0.2
+    # a factor that leaves more than this of a step does not pay again
+    reusable: float = 0.005
+    # halvings until a share of a step is lost in rounding
+    most_halvings: int = 12
+
+
+RULE = Rule()
+
+
+class Step(NamedTuple):
+    """Newton's step: largest change of a pressure over the peak or of a fill; over what counts after it; the peak; safe share of the step."""
+
+    size: float
+    left: float
+    peak: float
+    share: float
+
+
+class Balance(Protocol):
+    """A film as the driver sees it: its balance beside its slopes, what a step may do, and its sets.
+
+    Attributes
+    ----------
+    u, trial : FilmState
+        Present state, and the one that a step would lead to.
+    reusable : bool
+        Whether the factor of the last film is there to start with.
+    exact : bool
+        Set on return: whether the factor is that of the solution.
+    changes : int
+        How many unknowns change sides on the way to the trial state.
+    """
+
+    u: FilmState
+    trial: FilmState
+    reusable: bool
+    exact: bool
+    changes: int
+
+    def balance(self, state: FilmState) -> tuple[float, float]:
+        """Norm of what does not hold, and the smallest gap; gaps of zero or less where there is no film."""
+
+    def begin(self) -> None:
+        """Sets to start with; scales of what is none but rounding."""
+
+    def factor(self) -> bool:
+        """Newton's matrix at the present state, factored."""
+
+    def unknowns(self) -> int:
+        """Number of unknowns of the factor."""
+
+    def step(self, gap: float) -> Step:
+        """Newton's step with the factor at hand, and the trial state after its safe share; ``gap`` is the smallest one."""
+
+    def move(self, share: float, peak: float) -> int:
+        """The trial state after another ``share`` of the step; returns how many unknowns change sides."""
+
+    def accept(self) -> int:
+        """The trial state becomes the present one; returns how many vertices change sides."""
+
+    def undo(self) -> None:
+        """Sets at the present state once more, after a trial in vain."""
+
+    def nothing_left(self, norm: float) -> bool:
+        """Whether the balances hold to the rounding of the flows."""
+
+    def settled(self, norm: float) -> bool:
+        """Whether small steps mean a solution."""
+
+    def correct(self, gap: float) -> None:
+        """One more step with the factor at hand, for the balances alone."""
+
+    def sound(self) -> bool:
+        """Whether the film holds what a film can hold."""
+
+
+def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
+    """Solve from the film's present state, in place; returns (found, steps)."""
+    norm, gap = film.balance(film.u)
+    if not gap > 0.0:
+        return False, 0
+    film.begin()
+    reused = ready = film.reusable
+    film.reusable = film.exact = False
+    last, last_left, moved = 0.0, 0.0, 0.0
+    for count in range(1, rule.most_steps + 1):
+        fresh = not ready
+        if fresh:
+            if not film.factor():
+                return False, count
+            moved = 0.0
+            if film.unknowns() == 0 or norm == 0.0:
+                film.exact = film.reusable = True
+                return True, count
+        step = film.step(gap)
+        if not step.size < 1e300:
+            return False, count
+        borrowed = reused and count == 1
+        converged = step.size <= rule.converged
+        if not (fresh or borrowed or converged) and step.size > rule.contraction * last:
+            ready = False
+            continue
+        share, trial_norm, trial_gap = _search(film, step, norm, 1 if borrowed else rule.most_halvings, rule)
+        if borrowed and not (trial_gap > 0.0 and (trial_norm < norm or converged)):
+            norm, gap = film.balance(film.u)
+            film.undo()
+            ready = False
+            continue
+        norm, gap = trial_norm, trial_gap
+        if not (gap > 0.0 and norm < 1e300):
+            return False, count
+        changes = film.accept()
+        moved += share * step.size
+        if film.nothing_left(norm):
+            film.exact = film.reusable = film.factor()
+            return film.exact, count
+        ready = changes == 0 and share == 1.0
+        if ready:
+            converged = converged and film.settled(norm)
+            if converged or (not borrowed and _left(step.left, last_left, fresh, rule) <= 1.0):
+                if not converged:
+                    film.correct(gap)
+                film.exact = not borrowed and moved <= rule.exact
+                film.reusable = True
+                return film.sound(), count
+        # a factor that leaves much of a step is of no use after it
+        ready = ready and (fresh or borrowed or step.size <= rule.reusable * last)
+        last, last_left = step.size, step.left
+    return False, rule.most_steps
+
+
+def _left(left: float, last: float, fresh: bool, rule: Rule) -> float:
+    """What a step leaves over what may be left: about its square, or with an older factor itself times its ratio to the last one."""
+    return left * left / (rule.square if fresh else rule.converged * min(max(last, 1e-300), 1.0))
+
+
+def _search(film: Balance, step: Step, norm: float, most: int, rule: Rule) -> tuple[float, float, float]:
+    """Halve the step until the balances improve; returns (share of the step, norm, smallest gap)."""
+    share, changes, trial_norm, gap = step.share, film.changes, np.inf, -1.0
+    for k in range(most):
+        if k > 0:
+            share *= 0.5
+            changes = film.move(share, step.peak)
+        trial_norm, gap = film.balance(film.trial)
+        if gap > 0.0 and (trial_norm < norm or step.size <= rule.silent or changes > 0):
+            break
+    return share, trial_norm, gap
+
+
+@njit(cache=True)
+def solve_step(residual, order, x, lower, upper, inv_diag, count, width):
+    """Newton's step of the numbered unknowns into x."""
+    flat = residual.reshape(-1)
+    for r in range(count):
+        x[r] = -flat[order[r]]
+    if count > 0:
+        L, U = dense_band(lower, count, width), dense_band(upper, count, width)
+        solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))

@@ -1,0 +1,372 @@
+"""Film on an elastic liner, alone or with contact, mass-conserving cavitation, laws of the oil, density or flow factors.
+
+The liner is a layer of Winkler elements: each deflects in proportion to the pressure on it, that of the film and of the contact,
+
+    G = G_rigid + D,    D = beta (p + P_c(G)),
+
+with the true gap G, whose contact pressure P_c falls with it. The relation has one root G(p), which rises with p:
+
+    dG/dp = beta T,    dG/dG_rigid = T = 1 / (1 - beta P_c'(G))  in (0, 1],
+
+so that the effective compliance beta T is bounded by the liner's, and nearly none where the contact is stiff against
+it. However deep the undeformed surfaces overlap, the liner takes it up; at the ends and in grooves, whose pressure is
+prescribed, by the contact alone. The film sees ``H = lim(G)``, the gap limiter of wall or rough surfaces, on links
+``lim`` of the true gap with the mean deflection of both ends. Where the pressure falls steeply, the gap falls with it:
+the conductance of a link is the mean of H^3 over the linear course of the deflection between its ends,
+
+    g = H (H^2 + d^2),    d half the difference of E = lim(G) - lim(G_rigid) between the ends,
+
+exact for a rigid gap that is constant along the link; flow factors, shear thinning and temperature multiply it as they
+are at the mean gap.
+
+In motion the liner's rate takes part in the squeeze, ``dH/dt = lim'(G) (rigid rate + (D - D_old) / dt)``, backward
+Euler with the deflection at the start of the step from the history: a soft liner feeds and drains the film as it
+deflects. Without a history (a prescribed position) the deflection is steady.
+
+A viscosity or a density that follows the pressure. The film's unknown is the transformed pressure P of
+`exudyn_ehd.film.lubricant.pressure_viscosity` or `exudyn_ehd.film.lubricant.density`, in which its pressure flow is
+that of a constant viscosity and density; the elements feel the pressure p(P) itself. Since p grows exponentially with
+P, a Newton step that raises the pressure goes where the tangent of p(P) leads the pressure, which is less far than its
+P would take it; one that lowers it goes where P leads: in either case the shorter way, and to second order the same.
+Thick oil lifts the liner: where a rigid bore has no film any more the gap opens. What would need an oil that is solid
+ends with NO_PRESSURE. Couette flows and storage carry the density as in `exudyn_ehd.film.solvers.compressible`.
+
+`ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``: at full
+vertices the unknown pressure takes part in the storage through liner and density, at cavitated ones the unknown is the
+fill and the element rests under the cavity's pressure. `SwiftStieber` always has a film as long as the cavity's pressure
+leaves a gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a solution
+(Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the cavity's, but
+the liner answers to the clipped one; no theorem says that such a film exists, and of extreme steady ones some are not
+found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
+
+Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess; should it fail,
+pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.banded.substitution import solve_lu_transposed
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.reynolds.link_derivatives import link_factors
+from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
+from exudyn_ehd.film.solvers.balance import film_balance
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.solvers.liner.balance import CLIPPED, FULL, LinerBalance
+from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
+from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
+from exudyn_ehd.film.solvers.liner.gap_response import gap_gradient
+from exudyn_ehd.film.solvers.liner.parts import ColumnContact, ColumnLimiter, ColumnOil
+from exudyn_ehd.status import Status
+
+# Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
+LINER_INSTANT = 1e-6
+# Share of an oil's largest pressure at which a film that was not found is on its way beyond.
+NEARLY_SOLID = 0.9
+
+
+class NonlinearFilmSolver(FilmSolver):
+    """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors.
+
+    The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves those that the film sees in ``H``, ``HF`` and ``H_t``.
+
+    Parameters
+    ----------
+    grid, closure, squeeze, flux_effects
+        As for `FilmSolver`.
+    contact, limiter, oil, density
+        As for `LinerBalance`.
+
+    Attributes
+    ----------
+    beta, pressure_scale : float
+        Scaled compliance (deflection over clearance per scaled pressure), and the scale of pressures, Pa.
+    delta_old : (n, m) array or None
+        Scaled deflection at the start of the step, set by the caller before ``solve``; None: steady.
+    law : CompressibleLaw or None
+        Of a compressible film, whose flows are mass flows over the density at ambient pressure.
+    """
+
+    plain_links = False
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        *,
+        squeeze: bool = True,
+        contact: ColumnContact | None = None,
+        limiter: ColumnLimiter | None = None,
+        flux_effects: tuple[FluxEffect, ...] = (),
+        oil: ColumnOil | None = None,
+        density: CompressibleLaw | None = None,
+    ) -> None:
+        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
+        self.coarse = None
+        self.law = density
+        self.elements = e = LinerBalance(self, self._set_links, contact, limiter, oil, density)
+        # the balance's own arrays, which its kernels take as one
+        self.H, self.HF, self.H_t = e.gaps.H, e.gaps.HF, e.gaps.rate
+        self.system.H, self.system.H_t = self.H, self.H_t
+        s = self.system
+        s.kx, s.kz, s.fx, s.fz = e.terms[:4]
+        if flux_effects:
+            self.flux = link_flux(self.HF, flux_effects)
+            e.links = self.flux
+        self.delta_old: np.ndarray | None = None
+        self.contact_slope = np.zeros(grid.shape)
+        self.deflection_inverse = 0.0
+
+    @property
+    def beta(self) -> float:
+        return self.elements.beta
+
+    @beta.setter
+    def beta(self, value: float) -> None:
+        self.elements.beta = value
+
+    @property
+    def pressure_scale(self) -> float:
+        return self.elements.scale
+
+    @pressure_scale.setter
+    def pressure_scale(self, value: float) -> None:
+        self.elements.scale = value
+
+    @property
+    def deflection(self) -> np.ndarray:
+        """Scaled deflection of the last solution (n, m)."""
+        return self.elements.gaps.D.copy()
+
+    @property
+    def gap_slopes(self) -> GapSlopes:
+        """Derivatives of the gaps that the film sees, for the last solution."""
+        return self.elements.answer
+
+    @property
+    def contact_pressure(self) -> np.ndarray:
+        """Contact pressure, Pa (n, m); the solver's own array."""
+        return self.elements.contact_pressure
+
+    @property
+    def deflection_by_pressure(self) -> np.ndarray:
+        """dD/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
+        return np.where(self.work.active, self.elements.answer.D_P, 0.0)
+
+    @property
+    def gap_by_pressure(self) -> np.ndarray:
+        """d(film gap)/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
+        return np.where(self.work.active, self.elements.answer.H_P, 0.0)
+
+    @property
+    def contact_by_pressure(self) -> np.ndarray:
+        """d(contact pressure)/dP, Pa, at the unknown pressures (n, m) of the last solution; zero elsewhere."""
+        e = self.elements
+        return np.where(self.work.active, e.contact_G * e.scale * e.answer.D_P, 0.0)
+
+    @property
+    def rho(self) -> np.ndarray:
+        """Density over that at ambient pressure (n, m), of the last solution."""
+        return self.ones if self.elements.rho is None else self.elements.rho
+
+    @property
+    def content(self) -> np.ndarray:
+        """Scaled mass rho fill H of the last solution (n, m)."""
+        return self.rho * self.system.fill * self.H
+
+    def smallest_gap(self) -> float:
+        """Smallest scaled gap of the deformed surfaces."""
+        return float(smallest_true_gap(self.elements.rigid, self.elements.gaps.D))
+
+    def stored_power(self) -> float:
+        """Scaled power ``sum (p + p_c) dD/dt`` that goes into the liner, not the film; 0 for a steady deflection."""
+        if self.deflection_inverse == 0.0:
+            return 0.0
+        e = self.elements
+        rate = (e.gaps.D - e.deflection_old) * self.deflection_inverse
+        return float(np.sum((e.load.p + e.contact_pressure / e.scale) * rate * self.grid.weight))
+
+    def solve(
+        self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
+    ) -> tuple[Status, int]:
+        """Solve for the undeformed gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        s, g, e = self.system, self.grid, self.elements
+        self.vx, self.vz = vx, vz
+        s.cavity_pressure = cavity_pressure
+        e.take_rigid(self.squeeze)
+        self._set_times(mass_old, step)
+        P = s.linear_pressure
+        if self.closure.clips:
+            P[g.fixed] = s.pressure[g.fixed]
+        if not e.set_known_loads():
+            return Status.NO_PRESSURE, 0
+        if e.contact is None and not ends_open(e.rigid, P if e.oil is None else e.load.p, e.beta, g.fixed):
+            self.work.warm = False
+            return Status.NO_FILM, 0
+        steps, ok = 0, False
+        if self.work.warm:
+            ok, steps = e.solve()
+        if not ok:
+            ok, more = cold_start(e)
+            steps += more
+        if not ok:
+            ok, more = pseudo_transient(e)
+            steps += more
+        self.work.warm = ok
+        if not ok:
+            return self._failure(), steps
+        self._finish()
+        if e.limiter is not None and e.contact is None and not e.true_gap.min() > 0.0:
+            # the film between rough surfaces stays open where nothing holds them apart
+            return Status.NO_FILM, steps
+        return Status.CONVERGED, steps
+
+    def _failure(self) -> Status:
+        """Status of a film that was not found."""
+        e = self.elements
+        if e.oil is not None and float(e.load.p.max()) * e.scale > NEARLY_SOLID * e.oil.largest_pressure:
+            return Status.NO_PRESSURE
+        if e.contact is not None:
+            return Status.NOT_CONVERGED
+        # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
+        shut = e.kind == FULL or float(e.rigid[0].min()) + e.beta * e.cavity_load <= 0.0
+        return Status.NO_FILM if shut else Status.NOT_CONVERGED
+
+    def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
+        """Which rates take part, and over which time."""
+        e = self.elements
+        inverse = 1.0 / step if step > 0.0 else 1.0 / LINER_INSTANT
+        moving = self.delta_old is not None and self.squeeze
+        self.deflection_inverse = inverse if moving else 0.0
+        if self.delta_old is not None:
+            e.deflection_old[:] = self.delta_old
+        self.instant = False
+        if not self.closure.conserves_mass:
+            e.rates = Rates(0.0, self.deflection_inverse, 0.0, 1.0)
+            return
+        # the liner's own rate is part of the mass rho fill H
+        mass = 0.0 if mass_old is None else inverse
+        self.instant = mass_old is not None and step <= 0.0
+        if mass_old is not None:
+            e.mass_old[:] = mass_old
+        e.rates = Rates(mass, 0.0, 0.0, float(mass_old is None or self.instant))
+        self.system.inverse_step = mass
+
+    def refresh_fixed(self) -> None:
+        """Another set of prescribed vertices: the last factor serves no more."""
+        self.elements.reusable = False
+
+    def _finish(self) -> None:
+        """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
+        g, s, e = self.grid, self.system, self.elements
+        P = s.linear_pressure
+        if e.kind == CLIPPED:
+            np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
+            np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
+        elif e.kind == FULL:
+            np.logical_not(g.fixed, out=self.work.active)
+        e.gradients()
+        if self.closure.conserves_mass and e.rates.mass > 0.0:
+            s.mass_old[:] = e.mass_old
+            if self.instant:
+                s.mass_old -= self.rho * s.fill * self.H_t / e.rates.mass
+        if self.closure.conserves_mass and self.deflection_inverse > 0.0:
+            self.H_t += e.answer.rate_t * (e.gaps.D - e.deflection_old) * self.deflection_inverse
+        if e.contact is not None:
+            np.multiply(e.contact_G * e.scale, 1.0 + e.answer.D_r, out=self.contact_slope)
+        right_hand_side(s.fx, s.fz, s.b)
+        if self.squeeze:
+            add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
+
+    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        w, e = self.work, self.elements
+        if not e.exact:
+            e.factor()
+            e.exact = True
+        lower, upper = (dense_band(band, w.count, w.width) for band in e.factored[2:4])
+        solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
+        fields = np.empty((rhs.shape[0], *self.grid.shape))
+        scatter(rhs, w.order, w.count, fields)
+        return fields
+
+    def pose_gradient(
+        self,
+        lam: np.ndarray,
+        cos_x: np.ndarray,
+        sin_x: np.ndarray,
+        cos_f: np.ndarray,
+        sin_f: np.ndarray,
+        gradient: np.ndarray,
+    ) -> None:
+        """`sensitivities` of the adjoint functionals lam (k, n, m), contracted with the pose: gradient (k, 10)."""
+        e = self.elements
+        by_gap, by_rate = e.storage_gradients()
+        gap_gradient(
+            lam, e.by.reshape(4, *self.grid.shape), e.flows_by_speed(), e.slope_fields, by_gap, by_rate if self.squeeze else self.nothing,
+            cos_x, sin_x, cos_f, sin_f, self.grid.z, gradient,
+        )  # fmt: skip
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
+        e = self.elements
+        a, by, by_v = e.answer, e.by.reshape(4, *self.grid.shape), e.flows_by_speed()
+        by_gap, by_rate = e.storage_gradients()
+        along, across = np.roll(lam, -1, axis=1) - lam, np.zeros_like(lam)
+        across[:, :, :-1] = lam[:, :, 1:] - lam[:, :, :-1]
+        face, bend = along * (by[0] * a.link), along * by[1]
+        own, other = 0.5 * (face * a.D_r - bend * a.E_r), 0.5 * np.roll(face, 1, axis=1) * a.D_r
+        other += 0.5 * np.roll(bend, 1, axis=1) * a.E_r
+        up, slant = across * by[2], across * by[3]
+        own += 0.5 * (up * a.H_r - slant * a.E_r)
+        other[:, :, 1:] += 0.5 * (up[:, :, :-1] * a.H_r[:, 1:] + slant[:, :, :-1] * a.E_r[:, 1:])
+        turning = np.sum(along * by_v[0] + across * by_v[1], axis=(1, 2))
+        speed = np.stack((turning, np.sum(across * by_v[2], axis=(1, 2))), axis=1)
+        return Sensitivities(
+            own + other - lam * by_gap, face, -lam * by_rate if self.squeeze else np.zeros_like(lam), speed
+        )
+
+    def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of masses if compressible."""
+        s, e = self.system, self.elements
+        if e.rho is None:
+            return super().couette_flows()
+        sigma_x, sigma_z = np.empty(self.grid.shape), np.empty(self.grid.shape)
+        link_factors(e.u.fill, e.rho, s.fx, s.fz, sigma_x, sigma_z)
+        return s.fx * sigma_x, s.fz * sigma_z, e.rho * self.H_t
+
+    def inflow(self) -> np.ndarray:
+        """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""
+        e = self.elements
+        if e.rho is None:
+            return super().inflow()
+        balance = np.empty(self.grid.shape)
+        film_balance(self.system.pressure, e.u.fill, e.rho, e.terms, balance)
+        return np.where(self.grid.fixed, balance, 0.0)
+
+    def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed pressure.
+
+        False where that has no pressure.
+        """
+        assert self.law is not None
+        if not self.law.inverse(self.system.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
+            return False
+        p_out /= self.pressure_scale
+        ratio_P_out *= self.pressure_scale
+        np.divide(ratio_out, self.rho, out=p_P_out)
+        return True
+
+    def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
+        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has no pressure."""
+        rest = np.empty((2, *p_out.shape))
+        return self.viscosity(p_out, rest[0], rest[1], p_P_out)
+
+    def flow_work(self, P: np.ndarray) -> np.ndarray:
+        """Scaled integral of dp over the density ratio up to scaled pressures P; see `DowsonHigginson.flow_work`."""
+        assert self.law is not None
+        return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale

@@ -1,0 +1,51 @@
+"""Elastic liner: a layer on a stiff housing that deflects by itself under every point, inside the film solve.
+
+A layer of thickness t on a stiff housing, pressed by p without sliding sideways (plane strain in both directions along the surface),
+deflects by
+
+    delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
+
+the Winkler model: right for layers thinner than the contact is wide, and without meaning for incompressible ones. The film on it is that of
+`exudyn_ehd.film.solvers.nonlinear`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from exudyn_ehd.status import InputError, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class ElasticLiner:
+    """Bush with an elastic liner on a rigid housing, by Winkler elements.
+
+    Parameters
+    ----------
+    thickness : float
+        t, m.
+    youngs_modulus : float
+        E, Pa.
+    poisson_ratio : float
+        nu, 0 to 0.49; Winkler elements say nothing about incompressible liners.
+    """
+
+    thickness: float
+    youngs_modulus: float
+    poisson_ratio: float = 0.3
+
+    def __post_init__(self) -> None:
+        require_number("ElasticLiner.thickness", self.thickness, "m", above=0.0)
+        require_number("ElasticLiner.youngs_modulus", self.youngs_modulus, "Pa", above=0.0)
+        nu = require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0)
+        if nu > 0.49:
+            raise InputError(
+                f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does not give "
+                "way in columns, take a bush with a mesh."
+            )
+
+    @property
+    def compliance(self) -> float:
+        """Deflection per pressure K_nu t / E, m/Pa."""
+        nu = self.poisson_ratio
+        return (1.0 + nu) * (1.0 - 2.0 * nu) / (1.0 - nu) * self.thickness / self.youngs_modulus
