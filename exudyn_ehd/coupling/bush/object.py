@@ -19,6 +19,7 @@ from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.coupling.record.display import FACE_TRIANGLES
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Load
 from exudyn_ehd.solid.mesh import BushMesh
@@ -370,5 +371,4 @@ def _triangles(mesh: BushMesh, numbers: np.ndarray) -> np.ndarray:
     """Triangles of the boundary in the object's own node numbers, shape (m, 3): six for every 8-node face."""
     own = np.cumsum(numbers >= 0) - 1
     faces = mesh.boundary[(numbers[mesh.boundary] >= 0).all(axis=1)]
-    cut = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)])
-    return own[faces[:, cut].reshape(-1, 3)]
+    return own[faces[:, FACE_TRIANGLES].reshape(-1, 3)]

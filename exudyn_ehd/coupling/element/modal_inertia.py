@@ -28,7 +28,8 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Index, ObjectIndex, Side
 from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.coupling.items.resolve import body_of_node
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, detached
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.sides import bind, detached
 from exudyn_ehd.solid.static_modes import BoreModes
 from exudyn_ehd.status import InputError
 
@@ -78,12 +79,12 @@ class ModalInertia:
         self.modal_mass = modes.mass
         self.P, self.Theta, self.K = modes.participation()
         self._both, self._flat = np.concatenate((self.P, self.Theta)), self.K.reshape(-1, 9)
-        self._bound = not isinstance(side, MarkerSide)
+        self._bound = False
 
     def mass(self, q: np.ndarray, modes: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Blocks of housing (n, n), housing and modes (n, k), and modes (k, k) at their coordinates (n,) and (k,)."""
         J = self._move(q)
-        p, inertia = _skew(self.P @ modes), self._inertia(modes)
+        p, inertia = relative.skew(self.P @ modes), self._inertia(modes)
         own = np.block([[np.zeros((3, 3)), -p], [p, inertia]])
         return J.T @ own @ J, J.T @ self._both, self.modal_mass
 
@@ -157,9 +158,9 @@ class ModalInertia:
     ) -> tuple[np.ndarray, np.ndarray]:
         a, alpha, omega = self._accelerations(J, q, q_t)
         p, p_t, inertia = self.P @ modes, self.P @ modes_t, self._inertia(modes)
-        turn, each = _skew(omega), self.K @ omega
-        force = _skew(alpha) @ p + turn @ (turn @ p + 2.0 * p_t)
-        moment = _skew(p) @ a + inertia @ alpha + turn @ (inertia @ omega) + 2.0 * (modes_t @ each)
+        turn, each = relative.skew(omega), self.K @ omega
+        force = relative.skew(alpha) @ p + turn @ (turn @ p + 2.0 * p_t)
+        moment = relative.skew(p) @ a + inertia @ alpha + turn @ (inertia @ omega) + 2.0 * (modes_t @ each)
         on_modes = a @ self.P + alpha @ self.Theta - each @ omega
         return -(np.concatenate((force, moment)) @ J), -on_modes
 
@@ -178,12 +179,8 @@ class ModalInertia:
     def _move(self, q: np.ndarray) -> np.ndarray:
         """Bring the side to ``q``; its Jacobian (6, n) in the frame's components."""
         if not self._bound:
-            self.side.bind(self.mbs)  # type: ignore[attr-defined]
+            bind(self.mbs, self.side)
             self._bound = True
         self.side.update(self.mbs, q, np.zeros_like(q), _CURRENT)
         A = self.side.frame[:, :3]
         return np.concatenate((A.T @ self.side.jac[0], A.T @ self.side.jac[1]))
-
-
-def _skew(v: np.ndarray) -> np.ndarray:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])

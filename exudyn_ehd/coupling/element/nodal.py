@@ -112,7 +112,7 @@ class NodalFilmElement(BoreFilmElement):
         A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]
         along = A[:, :2].T
         # the rate in the turning frame changes with the place as -omega x u
-        turning = along @ -_skew(omega)
+        turning = along @ -relative.skew(omega)
         by_bore = [np.zeros((6 + 3 * self.count, n + 3 * self.count)) for _ in range(2)]
         by_bore[0][:, :n_h] = by_place @ place + by_rate @ rate_place
         by_bore[1][:, :n_h] = by_rate @ place
@@ -195,7 +195,7 @@ class NodalTangent:
         self.motion = f_q * by_place + f_qt * by_rate
         self.journal = element._wrench_map()[self.n_h :]
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
-        self.turning = (self.frame[:, :2].T @ -_skew(omega)).T
+        self.turning = (self.frame[:, :2].T @ -relative.skew(omega)).T
         x = element.arms @ self.frame
         self.spread, self.resultant = relative.spread_matrix(x).reshape(-1, 6), resultant(x)
         if self.n_h:
@@ -233,10 +233,6 @@ def resultant(x: np.ndarray) -> np.ndarray:
     out[4, :, 0], out[4, :, 2] = x[:, 2], -x[:, 0]
     out[5, :, 0], out[5, :, 1] = -x[:, 1], x[:, 0]
     return out.reshape(6, -1)
-
-
-def _skew(v: np.ndarray) -> np.ndarray:
-    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
 def _per_node(rows: np.ndarray, map_: np.ndarray) -> np.ndarray:

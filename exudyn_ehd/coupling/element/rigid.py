@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.contract import Evaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, read_state
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
@@ -141,9 +141,7 @@ class FilmElement:
         return math.atan2(turn[1], turn[0])
 
     def _bind(self, mbs: exu.MainSystem) -> None:
-        for side in self.sides:
-            if isinstance(side, MarkerSide):
-                side.bind(mbs)
+        bind(mbs, *self.sides)
         self._bound = True
 
     def _generalized_force(self, trial: Trial) -> np.ndarray:

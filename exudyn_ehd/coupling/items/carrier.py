@@ -18,7 +18,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.items.beams import node_coordinates
 from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.kinematics.sides import MarkerSide, detached
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, detached
 
 _CURRENT, _REFERENCE = exu.ConfigurationType.Current, exu.ConfigurationType.Reference
 # Displacement, m or rad, over which initial velocities are found as differences of positions.
@@ -44,7 +44,7 @@ class Carrier:
         self.side: Side = detached(side)
         self.initial = initial
         self.local = local
-        self._bound = not isinstance(side, MarkerSide)
+        self._bound = False
 
     @property
     def nodes(self) -> list[Index]:
@@ -54,7 +54,7 @@ class Carrier:
     def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = _CURRENT) -> None:
         """Bring frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:
-            self.side.bind(self.mbs)  # type: ignore[attr-defined]
+            bind(self.mbs, self.side)
             self._bound = True
         self.side.update(self.mbs, q, q_t, configuration)
 

@@ -15,6 +15,11 @@ MOTION = ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w")
 """Names of the ten motion components, joint frame."""
 
 
+def skew(v: np.ndarray) -> np.ndarray:
+    """Matrix (3, 3) of the cross product with v (3,)."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
 @njit(cache=True)
 def relative_motion(frame_h, frame_j, motion_out):
     """Motion (10,) of the journal axis in the joint frame of the housing; see `MOTION`.

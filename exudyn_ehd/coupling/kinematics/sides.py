@@ -262,6 +262,13 @@ def detached(side: SideType) -> SideType:
     return out
 
 
+def bind(mbs: exu.MainSystem, *sides: Side) -> None:
+    """Let sides that ask Exudyn's markers find their number of coordinates, once the system is assembled."""
+    for side in sides:
+        if isinstance(side, MarkerSide):
+            side.bind(mbs)
+
+
 def read_state(
     mbs: exu.MainSystem, sides: Sequence[Side], configuration: exu.ConfigurationType
 ) -> tuple[list[float], list[float]]:

@@ -22,7 +22,8 @@ from exudyn_ehd.status import Status
 _VISUALIZATION = exu.ConfigurationType.Visualization
 EDGE = [0.0, 0.0, 0.0, 1.0]
 BUSH = [0.72, 0.74, 0.78, 0.35]
-_CUT = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)])
+# Triangles of an 8-node face.
+FACE_TRIANGLES = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)])
 
 
 class FilmDisplay:
@@ -90,7 +91,7 @@ class FilmDisplay:
         if self.bush is not None:
             mesh = model.bore.modes.mesh
             moved = (mesh.nodes + self.bush) @ frame[:, :3].T + frame[:, 3]
-            triangles = mesh.boundary[:, _CUT].reshape(-1, 3)
+            triangles = mesh.boundary[:, FACE_TRIANGLES].reshape(-1, 3)
             data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=BUSH))
         return data
 

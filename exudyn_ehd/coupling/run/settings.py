@@ -7,6 +7,14 @@ import exudyn as exu
 from exudyn_ehd.status import InputError, require_bool, require_number
 
 
+def require_settings(where: str, settings: object) -> None:
+    """Refuse what are no settings of Exudyn."""
+    if not isinstance(settings, exu.SimulationSettings):
+        raise InputError(
+            f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
+        )
+
+
 def ConfigureSolver(
     simulationSettings: exu.SimulationSettings,
     relativeTolerance: float = 1e-6,
@@ -45,11 +53,7 @@ def ConfigureSolver(
     exudyn.SimulationSettings
         The same object.
     """
-    if not isinstance(simulationSettings, exu.SimulationSettings):
-        raise InputError(
-            "ConfigureSolver.simulationSettings must be exudyn.SimulationSettings(), got "
-            f"{type(simulationSettings).__name__}."
-        )
+    require_settings("ConfigureSolver", simulationSettings)
     modified = require_bool("ConfigureSolver.useModifiedNewton", useModifiedNewton)
     tolerance = require_number("ConfigureSolver.relativeTolerance", relativeTolerance, above=0.0)
     smallest = require_number("ConfigureSolver.absoluteTolerance", absoluteTolerance, above=0.0)

@@ -5,11 +5,13 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from typing import Any
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
+from exudyn_ehd.coupling.run.settings import require_settings
 from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
 from exudyn_ehd.status import EHDError, InputError, RunError
 
@@ -22,14 +24,6 @@ def require_system(where: str, mbs: exu.MainSystem) -> None:
         raise InputError(
             f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
             "SystemContainer().AddSystem() returns."
-        )
-
-
-def require_settings(where: str, settings: object) -> None:
-    """Refuse what are no settings of Exudyn."""
-    if not isinstance(settings, exu.SimulationSettings):
-        raise InputError(
-            f"{where}.simulationSettings must be exudyn.SimulationSettings(), got {type(settings).__name__}."
         )
 
 
@@ -202,6 +196,12 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
     return StartGuess(mbs, before, bushes)
 
 
+def _user_function(hook: Any) -> Any:
+    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
+    function = hook["function"] if isinstance(hook, dict) else hook
+    return function if callable(function) else 0
+
+
 @contextmanager
 def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function comes back then."""
@@ -209,14 +209,12 @@ def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[N
     if not options.get("storeSolver", True):
         yield
         return
-    before = mbs.GetPreNewtonResidualUserFunction()
-    before = before["function"] if isinstance(before, dict) else before
-    own = before if callable(before) else None
-    mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own))
+    own = _user_function(mbs.GetPreNewtonResidualUserFunction())
+    mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own or None))
     try:
         yield
     finally:
-        mbs.SetPreNewtonResidualUserFunction(0 if own is None else own)
+        mbs.SetPreNewtonResidualUserFunction(own)
 
 
 @contextmanager
@@ -234,8 +232,7 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
         )
     alpha = integration.generalizedAlpha
     computes = alpha.computeInitialAccelerations
-    before = mbs.GetPreStepUserFunction()
-    before = before["function"] if isinstance(before, dict) else before
+    before = _user_function(mbs.GetPreStepUserFunction())
     first = [True]
 
     def pre_step(mbs: exu.MainSystem, t: float) -> bool:
@@ -243,7 +240,7 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
             # Exudyn starts with algorithmic accelerations equal to the others; these differ once a run is under way
             mbs.systemData.SetODE2Coordinates_tt(state.accelerations.tolist(), exu.ConfigurationType.Current)
             first[0] = False
-        return bool(before(mbs, t)) if callable(before) else True
+        return bool(before(mbs, t)) if before else True
 
     if state.algorithmic is not None:
         alpha.computeInitialAccelerations = False
@@ -253,4 +250,4 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
     finally:
         alpha.computeInitialAccelerations = computes
         if state.algorithmic is not None:
-            mbs.SetPreStepUserFunction(before if callable(before) else 0)
+            mbs.SetPreStepUserFunction(before)
