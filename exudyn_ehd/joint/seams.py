@@ -1,6 +1,7 @@
 """The seams of a bearing model: what an effect must offer to take part. Absent effects are absent from these tuples.
 
-All fields are (n, m) arrays on the film grid in scaled form as in `exudyn_ehd.joint.solved_film`; contact pressures and pressure laws are in Pa.
+All fields are (n, m) arrays on the film grid in scaled form as in `exudyn_ehd.joint.solved_film`; contact pressures
+and pressure laws are in Pa.
 """
 
 from __future__ import annotations
@@ -44,12 +45,18 @@ class GapLimiter(Protocol):
         """Scaled gap from which on the film sees the gap itself."""
 
     def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None:  # fmt: skip
+        self,
+        H: np.ndarray,
+        HF: np.ndarray,
+        H_t: np.ndarray,
+        slope_out: np.ndarray,
+        bend_out: np.ndarray,
+        face_slope_out: np.ndarray,
+    ) -> None:
         """Replace gaps at vertices (H) and links (HF) and the gap's rate (H_t) by the film's, in place.
 
-        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the gap's rate.
+        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the
+        gap's rate.
         """
 
 
@@ -66,7 +73,10 @@ class Contact(Protocol):
     def settle(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
-        """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place, with ``pressure`` (Pa) there and its slope over ``scale``."""
+        """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place.
+
+        Outputs: the pressure there, Pa, and its slope over ``scale``.
+        """
 
     @property
     def friction_coefficient(self) -> float:
@@ -90,8 +100,8 @@ class Wear(Protocol):
 class PressureLaw(Protocol):
     """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
 
-    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever the law: the
-    complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
+    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever
+    the law: the complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
     """
 
     @property
@@ -102,7 +112,10 @@ class PressureLaw(Protocol):
         """q(p), Pa."""
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), mu(p)/mu_0 (= dp/dq but for a compressible film) and its derivative to q (1/Pa); False where q has no p."""
+        """p(q), mu(p)/mu_0 (= dp/dq but for a compressible film) and its derivative to q (1/Pa).
+
+        False where q has no p.
+        """
 
 
 class ShearFactor(Protocol):
@@ -117,14 +130,18 @@ class ShearFactor(Protocol):
 class ThermalEffect(Protocol):
     """Temperature of the film: part of the history of accepted steps, and of the viscosity of the next one.
 
-    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it will become.
+    The film of a step sees the temperature at the step's start, so that force and tangent do not depend on what it
+    will become.
     """
 
     def initial_temperature(self, shape: tuple[int, int]) -> float | np.ndarray:
         """K, at the start of a motion, on a grid of this shape."""
 
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
-        """Bring the effect's viscosity field to a temperature, K; returns the viscosity over the reference that the whole film shares."""
+        """Bring the effect's viscosity field to a temperature, K.
+
+        Returns the viscosity over the reference that the whole film shares.
+        """
 
     def advance(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature at the end of a solved film's step, K."""

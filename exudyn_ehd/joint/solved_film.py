@@ -1,15 +1,18 @@
 """One solved film as a record: the state that went in, the fields that came out and the loads they make.
 
-Grouped by lifetime: `FilmParts` lasts as long as a model, `Scales` as long as a temperature, `SolvedFilm` until the next evaluation, because
-the film solver keeps links, factor and most fields in buffers of its own. Whatever reads a film takes this record and nothing else.
+Grouped by lifetime: `FilmParts` lasts as long as a model, `Scales` as long as a temperature, `SolvedFilm` until the
+next evaluation, because the film solver keeps links, factor and most fields in buffers of its own. Whatever reads a
+film takes this record and nothing else.
 
-Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in it is
+Joint frame: origin O on the bearing's mid-plane, z = bearing axis, fixed in the housing. The motion of the journal in
+it is
 
     motion = [x, y, bx, by, dx/dt, dy/dt, dbx/dt, dby/dt, omega, w]
 
 with the journal axis (x + bx z, y + by z), the relative spin omega about it and the relative axial speed w.
 
-Fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by ``Scales.pressure``; contact pressures are in Pa.
+Fields are (n, m) arrays on the film grid in scaled form: gaps divided by c, film pressures by ``Scales.pressure``;
+contact pressures are in Pa.
 """
 
 from __future__ import annotations
@@ -169,7 +172,10 @@ class Scales(NamedTuple):
 
 
 class JournalMotion(NamedTuple):
-    """Motion (10,) in SI units, behind it a flexible bore's; scaled pose (4,) and rates (4,); spin, rad/s, and axial speed, m/s."""
+    """Motion (10,) in SI units, behind it a flexible bore's.
+
+    Scaled pose (4,) and rates (4,); spin, rad/s, and axial speed, m/s.
+    """
 
     motion: np.ndarray
     pose: np.ndarray
@@ -179,7 +185,7 @@ class JournalMotion(NamedTuple):
 
 
 class ExtraGap(NamedTuple):
-    """What the gap terms add to the gap (n, m), its slopes along theta and z, and the terms of the undeformed surfaces alone."""
+    """What the gap terms add to the gap (n, m), its slopes along theta and z, and the terms of undeformed surfaces."""
 
     height: np.ndarray
     slope_x: np.ndarray
@@ -188,7 +194,10 @@ class ExtraGap(NamedTuple):
 
 
 class BoreState(NamedTuple):
-    """A flexible bore: coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film."""
+    """A flexible bore.
+
+    Coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film.
+    """
 
     coordinates: np.ndarray
     rates: np.ndarray

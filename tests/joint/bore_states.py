@@ -33,9 +33,13 @@ C = 30e-6
 
 def make_bearing(bush, **options):
     given = {
-        "journal_radius": 0.03, "length": 0.066, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=9e-3),
-        "film": ehd.FiniteLength(n_theta=32, n_z=6), "bush": bush,
-    }  # fmt: skip
+        "journal_radius": 0.03,
+        "length": 0.066,
+        "radial_clearance": C,
+        "lubricant": ehd.Lubricant(viscosity=9e-3),
+        "film": ehd.FiniteLength(n_theta=32, n_z=6),
+        "bush": bush,
+    }
     return ehd.JournalBearing(**(given | options))
 
 

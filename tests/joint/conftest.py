@@ -20,8 +20,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 def make_motion() -> Callable[..., np.ndarray]:
     """Motion of a bearing from dimensionless numbers.
 
-    ``eccentricity``, ``velocity`` over c and c omega; ``tilt``, ``tilt_rate`` as the eccentricity that they make at the end
-    of the bearing, over c and c omega; ``speed`` over 100 rad/s; ``axial`` over R omega.
+    ``eccentricity``, ``velocity`` over c and c omega; ``tilt``, ``tilt_rate`` as the eccentricity that they make at
+    the end of the bearing, over c and c omega; ``speed`` over 100 rad/s; ``axial`` over R omega.
     """
 
     def make(
@@ -36,10 +36,13 @@ def make_motion() -> Callable[..., np.ndarray]:
         c, slope = bearing.radial_clearance, 2.0 * bearing.radial_clearance / bearing.length
         return np.concatenate(
             (
-                c * np.array(eccentricity), slope * np.array(tilt), c * SPEED * np.array(velocity),
-                slope * SPEED * np.array(tilt_rate), [speed * SPEED, axial * bearing.journal_radius * SPEED],
+                c * np.array(eccentricity),
+                slope * np.array(tilt),
+                c * SPEED * np.array(velocity),
+                slope * SPEED * np.array(tilt_rate),
+                [speed * SPEED, axial * bearing.journal_radius * SPEED],
             )
-        )  # fmt: skip
+        )
 
     return make
 

@@ -2,8 +2,10 @@
 
 Module map
 ----------
-audit       table of findings
-indicators  dimensionless numbers with their limits
-samples     states of a run that the audit looks at
-ringing     pressures that alternate from step to step
+audit        table of findings
+findings     what is said about an effect; the limits from which on each matters
+indicators   dimensionless numbers of the worst films, one per effect
+assumptions  the same of laminar flow, grid and time step
+samples      states of a run that the audit looks at
+ringing      forces that alternate from step to step
 """

@@ -1,4 +1,7 @@
-"""Audit of a bearing: which effects mattered in the films it has had, which were left out, and which were paid for in vain."""
+"""Audit of a bearing.
+
+Which effects mattered in the films it has had, which were left out, and which take time without need.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,8 @@ from dataclasses import dataclass, replace
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.audit.indicators import INDICATORS, Case, Finding, Indicator
+from exudyn_ehd.joint.audit.findings import Case, Finding
+from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel
@@ -45,9 +49,14 @@ class Audit:
         return tuple(f for f in self.findings if f.matters and not f.on)
 
     @property
+    def unneeded(self) -> tuple[Finding, ...]:
+        """What takes time and does not matter."""
+        return tuple(f for f in self.findings if f.unneeded)
+
+    @property
     def in_vain(self) -> tuple[Finding, ...]:
-        """What is paid for and does not matter."""
-        return tuple(f for f in self.findings if f.in_vain)
+        """Another name of `unneeded`."""
+        return self.unneeded
 
     def __getitem__(self, effect: str) -> Finding:
         """The finding about an effect, by its name."""
@@ -67,7 +76,9 @@ class Audit:
 
 
 def _row(f: Finding) -> tuple[str, ...]:
-    verdict = "neglected" if f.matters and f.on is False else "matters" if f.matters else "in vain" if f.in_vain else ""
+    verdict = (
+        "neglected" if f.matters and f.on is False else "matters" if f.matters else "unneeded" if f.unneeded else ""
+    )
     if f.matters and f.on is None:
         verdict = "beyond limit"
     share = "" if f.time_share is None else f"{f.time_share:.0%}"
@@ -106,7 +117,8 @@ def audit_states(
     samples = take_samples(model, states, record)
     if not samples:
         raise FilmError(
-            "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result of `steady`."
+            "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result "
+            "of `steady`."
         )
     case = Case(model.bearing, samples, record, liner)
     findings = []

@@ -1,13 +1,16 @@
-"""Forces that alternate from step to step: a time integration that rings, recognised from the accepted steps of a joint.
+"""Forces that alternate from step to step.
 
-With d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces before and behind, an alternation F = F_0 + (-1)^k A has
-d_k = 2 (-1)^k A, and an oscillation with n steps per period d_k = (1 - cos(2 pi / n)) times its value: d changes its sign from step to step below
-some three steps per period only, which no step resolves. A force *zigzags* at a step if d there points against the d before and behind, and is
-more than a tenth of the force.
+A time integration that rings, recognised from the accepted steps of a joint.
 
-That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps. A run that rings is thrown again and
-again: by steps that were halved, by Newton's method that accepts forces beside the solution, by impacts within a single step. So *bursts* are
-counted: zigzags stronger than the five steps before, and alternations that do not fade, once in so many steps.
+With d_k = F_k - L_k, where L_k is the value at t_k of the line through the forces before and behind, an alternation
+F = F_0 + (-1)^k A has d_k = 2 (-1)^k A, and an oscillation with n steps per period d_k = (1 - cos(2 pi / n)) times its
+value: d changes its sign from step to step below some three steps per period only, which no step resolves. A force
+*zigzags* at a step if d there points against the d before and behind, and is more than a tenth of the force.
+
+That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps.
+A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces beside
+the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than the five steps before,
+and alternations that do not fade, once in so many steps.
 """
 
 from __future__ import annotations
@@ -26,11 +29,15 @@ LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
 OPPOSITE, EVEN = -0.5, 0.3
 # Mean pressure on the projected area below which a force is none: rounding beside an ideal joint, Pa.
 NEGLIGIBLE = 100.0
-# A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps between two bursts.
+# A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps
+# between two bursts.
 STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
 # Bursts within so many steps are counted together; a run rings from so many on.
 WINDOW, LIMIT = 100, 4
-REMEDY = "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, more steps until none is halved, or a smaller spectral radius."
+REMEDY = (
+    "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, more steps until none is halved, or a "
+    "smaller spectral radius."
+)
 
 
 class RingingWatch:
@@ -141,8 +148,9 @@ def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
 def warn(name: str, watch: RingingWatch) -> None:
     """Warn that the run of the joint ``name`` rings."""
     warnings.warn(
-        f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates from step to step, thrown "
-        f"anew {watch.most} times within {WINDOW} steps: forces and pressures there are the time integration's; {REMEDY}",
+        f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates "
+        f"from step to step, thrown anew {watch.most} times within {WINDOW} steps: forces and pressures there "
+        f"are the time integration's; {REMEDY}",
         RingingWarning,
         stacklevel=2,
     )

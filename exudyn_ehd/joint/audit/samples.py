@@ -47,7 +47,11 @@ class RecordedSteps:
     bore_displacement: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
-        """Steps with the thinnest film, highest pressure, loss and speed, largest tilt, strongest squeeze and the bore's largest share; sorted."""
+        """Steps, sorted, in which something is worst.
+
+        The thinnest film, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
+        squeeze.
+        """
         tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
         squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
         speed = np.abs(self.motion[:, 8])
@@ -57,7 +61,7 @@ class RecordedSteps:
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
 
     def largest_advance(self, length: float) -> float:
-        """Largest motion of the journal's axis at an end of the bearing within a step, over the smaller of its two gaps."""
+        """Largest motion of the journal's axis at a bearing's end within a step, over the smaller of its two gaps."""
         if self.time.size < 2:
             return 0.0
         ends = [self.motion[:, :2] + s * 0.5 * length * self.motion[:, 2:4] for s in (-1.0, 1.0)]
@@ -68,7 +72,7 @@ class RecordedSteps:
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`, with a flexible bore's coordinates and rates in the motion, and the step of a record."""
+    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record."""
 
     motion: np.ndarray
     history: History | None = None
@@ -113,8 +117,8 @@ def recorded_states(model: BearingModel, record: RecordedSteps) -> list[FilmStat
 def _differenced(record: RecordedSteps) -> np.ndarray:
     """Motions (n, 10) with the rates of the steps' own differences.
 
-    Rates that an integrator leaves behind on a flexible bore alternate, those of the journal with those of the bore, which a record
-    does not hold.
+    Rates that an integrator leaves behind on a flexible bore alternate, those of the journal with those of the bore,
+    which a record does not hold.
     """
     motions = record.motion.copy()
     motions[1:, 4:8] = np.diff(record.motion[:, :4], axis=0) / np.diff(record.time)[:, None]
@@ -256,8 +260,8 @@ def tilt_loss(bearing: JournalBearing, motion: np.ndarray) -> float:
 def squeeze_share(bearing: JournalBearing, motion: np.ndarray) -> float:
     """Share of the squeeze term among the sources of the Reynolds equation, 0 to 1: v / (v + e |omega| / 2).
 
-    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes of dh/dt and
-    (omega / 2) dh/dtheta.
+    v is the velocity and e the eccentricity of the journal's axis, each the largest along the bearing; the amplitudes
+    of dh/dt and (omega / 2) dh/dtheta.
     """
     half = 0.5 * bearing.length
     e, v = (
@@ -269,7 +273,7 @@ def squeeze_share(bearing: JournalBearing, motion: np.ndarray) -> float:
 
 
 def intervals_at_half(values: np.ndarray, peak: int) -> float:
-    """Intervals between the two points beside ``peak`` where ``values`` (n,) fall to half the peak, by linear interpolation."""
+    """Intervals between the points on both sides of ``peak`` where ``values`` (n,) fall to half of it, interpolated."""
     half = 0.5 * float(values[peak])
     if not half > 0.0:
         return float(values.size)

@@ -1,7 +1,10 @@
-"""Steady elastohydrodynamics: the bore's coordinates in equilibrium with the film, and the tangent of a bore that follows.
+"""Steady elastohydrodynamics.
 
-With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure falls with the gap it
-opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the solution and stay on the safe side.
+The bore's coordinates in equilibrium with the film, and the tangent of a bore that follows.
+
+With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure
+falls with the gap it opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the
+solution and stay on the safe side.
 """
 
 from __future__ import annotations
@@ -97,10 +100,13 @@ def bore_equilibrium(
     film: tuple[History | None, float, float],
     start: np.ndarray,
 ) -> tuple[Result, bool, int]:
-    """Evaluate with the bore in equilibrium; the eccentricity is approached in parts where the rigid surfaces would touch.
+    """Evaluate with the bore in equilibrium.
 
-    ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to begin with, if they leave a gap,
-    before the undeformed bore. Returns the evaluation, whether it is an equilibrium, and the number of Newton trials.
+    The eccentricity is approached in parts where the rigid surfaces would touch.
+
+    ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to begin with, if
+    they leave a gap, before the undeformed bore. Returns the evaluation, whether it is an equilibrium, and the number
+    of Newton trials.
     """
     newton = Newton(model, motion, film)
     found = newton.solve(start, 1.0)
@@ -168,8 +174,9 @@ class Newton(Generic[Result]):
 def condensed_tangent(tangent: np.ndarray, elasticity: Elasticity, coordinates: np.ndarray) -> np.ndarray:
     """d wrench / d motion (6, 10) with a massless bore in equilibrium, to first order in the rates.
 
-    From ``tangent`` (6 + k, 10 + 2 k) at the bore's ``coordinates`` (k,): with A = (K - dQ/dq)^-1 the bore follows the journal as
-    ``dq = A Q_m dm``; its rate follows the pose's rate likewise and acts through squeeze on wrench and bore.
+    From ``tangent`` (6 + k, 10 + 2 k) at the bore's ``coordinates`` (k,): with A = (K - dQ/dq)^-1 the bore follows
+    the journal as ``dq = A Q_m dm``; its rate follows the pose's rate likewise and acts through squeeze on wrench and
+    bore.
     """
     T, k, M = tangent, coordinates.size, MOTION_SIZE
     softening = T[6:, M : M + k]

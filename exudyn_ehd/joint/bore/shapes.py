@@ -1,7 +1,10 @@
-"""The bore of a flexible bush on the film grid: ``delta = S q``, its rate ``S q_t``, and generalised loads ``S^T (p A)``.
+"""The bore of a flexible bush on the film grid.
 
-Modal and nodal bushes differ in S (and in what resists q) only. delta > 0 points outward and opens the gap. Displacements
-are those in the joint frame, q in m; loads are carried back by the transpose, so that the film's work on the bush is its work on q.
+``delta = S q``, its rate ``S q_t``, and generalised loads ``S^T (p A)``.
+
+Modal and nodal bushes differ in S (and in what resists q) only. delta > 0 points outward and opens the gap.
+Displacements are those in the joint frame, q in m; loads are carried back by the transpose, so that the film's work
+on the bush is its work on q.
 """
 
 from __future__ import annotations
@@ -27,7 +30,8 @@ from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
 from exudyn_ehd.solid.static_modes import BoreModes
 
-# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue problems.
+# Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
+# problems.
 ASYMMETRY = 1e-9
 
 
@@ -55,13 +59,17 @@ class Bore(Protocol):
         """S q and S q_t (n, m)."""
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
-        """Rows of S at flat vertices ``places`` (count,), times ``weight`` (count,), into tiles of `tiles.make_tiles` from column ``first`` on.
+        """Rows of S at flat vertices ``places`` times ``weight``, both (count,), into tiles from column ``first`` on.
+
+        Tiles as of `exudyn_ehd.film.banded.many_sides.make_tiles`.
 
         The coordinates come in the sequence ``order``.
         """
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
-        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B of `stencil.gap_stencil`.
+        """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B.
+
+        As of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`.
 
         B has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
         """
@@ -73,8 +81,8 @@ class Bore(Protocol):
 class ModalBore:
     """Bore that moves in modes.
 
-    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows (see
-    `film.folding`).
+    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows
+    (see `exudyn_ehd.film.sensitivity.mirror_symmetry`).
 
     Parameters
     ----------
@@ -175,7 +183,10 @@ class ModalBore:
 
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
-    """Which of the shapes (n, m, k) are even in z, the others being odd; rounding is taken off them. None if any is neither."""
+    """Which of the shapes (n, m, k) are even in z, the others being odd.
+
+    Rounding is taken off them. None if any is neither.
+    """
     mirror = shapes[:, ::-1]
     even, odd = 0.5 * (shapes + mirror), 0.5 * (shapes - mirror)
     sizes = np.abs(even).max(axis=(0, 1)), np.abs(odd).max(axis=(0, 1))

@@ -1,4 +1,7 @@
-"""Oil that a film takes in, holds and gives off, and the heat of its motion: what the temperature's balances are made of."""
+"""Oil that a film takes in, holds and gives off, and the heat of its motion.
+
+What the temperature's balances are made of.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,8 @@ class Exchange:
     Attributes
     ----------
     fill, rate, outside : (n, m) arrays
-        Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in units of c R^2.
+        Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in
+        units of c R^2.
     fx, fz, carried : (n, m) arrays
         Couette flows of the links before they take the upstream value of ``carried`` along.
     """
@@ -50,7 +54,7 @@ class Exchange:
         unbroken = np.ones(shape, dtype=np.bool_) if conserves else s.work.active | fixed
         outside_flows(
             s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, fixed, unbroken, self.outside
-        )  # fmt: skip
+        )
 
     @property
     def leaving(self) -> float:
@@ -78,7 +82,7 @@ class OilFlows(Exchange):
         self.x, self.z, self.found = np.empty(shape), np.empty(shape), np.empty(shape)
         film_flows(
             s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, self.x, self.z, self.found
-        )  # fmt: skip
+        )
         self.found -= self.outside
         if s.closure.conserves_mass:
             self.found[:] = 0.0
@@ -125,14 +129,14 @@ def _end_work(film: SolvedFilm) -> float:
 def _compressible_work(film: SolvedFilm, oil: CompressibleFilmSolver | NonlinearFilmSolver) -> tuple[float, float]:
     """Work on the oil of a compressible film, scaled, and the flow that leaves.
 
-    With the density ratio rho, the flow work ``w = integral of dp / rho`` and a volume flow q per width, the mass balance times w
-    less its value in the cavity, summed by parts, turns the power of the motion
+    With the density ratio rho, the flow work ``w = integral of dp / rho`` and a volume flow q per width, the mass
+    balance times w less its value in the cavity, summed by parts, turns the power of the motion
     ``int mu U^2 / h + q_U . grad p - p dh/dt dA`` into
 
         heat + d/dt int e h dA - pc dV/dt - sum over what enters of (w - w_c) rho q,    e = rho (w - w_c) - (p - pc),
 
-    e the elastic energy per volume of oil above that of the cavity's, ``d(e h) = e dh + h (w - w_c) d(rho)``. The second part,
-    backward Euler, is left out where the mass balance leaves it out: without a history and its step.
+    e the elastic energy per volume of oil above that of the cavity's, ``d(e h) = e dh + h (w - w_c) d(rho)``. The
+    second part, backward Euler, is left out where the mass balance leaves it out: without a history and its step.
     """
     s, P, flows = film.solver, film.oil.P, Exchange(film)
     cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0

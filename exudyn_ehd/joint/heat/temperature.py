@@ -1,4 +1,7 @@
-"""Temperature of a bearing's film: heat balance at accepted steps, viscosity for the next one, and the settled steady state."""
+"""Temperature of a bearing's film.
+
+Heat balance at accepted steps, viscosity for the next one, and the settled steady state.
+"""
 
 from __future__ import annotations
 
@@ -94,7 +97,7 @@ class LumpedTemperature:
         return (heat + flow * self.spec.supply_temperature + G * self.housing) / (flow + G)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
-        """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
+        """Heat in, carried out, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         heat, flow = self._rates(film)
         stored = self.capacity * (temperature - _number(film)) / film.step if film.step > 0.0 else 0.0
         return {
@@ -197,8 +200,8 @@ class FilmTemperature:
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """Temperatures in balance with the heat of a solved film (n, m); not finite without a way out for the heat.
 
-        The heat is taken to follow the viscosity, linearised at the film's temperatures, so that repeated use converges where the
-        heating is strong; the fixed point is that of the heat itself.
+        The heat is taken to follow the viscosity, linearised at the film's temperatures, so that repeated use
+        converges where the heating is strong; the fixed point is that of the heat itself.
         """
         flows = OilFlows(film)
         stagnant = flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
@@ -207,14 +210,16 @@ class FilmTemperature:
         return self._solve(film, 0.0)[0]
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
-        """Heat in, carried out, conducted and stored, W, of a step (or the steady state) that ends at ``temperature``."""
+        """Heat in, carried out, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         return self._solve(film, film.step, temperature)[1]
 
     def _wall(self, film: SolvedFilm) -> tuple[float | np.ndarray, float | np.ndarray]:
-        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K: floats, or (n, m) with a conductivity.
+        """Heat transfer to both surfaces, W/(m2 K), and their mean temperature, K.
 
-        A parabola across the film with mean T and the surfaces' s_1, s_2 passes ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the
-        like on the other side; both solved for the surfaces.
+        Floats, or (n, m) with a conductivity.
+
+        A parabola across the film with mean T and the surfaces' s_1, s_2 passes
+        ``k/h (6 T - 4 s_1 - 2 s_2) = U_1 (s_1 - T_1)``, and the like on the other side; both solved for the surfaces.
         """
         (U1, T1), (U2, T2) = self.walls
         if self.spec.conductivity is None or self.transfer == 0.0:

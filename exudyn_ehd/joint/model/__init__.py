@@ -10,8 +10,8 @@ flexible        elastic bore
 impedance       fitted map
 rheology        oil laws
 surfaces        profile, roughness, contact
-film_laws       pressures of a film with oil laws
-loads           integrals and wrench of a solved film
+parts           grid, solver and buffers
+loads           pressure and viscosity by the oil's laws; integrals and wrench
 quantities      scalars of a state
 fields          fields of a state
 """

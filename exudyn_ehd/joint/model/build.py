@@ -69,8 +69,8 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
         raise InputError(f"bearing must be a JournalBearing(...), got {bearing!r}.")
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError(
-            "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is undefined for a "
-            "concentric journal and jumps with a moving one; use inlet=Periodic()."
+            "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is "
+            "undefined for a concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
     if isinstance(bearing.film, ImpedanceMap):
         return ImpedanceModel(bearing)

@@ -40,8 +40,9 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
         )
     if isinstance(bush, FEBore):
         raise InputError(
-            "JournalBearing.bush=FEBore(...) takes its modes from the body that is the joint's housing: give CreateLubricatedJoint an "
-            "ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by itself, take a ModalBush(...)."
+            "JournalBearing.bush=FEBore(...) takes its modes from the body that is the joint's housing: give "
+            "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
+            "itself, take a ModalBush(...)."
         )
     assert isinstance(bush, ANCFBush)
     mesh = bush.build_mesh()
@@ -55,7 +56,10 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
 
 
 def bore_stiffness(bush: ANCFBush) -> np.ndarray:
-    """Stiffness (k, k) of a mesh at rest condensed on the x and y displacements of its bore nodes, N/m; outer surface fixed."""
+    """Stiffness (k, k) of a mesh at rest condensed on the x and y displacements of its bore nodes, N/m.
+
+    Outer surface fixed.
+    """
     mesh = bush.build_mesh()
     free, _, factor = held_stiffness(bush.solid(mesh))
     places = (np.cumsum(free) - 1)[_bore_places(mesh)]
@@ -66,7 +70,10 @@ def bore_stiffness(bush: ANCFBush) -> np.ndarray:
 
 
 def displacements_at_rest(bush: ANCFBush, bore_load: np.ndarray) -> np.ndarray:
-    """Small displacements (n, 3) of all nodes, m, under loads (k,) on the bore nodes' x and y, N; outer surface fixed."""
+    """Small displacements (n, 3) of all nodes, m, under loads (k,) on the bore nodes' x and y, N.
+
+    Outer surface fixed.
+    """
     mesh = bush.build_mesh()
     free, _, factor = held_stiffness(bush.solid(mesh))
     load, u = np.zeros(free.size), np.zeros(free.size)

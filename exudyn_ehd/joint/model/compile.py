@@ -13,7 +13,10 @@ from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 
 PATIENCE = 2.0
-MESSAGE = "exudyn_ehd: compiling the film's kernels; this happens once (10 to 20 s), later runs read them from numba's cache ..."
+MESSAGE = (
+    "exudyn_ehd: compiling the film's kernels; this happens once (10 to 20 s), later runs read them from numba's "
+    "cache ..."
+)
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TypedDict
 
 import numpy as np
 
@@ -40,7 +40,8 @@ class FilmFields(FilmPictures):
     force, moment : (3,) arrays
         On the journal, moment about the joint origin.
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and rates.
+        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
+        rates.
     bearing : JournalBearing
     bush_displacement : (k, 3) array or None
         Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
@@ -64,7 +65,19 @@ class FilmFields(FilmPictures):
     bush_displacement: np.ndarray | None = None
 
 
-def grid_fields(film: SolvedFilm) -> dict[str, Any]:
+class GridFields(TypedDict):
+    """What both `FilmFields` and a steady result hold of a film."""
+
+    theta: np.ndarray
+    z: np.ndarray
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    fill: np.ndarray | None
+    temperature: float | np.ndarray | None
+
+
+def grid_fields(film: SolvedFilm) -> GridFields:
     """Copies of theta, z, pressure, gap, unbroken, fill and temperature of a solved film, by name."""
     film.require_current()
     solver, grid, temperature = film.solver, film.grid, film.temperature

@@ -4,8 +4,8 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
 
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
-the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of this model; only
-`evaluate_steady` knows its stiffness K and finds the q with K q = Q.
+the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of
+this model; only `evaluate_steady` knows its stiffness K and finds the q with K q = Q.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ from exudyn_ehd.joint.tangent.bore import TangentProduct, elastic_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
 from exudyn_ehd.status import Status
 
-# Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the usual meshes.
+# Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the
+# usual meshes.
 END_PANELS = 120, 12
 
 
@@ -65,7 +66,10 @@ class ElasticEvaluation(Evaluation):
         return self._tangent((1.0, 0.0), (0.0, 1.0))
 
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
-        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k): what an integrator needs."""
+        """As `tangent` with the bore's columns as ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k).
+
+        What an integrator needs.
+        """
         return self._tangent((by_place, by_rate))
 
     def _tangent(self, *combinations: tuple[float, float]) -> np.ndarray:
@@ -83,7 +87,10 @@ class ElasticEvaluation(Evaluation):
         return TangentProduct(self._found(), self.model.bore)
 
     def nodal_forces(self, forces: BoreForces) -> np.ndarray:
-        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N; there must be a film."""
+        """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.
+
+        There must be a film.
+        """
         shear = traction(self._found(), forces)
         nodal = forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
         nodal[:, :2] += self.bore.load.reshape(-1, 2)
@@ -127,10 +134,11 @@ class BoreTerm:
 def end_load(bore: Callable[[FilmGrid], Bore], grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
     """What the film's weights lack in the bore's loads (k,) of the ends' pressure, N.
 
-    The weights are made for pressures that vanish at the ends; a pressure that does not meets there the part of the bore that yields most,
-    which few vertices can't integrate (8 % in the displacement with 12 intervals). The pressure is therefore split into
-    ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are integrated by Gauss points, and a rest
-    that vanishes at the ends. The first part has neither force nor moment on the journal.
+    The weights are made for pressures that vanish at the ends; a pressure that does not meets there the part of the
+    bore that yields most, which few vertices can't integrate (8 % in the displacement with 12 intervals). The
+    pressure is therefore split into ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are
+    integrated by Gauss points, and a rest that vanishes at the ends. The first part has neither force nor moment on
+    the journal.
 
     Parameters
     ----------

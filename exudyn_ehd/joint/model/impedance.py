@@ -1,4 +1,7 @@
-"""A bearing model from an impedance map; the same interface as `exudyn_ehd.joint.model.rigid`, for aligned plain bearings."""
+"""A bearing model from an impedance map.
+
+The same interface as `exudyn_ehd.joint.model.rigid`, for aligned plain bearings.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, ImpedanceTable, impedance_table, impedance_wrench
 from exudyn_ehd.status import FilmError, Status
 
-# Tilt that counts as none: share of the smallest gap that it may take at the ends. Its effect on the force is of second order.
+# Tilt that counts as none: share of the smallest gap that it may take at the ends. Its effect on the force is of
+# second order.
 NEGLIGIBLE_TILT = 0.01
 _TILTED = 4
 _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)
@@ -36,7 +40,7 @@ class ImpedanceEvaluation:
         return self._tangent
 
     def quantities(self) -> dict[str, float]:
-        """``minimum_gap``, ``eccentricity_ratio``, ``friction_torque``, ``friction_torque_bush``, ``power_loss``, ``contact_load``."""
+        """Gap and its place, eccentricity ratio, friction, power loss and no contact load, by name, SI units."""
         return self._model.quantities(self)
 
     def history(self) -> None:
@@ -113,8 +117,9 @@ class ImpedanceModel:
         slope = math.hypot(motion[2], motion[3])
         gap = b.radial_clearance - math.hypot(motion[0], motion[1])
         raise FilmError(
-            f"ImpedanceMap: the journal is tilted by {slope:.3g} rad, which takes {0.5 * slope * b.length:.3g} m of the {gap:.3g} m "
-            f"gap at the ends; the map is for aligned journals (up to {NEGLIGIBLE_TILT:.0%} of the gap): guide the journal's axis, or "
+            f"ImpedanceMap: the journal is tilted by {slope:.3g} rad, which takes {0.5 * slope * b.length:.3g} m of "
+            f"the {gap:.3g} m gap at the ends; the map is for aligned journals (up to {NEGLIGIBLE_TILT:.0%} of the "
+            "gap): guide the journal's axis, or "
             "use film=FiniteLength(...)."
         )
 

@@ -1,4 +1,4 @@
-"""What a solved film does to the journal: integrals of pressure and shear, the wrench, and the friction of contacts."""
+"""From the solver's unknowns to pressure and viscosity by the oil's laws, and on to the loads on the journal."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from exudyn_ehd.film.loads import (
     slope_integrals,
 )
 from exudyn_ehd.film.surfaces.contact_wrench import contact_wrench, couette_integral_law
+from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
     ContactFields,
     ExtraGap,
@@ -26,6 +27,42 @@ from exudyn_ehd.joint.solved_film import (
 from exudyn_ehd.joint.tangent.drag import drag_integrals
 
 _NO_CONTACT = np.zeros(6)
+
+
+def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> OilFields | None:
+    """Pressure and viscosity ratio of the film that ``parts.solver`` holds; None where its solution has no pressure.
+
+    ``pressure_scale`` in Pa.
+    """
+    s, film, shape = parts.solver, parts.compressible, parts.grid.shape
+    law, shear = effects.pressure_law, effects.shear_factor
+    if law is None and shear is None:
+        return OilFields(s.pressure)
+    if law is None and shear is not None:
+        ratio, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+        shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
+        return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v)
+    P, ratio, ratio_q = np.empty(shape), np.empty(shape), np.empty(shape)
+    P_q = ratio
+    if film is not None:
+        P_q = np.empty(shape)
+        if film.law is not None and film.law.viscosity is None and shear is None:
+            return OilFields(P, P_q) if film.pressure_of_solution(P, P_q) else None
+        if not film.viscosity(P, ratio, ratio_q, P_q):
+            return None
+    elif law is not None:
+        if not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q):
+            return None
+        P /= pressure_scale
+        ratio_q *= pressure_scale
+    if shear is None:
+        return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing)
+    factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
+    shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+    ratio_h *= ratio
+    ratio_v *= ratio
+    ratio_q *= factor
+    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v)
 
 
 def film_loads(
@@ -55,8 +92,8 @@ def film_loads(
     sc, ss, szc, szs = integrals.tolist()
     s_theta = x * ss - y * sc + bx * szs - by * szc + extra_theta
     s_z = -(bx * sc + by * ss) + extra_z
-    # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their slope. Uneven
-    # drag pulls the journal by as much as it holds the bore back.
+    # On the bore, gap terms act twice: by half of p dh/ds as in every shear, and by -p dh/ds of the pressure on their
+    # slope. Uneven drag pulls the journal by as much as it holds the bore back.
     R, force = g.reference_length, scales.force
     ends, (lower, upper) = 0.0, scales.ends.tolist()
     if lower != 0.0 or upper != 0.0:
@@ -98,9 +135,19 @@ def _add_contacts(
     motion = journal.motion
     for k, (friction, transition) in enumerate(f.friction):
         contact_wrench(
-            f.P[k], g.weight, parts.cos_x, parts.sin_x, g.z, motion, friction, transition, g.reference_length,
-            f.integrals[k], friction_out, wrench,
-        )  # fmt: skip
+            f.P[k],
+            g.weight,
+            parts.cos_x,
+            parts.sin_x,
+            g.z,
+            motion,
+            friction,
+            transition,
+            g.reference_length,
+            f.integrals[k],
+            friction_out,
+            wrench,
+        )
 
 
 def _ring_integral(row: np.ndarray) -> float:

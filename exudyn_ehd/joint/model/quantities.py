@@ -23,30 +23,33 @@ def eccentricities(parts: FilmParts, pose: np.ndarray) -> dict[str, float]:
 def quantities(film: SolvedFilm) -> dict[str, float]:
     """Scalars of a solved film.
 
-    The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it presses out,
+    The mechanical power that enters the film becomes heat of shear and pressure flow, and work on the oil that it
+    presses out,
 
-        power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
+        power_loss = int (mu U^2 share / h + h^3 / (12 mu) |grad p|^2) dA
+                     + sum (p - pc) outflow - pc dV/dt - w sum p h ds,
 
-    with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It follows from Reynolds'
-    equation times p - pc, summed by parts; only the heat is left if ends and cavity are at gauge 0. The last term is the pressure on the
-    ends' cross section, which the journal's wrench carries. Compressible oil takes its elastic energy along: p - pc becomes the integral
-    of dp / (rho / rho_0), the outflow the mass flow over rho_0, and the rate of the energy that the film holds is added. What bends an
-    elastic bore is not in it: that is the bush's.
+    with pc the cavity pressure, V the volume between the surfaces, ds along the ends (+ at z > 0, - at z < 0). It
+    follows from Reynolds' equation times p - pc, summed by parts; only the heat is left if ends and cavity are at
+    gauge 0. The last term is the pressure on the ends' cross section, which the journal's wrench carries.
+    Compressible oil takes its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow
+    the mass flow over rho_0, and the rate of the energy that the film holds is added. What bends an elastic bore is
+    not in it: that is the bush's.
 
     Returns
     -------
     dict
-        ``minimum_gap`` (m, over the whole bearing with its edges), ``minimum_gap_angle`` and ``minimum_gap_z`` (its place, rad and m),
-        ``eccentricity_ratio`` (at the mid-plane), ``largest_eccentricity_ratio`` (over the length), ``peak_pressure`` (Pa, from
-        parabolas through the largest vertex) at ``peak_angle`` (rad),
-        ``friction_torque`` (Nm, on the journal about its own axis, film and contact),
-        ``friction_torque_unbroken`` (the film's with shear of its unbroken part only), ``friction_torque_bush``
-        (Nm, on the housing about the bearing axis), ``power_loss`` (W, mechanical power that stays in film and
-        contact), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried
-        by contact), ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
-        of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas also
-        ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and ``peak_temperature`` (K), with a liner or a flexible
-        bore ``bore_displacement`` (m, the largest).
+        ``minimum_gap`` (m, over the whole bearing with its edges), ``minimum_gap_angle`` and ``minimum_gap_z`` (its
+        place, rad and m), ``eccentricity_ratio`` (at the mid-plane), ``largest_eccentricity_ratio`` (over the
+        length), ``peak_pressure`` (Pa, from parabolas through the largest vertex) at ``peak_angle`` (rad),
+        ``friction_torque`` (Nm, on the journal about its own axis, film and contact), ``friction_torque_unbroken``
+        (the film's with shear of its unbroken part only), ``friction_torque_bush`` (Nm, on the housing about the
+        bearing axis), ``power_loss`` (W, mechanical power that stays in film and contact), ``leakage`` (m3/s out of
+        both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried by contact),
+        ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
+        of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
+        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and
+        ``peak_temperature`` (K), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
     p, w = film.parts, film.journal
     R = p.grid.reference_length
@@ -112,8 +115,8 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
 def minimum_place(film: SolvedFilm) -> tuple[float, float]:
     """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.
 
-    Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a profile, wear or
-    an elastic bore the vertex of the smallest gap.
+    Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a
+    profile, wear or an elastic bore the vertex of the smallest gap.
     """
     R, half = film.grid.reference_length, film.parts.half_length
     if film.extra is not None or film.parts.liner is not None:

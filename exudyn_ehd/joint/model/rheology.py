@@ -61,8 +61,8 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
         return Rheology(flux, law, factor, None, density)
     if oil.temperature_law is None:
         raise InputError(
-            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on temperature, "
-            'got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
+            f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on "
+            'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
         )
     if isinstance(thermal, LumpedThermal):
         return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing), density)
@@ -96,8 +96,8 @@ def known_pressures(lubricant: Lubricant, boundary: float | np.ndarray, cavity: 
     """
     if lubricant.shear_law is not None:
         raise InputError(
-            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs the sliding "
-            "speed of a JournalBearing (steady)."
+            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
+            "the sliding speed of a JournalBearing (steady)."
         )
     law = _transform_law(lubricant)
     if law is None:

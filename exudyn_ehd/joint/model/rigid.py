@@ -1,10 +1,10 @@
 """One lubricated bearing between two rigid surfaces as a pure function of its relative motion.
 
-Frame and motion as in `exudyn_ehd.joint.solved_film`. The wrench acts on the journal, moment about O; the housing receives exactly the opposite
-about the same point.
+Frame and motion as in `exudyn_ehd.joint.solved_film`. The wrench acts on the journal, moment about O; the housing
+receives exactly the opposite about the same point.
 
-Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)`` reads the history
-at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
+Effects with a memory keep it in a `History`, which belongs to an accepted step: ``evaluate(motion, history, step)``
+reads the history at the start of the step and the time since, and ``evaluation.history()`` is the history at its end.
 """
 
 from __future__ import annotations
@@ -15,24 +15,18 @@ from operator import is_
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.models import film_grid, film_solver
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.reynolds.gap import add_to_gap, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.supply import SupplyMap
-from exudyn_ehd.joint.model.film_laws import oil_fields
-from exudyn_ehd.joint.model.loads import film_loads
+from exudyn_ehd.joint.model.loads import film_loads, oil_fields
+from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
 from exudyn_ehd.joint.seams import Effects, Wear
 from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
     BoreState,
     ContactFields,
-    Evaluations,
     ExtraGap,
-    FilmParts,
     History,
     JournalMotion,
     LimiterFields,
@@ -59,7 +53,8 @@ class Evaluation:
     minimum_gap : float
         m; nan if the motion is not finite.
     film : SolvedFilm or None
-        None with a ``status`` other than CONVERGED. What is asked of it raises RuntimeError if the model has evaluated another state since.
+        None with a ``status`` other than CONVERGED. What is asked of it raises RuntimeError if the model has
+        evaluated another state since.
     """
 
     status: Status
@@ -73,7 +68,8 @@ class Evaluation:
     def tangent(self, slow_motion: bool = False) -> np.ndarray:
         """d wrench / d motion (6, 10), exact for the current active set, from the stored factor; nan without a film.
 
-        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes nothing.
+        ``slow_motion`` lets a liner follow the rates, for the damping of a steady state; without a liner it changes
+        nothing.
         """
         film = self._current()
         return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
@@ -126,7 +122,7 @@ class BearingModel:
     def __init__(self, bearing: JournalBearing, *, start_angle: float = 0.0, effects: Effects | None = None) -> None:
         self.bearing = bearing
         self.effects = Effects() if effects is None else effects
-        self.parts = p = _film_parts(bearing, self.effects, start_angle)
+        self.parts = p = film_parts(bearing, self.effects, start_angle)
         self.grid, self.solver = p.grid, p.solver
         self.needs_spin = p.supply is not None and p.supply.rotating
         self.remembers_mass = bearing.cavitation.conserves_mass and bearing.squeeze
@@ -142,7 +138,7 @@ class BearingModel:
         self._set_viscosity(1.0)
 
     def _set_viscosity(self, ratio: float) -> None:
-        """Scale the film to ``ratio`` times the lubricant's reference viscosity (one temperature for the whole film)."""
+        """Scale the film to ``ratio`` times the reference viscosity, that of one temperature for the whole film."""
         b, p, law = self.bearing, self.parts, self.effects.pressure_law
         mu, R, c = ratio * b.lubricant.viscosity, b.journal_radius, b.radial_clearance
         pressure = 12.0 * mu * R**2 / c**2
@@ -208,8 +204,8 @@ class BearingModel:
         step : float
             Time since then, s; 0 asks for the force at that very instant.
         spin : float
-            Angle of the journal against the housing about the bearing's axis, rad; only read if ``needs_spin`` (supply areas in
-            the journal).
+            Angle of the journal against the housing about the bearing's axis, rad; only read if ``needs_spin``
+            (supply areas in the journal).
 
         Returns
         -------
@@ -239,9 +235,23 @@ class BearingModel:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
         loads = film_loads(p, self.scales, journal, oil, extra, pressing)
         film = SolvedFilm(
-            p, self.grid, self.solver, self.scales, journal, history, step, temperature, extra, pressing, limited, oil, loads,
-            c * smallest, self._bore_state(journal, oil, pressing), p.evaluations.count,
-        )  # fmt: skip
+            p,
+            self.grid,
+            self.solver,
+            self.scales,
+            journal,
+            history,
+            step,
+            temperature,
+            extra,
+            pressing,
+            limited,
+            oil,
+            loads,
+            c * smallest,
+            self._bore_state(journal, oil, pressing),
+            p.evaluations.count,
+        )
         return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
 
     def _result(
@@ -282,7 +292,10 @@ class BearingModel:
     def _set_gap(
         self, journal: JournalMotion, history: History | None
     ) -> tuple[float, ExtraGap | None, ContactFields | None, LimiterFields | None]:
-        """Gaps of a motion into the film solver; returns the smallest, scaled, with the record's fields of these names."""
+        """Gaps of a motion into the film solver.
+
+        Returns the smallest, scaled, with the record's fields of these names.
+        """
         s, p, z = self.solver, self.parts, self.grid.z
         rigid_gap(journal.pose, p.cos_x, p.sin_x, z, 1.0, s.H)
         rigid_gap(journal.pose, p.cos_f, p.sin_f, z, 1.0, s.HF)
@@ -314,7 +327,10 @@ class BearingModel:
         return None
 
     def _add_gap_terms(self, history: History | None) -> tuple[float, ExtraGap]:
-        """Add the gap terms; their slopes (central differences; one-sided at the ends) are kept. Returns the smallest gap."""
+        """Add the gap terms; returns the smallest gap and what was added.
+
+        Slopes by central differences, one-sided at the ends; they are kept while the terms stay the same.
+        """
         s, g, extra = self.solver, self.grid, self._extra
         fields = [term.field(history) for term in self.effects.gap_terms]
         if extra is None or not all(map(is_, fields, self._gap_fields)):
@@ -341,7 +357,10 @@ class BearingModel:
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> Evaluation:
-        """Evaluate the film at a motion (10,) that lasts; a flexible bore settles under it. The rest as for `evaluate`."""
+        """Evaluate the film at a motion (10,) that lasts.
+
+        A flexible bore settles under it. The rest as for `evaluate`.
+        """
         return self.evaluate(motion, history, step, spin)
 
 
@@ -358,60 +377,3 @@ def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
     for other in others:
         pressure = pressure + other
     return wear.grown(None if history is None else history.wear, pressure, speed, film.step)
-
-
-def _film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
-    """Grid, solver and buffers of a bearing with its effects."""
-    R, c = bearing.journal_radius, bearing.radial_clearance
-    open_ring = isinstance(bearing.inlet, MaximumGap)
-    grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring)
-    supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
-    liner: NonlinearFilmSolver | None = None
-    if effects.liner is not None:
-        liner = NonlinearFilmSolver(
-            grid,
-            bearing.cavitation,
-            squeeze=bearing.squeeze,
-            contact=next(iter(effects.contacts), None),
-            limiter=effects.limiter,
-            flux_effects=effects.flux,
-            oil=effects.pressure_law,
-            density=effects.density,
-        )
-    solver = liner or film_solver(
-        bearing.film,
-        grid,
-        bearing.cavitation,
-        squeeze=bearing.squeeze,
-        flux_effects=effects.flux,
-        density=effects.density,
-    )
-    compressible = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
-    contacts = None
-    if effects.contacts:
-        friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
-        contacts = ContactFields(grid.shape, friction, max(f.presses_below for f in effects.contacts))
-        if liner is not None:
-            # contact and film gap on a liner come out of its film solve
-            contacts.P, contacts.slope = [liner.contact_pressure], [liner.contact_slope]
-    pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
-    return FilmParts(
-        bearing=bearing,
-        grid=grid,
-        solver=solver,
-        liner=liner,
-        compressible=None if effects.density is None else compressible,
-        supply=supply,
-        contacts=contacts,
-        limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
-        cos_x=np.cos(grid.x),
-        sin_x=np.sin(grid.x),
-        cos_f=np.cos(grid.x_face),
-        sin_f=np.sin(grid.x_face),
-        half_length=0.5 * bearing.length / R,
-        pose_scale=pose_scale,
-        motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),
-        flow_scale=c * R**2,
-        uneven_drag=effects.uneven_drag,
-        evaluations=Evaluations(),
-    )

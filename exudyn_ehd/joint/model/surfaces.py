@@ -95,8 +95,8 @@ def liner_of(bearing: JournalBearing) -> ElasticLiner | None:
         return None
     if not isinstance(bearing.film, FiniteLength):
         raise InputError(
-            f"JournalBearing.bush=ElasticLiner(...) can't be combined with film={type(bearing.film).__name__}(): its film is solved in "
-            "two dimensions; leave one of the two out."
+            f"JournalBearing.bush=ElasticLiner(...) can't be combined with film={type(bearing.film).__name__}(): its "
+            "film is solved in two dimensions; leave one of the two out."
         )
     return bearing.bush
 
@@ -113,8 +113,9 @@ def _check(bearing: JournalBearing) -> None:
     asperity, roughness = bearing.asperity, bearing.roughness
     if bearing.contact is not None:
         raise InputError(
-            "JournalBearing.contact=RegularisedWall(...) and the gap of rough surfaces (asperity, roughness) exclude each other: "
-            "both say which gap the film sees where surfaces touch; keep asperity=GreenwoodTripp(...) and leave out the wall."
+            "JournalBearing.contact=RegularisedWall(...) and the gap of rough surfaces (asperity, roughness) "
+            "exclude each other: both say which gap the film sees where surfaces touch; keep "
+            "asperity=GreenwoodTripp(...) and leave out the wall."
         )
     if asperity is not None and roughness is not None and asperity.composite_roughness != roughness.composite_roughness:
         raise InputError(

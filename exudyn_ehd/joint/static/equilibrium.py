@@ -1,4 +1,4 @@
-"""The position in which a film carries a steady load, without a multibody model, with stiffness, damping and whirl threshold."""
+"""The position in which a film carries a steady load, with stiffness, damping and whirl threshold."""
 
 from __future__ import annotations
 
@@ -37,7 +37,8 @@ class EquilibriumResult:
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
-        Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at any.
+        Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
+        any.
     residual : float
         Largest component of film force + load, divided by the load.
     iterations : int
@@ -63,11 +64,12 @@ def equilibrium(
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
     Newton's method with the exact tangent; a step may use up at most 60 % of the remaining gap, which keeps it inside
-    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a falling resistance.
+    the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a
+    falling resistance.
 
-    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping that of a
-    sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion. A transient
-    joint has what lies between.
+    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping
+    that of a sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion.
+    A transient joint has what lies between.
 
     Parameters
     ----------
@@ -110,9 +112,12 @@ def equilibrium(
         count += more
     if residual > tolerance:
         raise FilmError(
-            f"equilibrium: no position found that carries {size:.4g} N in {count} steps; the nearest is off by {residual:.2g} of the "
-            f"load, at eccentricity ratio {np.hypot(*motion[:2]) / bearing.radial_clearance:.4f}. A load this high may need "
-            "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film may carry "
+            f"equilibrium: no position found that carries {size:.4g} N in {count} steps; the nearest is off by "
+            f"{residual:.2g} of the "
+            f"load, at eccentricity ratio {np.hypot(*motion[:2]) / bearing.radial_clearance:.4f}. A load this high "
+            "may need "
+            "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film "
+            "may carry "
             "no such load at any position: look at ehd.steady(...) around there."
         )
     K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
@@ -159,10 +164,12 @@ def _newton(
 def _creep(
     model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float
 ) -> tuple[int, float, Evaluation, np.ndarray]:
-    """As `_newton`, by way of the journal's creep: a viscous resistance r holds it back, which falls as the unbalance does.
+    """As `_newton`, by way of the journal's creep.
 
-    ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure where Newton's
-    method jumps over a film that starves or touches.
+    A viscous resistance r holds it back, which falls as the unbalance does.
+
+    ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure
+    where Newton's method jumps over a film that starves or touches.
     """
     size = float(np.hypot(*force))
     evaluation, _ = evaluate_at(model, motion, "equilibrium")
@@ -194,7 +201,10 @@ def _creep(
 
 
 def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
-    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner; see `equilibrium`."""
+    """Tangent whose rate columns hold for a sudden velocity in the steady film, or a slow one on a liner.
+
+    See `equilibrium`.
+    """
     model = evaluation.model
     if model.parts.liner is not None:
         return evaluation.tangent(slow_motion=True)
@@ -229,7 +239,10 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
 
 
 def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> Evaluation:
-    """Advance ``motion`` (10,) in place by a step (2,) and evaluate; in a flexible bore by the part of it that leaves a film."""
+    """Advance ``motion`` (10,) in place by a step (2,) and evaluate.
+
+    In a flexible bore by the part of it that leaves a film.
+    """
     motion[:2] += step
     if model.flexible:
         for _ in range(STEP_HALVINGS):
@@ -242,7 +255,10 @@ def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> Evaluati
 
 
 def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end; a wall or a flexible bush limits nothing."""
+    """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
+
+    A wall or a flexible bush limits nothing.
+    """
     if model.effects.contacts or model.flexible:
         longest = 0.3 * model.bearing.radial_clearance
         return step * min(1.0, longest / float(np.hypot(*step) + 1e-300))

@@ -88,8 +88,8 @@ def solve_film(
         True: the gap is constant around each vertex and steps on the faces between (pockets, textures); see
         `exudyn_ehd.film.reynolds.stepped_gap`.
     history : (n, m) array, optional
-        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its squeeze, so
-        that ``gap_rate`` is not needed. None: the film is steady.
+        For `ElrodAdams`: ``FilmResult.content`` of the last time step, m; the film's change since then is its
+        squeeze, so that ``gap_rate`` is not needed. None: the film is steady.
     step : float
         Time since ``history``, s, > 0 with it.
 

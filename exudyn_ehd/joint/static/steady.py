@@ -1,4 +1,7 @@
-"""A prescribed position of the journal, without a multibody model; `exudyn_ehd.joint.static.equilibrium` finds the one that carries a load."""
+"""A prescribed position of the journal, without a multibody model.
+
+`exudyn_ehd.joint.static.equilibrium` finds the one that carries a load.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,9 @@ SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 @dataclass(frozen=True, eq=False)
 class SteadyResult(FilmPictures):
-    """One position of the journal; ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
+    """One position of the journal.
+
+    ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
 
     Attributes
     ----------
@@ -46,8 +51,8 @@ class SteadyResult(FilmPictures):
     supply_flows : (k,) array
         m3/s out of every area of ``bearing.supply``.
     contact_torque, contact_power_loss, peak_contact_pressure : float
-        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the loss it
-        makes (W, part of ``power_loss``); Pa.
+        Boundary friction of the contacts on the journal about its own axis (Nm, part of ``friction_torque``) and the
+        loss it makes (W, part of ``power_loss``); Pa.
     sommerfeld_number, attitude_angle : float
         So = F psi^2 / (L D mu |omega|), nan at zero speed; angle from the load to the eccentricity in the sense of
         rotation, rad.
@@ -62,7 +67,8 @@ class SteadyResult(FilmPictures):
         Of a flexible bore, m.
     bearing : JournalBearing
     motion : (10,) array
-        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and rates.
+        Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
+        rates.
     """
 
     theta: np.ndarray
@@ -97,7 +103,7 @@ class SteadyResult(FilmPictures):
     motion: np.ndarray = field(repr=False, kw_only=True)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects matter at this position, which are left out, which are paid for in vain; print it for a table.
+        """Which effects matter at this position, are left out, or take time without need; print it for a table.
 
         Parameters
         ----------
@@ -137,8 +143,8 @@ def steady(
     tilt : (float, float)
         Slopes (bx, by) of the journal axis, rad.
     velocity : (float, float)
-        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets this
-        velocity, so that full parts are squeezed at once and cavities keep their oil content.
+        dx/dt, dy/dt, m/s. With `ElrodAdams`: the force at the instant at which the journal, in its steady film, gets
+        this velocity, so that full parts are squeezed at once and cavities keep their oil content.
     axial_speed : float
         w, m/s.
 
@@ -172,15 +178,21 @@ def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -
         return
     if max(bearing.end_pressures) <= closure.cavity_pressure:
         raise InputError(
-            f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity pressure "
-            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give the bearing "
-            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or ElrodAdams(cavity_pressure=-1e5) below "
+            f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity "
+            "pressure "
+            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give "
+            "the bearing "
+            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or "
+            "ElrodAdams(cavity_pressure=-1e5) below "
             "ambient pressure."
         )
 
 
 def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
-    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there; None if nothing remembers."""
+    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
+
+    None if nothing remembers.
+    """
     history = settle(model, motion)
     if not model.remembers_mass or not np.any(motion[4:8]):
         return history
@@ -197,7 +209,8 @@ def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Ev
     if evaluation.film is None:
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: {advice(evaluation.status, model.bearing)}"
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
+            f"{advice(evaluation.status, model.bearing)}"
         )
     return evaluation, evaluation.film
 

@@ -27,10 +27,11 @@ PATIENCE = 8
 def settle(model: BearingModel, motion: np.ndarray) -> History | None:
     """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
-    One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant method inside a
-    bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain rounds, damped
-    as needed, have brought the change below 5 K, and anew from the best field when it makes no progress. Both end when the
-    temperature changes by less than 1e-11 of its rise, or at a film that has no solution, which the caller then finds.
+    One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant
+    method inside a bracket. A field: Anderson acceleration of ``T -> heat balance(film(T))``, started where plain
+    rounds, damped as needed, have brought the change below 5 K, and anew from the best field when it makes no
+    progress. Both end when the temperature changes by less than 1e-11 of its rise, or at a film that has no solution,
+    which the caller then finds.
 
     Parameters
     ----------
@@ -62,7 +63,8 @@ def _target(
 
 
 WAY_OUT = (
-    "let oil flow through (end pressures, eccentricity, supply) or give the thermal effect heat transfer to the surfaces "
+    "let oil flow through (end pressures, eccentricity, supply) or give the thermal effect heat transfer to the "
+    "surfaces "
     "(housing_conductance, bush_coefficient, journal_coefficient)."
 )
 
@@ -136,6 +138,7 @@ def _settle_field(model: BearingModel, thermal: ThermalEffect, motion: np.ndarra
 
 def _unsettled(change: float) -> FilmError:
     return FilmError(
-        f"steady temperature: not settled after {MAX_ROUNDS} rounds, last change {change:.3g} K; the heating is too strong for a "
+        f"steady temperature: not settled after {MAX_ROUNDS} rounds, last change {change:.3g} K; the heating is too "
+        "strong for a "
         "steady film, check speed, clearance and the temperature law."
     )

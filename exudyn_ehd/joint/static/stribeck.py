@@ -66,8 +66,8 @@ class StribeckResult:
 def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | np.ndarray) -> StribeckResult:
     """Equilibrium and friction under a constant load (N, in -y on the journal) over a range of speeds.
 
-    Speeds are worked through from the fastest to the slowest, each starting from the last position; where Newton's method
-    does not settle, speeds in between lead to it.
+    Speeds are worked through from the fastest to the slowest, each starting from the last position; where Newton's
+    method does not settle, speeds in between lead to it.
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
 
 
 def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float, force: np.ndarray) -> Evaluation:
-    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where Newton does not settle."""
+    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where Newton fails."""
     target, halvings = speed, 0
     while True:
         found = _settle(model, position, target, force)
@@ -121,13 +121,18 @@ def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float
         target = float(np.sqrt(last * target))
         if halvings > 30 or abs(target / last - 1.0) < 1e-3:
             raise FilmError(
-                f"stribeck: no equilibrium found at {speed:.4g} rad/s under {abs(force[1]):.4g} N, next to {last:.4g} rad/s; give "
-                "the bearing asperity=GreenwoodTripp(...) so that contact carries what the film can't, or refine its film grid."
+                f"stribeck: no equilibrium found at {speed:.4g} rad/s under {abs(force[1]):.4g} N, next to "
+                f"{last:.4g} rad/s; give "
+                "the bearing asperity=GreenwoodTripp(...) so that contact carries what the film can't, or refine "
+                "its film grid."
             )
 
 
 def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndarray) -> Evaluation | None:
-    """Newton's method with steps below a tenth of the clearance, halved while the unbalance grows; None if it does not settle."""
+    """Newton's method with steps below a tenth of the clearance, halved while the unbalance grows.
+
+    None if it does not settle.
+    """
     size = float(np.hypot(*force))
     longest = 0.1 * model.bearing.radial_clearance
     motion = np.zeros(10)

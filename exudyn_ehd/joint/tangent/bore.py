@@ -1,12 +1,14 @@
-"""Exact tangent of a film on a flexible bore: the journal's wrench and the bore's loads to motion, q and q_t; as a matrix and as an operator.
+"""Exact tangent of a film on a flexible bore.
 
-The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in one sweep over
-the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point stencil on S, since the gap on a
-link is the mean of its two columns; those to the motion are ten columns. What an integrator asks for is one combination of the
-derivatives to q and q_t, which costs as much as one of them.
+The journal's wrench and the bore's loads to motion, q and q_t; as a matrix and as an operator.
 
-What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta, delta_t) = 0 of the
-film's unknowns u,
+The bore's loads are more integrals S = sum w p of the film, with weights w = W S_k; one adjoint solve each (all in
+one sweep over the factor) gives their gradients ``-lam . dr``. The balances' derivatives dr to q are a five-point
+stencil on S, since the gap on a link is the mean of its two columns; those to the motion are ten columns. What an
+integrator asks for is one combination of the derivatives to q and q_t, which costs as much as one of them.
+
+What an iterative solver needs are products with vectors, one film solve each: with the balances r(u, m, delta,
+delta_t) = 0 of the film's unknowns u,
 
     A du = -(dr/dm dm + dr/d delta S dq + dr/d delta_t S dq_t),   dQ = S^T W du + (contacts);
 
@@ -64,9 +66,17 @@ def elastic_tangent(film: SolvedFilm, bore: Bore, *combinations: tuple[float, fl
         block = out[:, size + i * k : size + (i + 1) * k]
         by_bore = bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + k)
         spread_gradient(
-            gradient, by_bore, bore.order, weights, direct, by_gap, film.scales.force, film.parts.motion_scale,
-            out[6:, :size], block,
-        )  # fmt: skip
+            gradient,
+            by_bore,
+            bore.order,
+            weights,
+            direct,
+            by_gap,
+            film.scales.force,
+            film.parts.motion_scale,
+            out[6:, :size],
+            block,
+        )
         if film.pressing is not None:
             contact = bore.product(contact_slope(film, film.pressing))
             block[6:] += contact * (by_gap / film.parts.bearing.radial_clearance)
@@ -199,7 +209,7 @@ def load_weights(film: SolvedFilm) -> np.ndarray:
 
 
 def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, int]:
-    """Adjoint solutions as tiles of integrals, then k loads of the bore only if ``whole``, and the number of integrals."""
+    """Adjoint solutions as tiles: of integrals, if ``whole`` then of the k loads; and the number of integrals."""
     integrals = adjoint_rows(film)
     count, unknowns = integrals.shape
     lam = make_tiles(integrals, count + (bore.size if whole else 0))
@@ -210,7 +220,7 @@ def _adjoints(film: SolvedFilm, bore: Bore, whole: bool) -> tuple[np.ndarray, in
 
 
 def wrench_weights(film: SolvedFilm, bore: Bore) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the integrals of `adjoint_rows` in the wrench, and its derivative to q at fixed film pressure (6, k)."""
+    """Weights of the integrals of `adjoint_rows` in the wrench; its derivative (6, k) to q at fixed pressure."""
     w, scales, weights = film.journal, film.scales, np.empty((6, 8))
     integral_weights(w.pose, film.grid.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, weights)
     direct = _direct(film, bore, weights)
@@ -291,7 +301,7 @@ def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarr
 
 @functools.cache
 def friction_rows(R: float) -> tuple[np.ndarray, np.ndarray]:
-    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and along z."""
+    """Maps (6, 5) from the friction-weighted integrals (c, s, zc, zs, 1) to the wrench, for slip along theta and z."""
     theta, axial = np.zeros((6, 5)), np.zeros((6, 5))
     theta[0, 1], theta[1, 0], theta[3, 2], theta[4, 3], theta[5, 4] = 1.0, -1.0, R, R, -R
     axial[2, 4], axial[3, 1], axial[4, 0] = -1.0, -R, R

@@ -24,7 +24,9 @@ def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """Gradients at fixed pressure to the true gap: of E_x on the links i -> i+1 (1, n, m), of E_x and E_z at the vertices (2, n, m).
+    """Gradients at fixed pressure to the true gap.
+
+    Of E_x on the links i -> i+1 (1, n, m), of E_x and E_z at the vertices (2, n, m).
 
     On a liner: to the gap of the undeformed surfaces, whose contact follows.
     """

@@ -4,14 +4,15 @@ On the bore act, per area, in the directions of theta and z of the undeformed bo
 
     t_theta = mu U / h share - h / 2 dp/dx - p d(delta)/dx + friction of contacts,
 
-the last but one the pressure on the slope of what departs from a cylinder (delta: displacement, profile, wear); t_z likewise. Sums
-over the vertices times area are, to the differences that stand for the slopes, the bearing's own friction torque and axial force,
-whose parts are summed by parts (`exudyn_ehd.film.loads`); uneven drag between rough surfaces is left to what spreads the difference.
-What the deformed bore's directions would change is smaller by the bore's slope, displacement over radius.
+the last but one the pressure on the slope of what departs from a cylinder (delta: displacement, profile, wear); t_z
+likewise. Sums over the vertices times area are, to the differences that stand for the slopes, the bearing's own
+friction torque and axial force, whose parts are summed by parts (`exudyn_ehd.film.loads`); uneven drag between rough
+surfaces is left to what spreads the difference. What the deformed bore's directions would change is smaller by the
+bore's slope, displacement over radius.
 
-The tangent has rows of three forces per node in place of the loads on the radial displacements of `exudyn_ehd.joint.tangent.bore`:
-the weights of the film's unknowns in them are ``E^T`` times the vertex forces' derivatives (`TractionChange`), and one adjoint solve
-each gives their gradients.
+The tangent has rows of three forces per node in place of the loads on the radial displacements of
+`exudyn_ehd.joint.tangent.bore`: the weights of the film's unknowns in them are ``E^T`` times the vertex forces'
+derivatives (`TractionChange`), and one adjoint solve each gives their gradients.
 """
 
 from __future__ import annotations
@@ -70,7 +71,10 @@ class BoreForces:
 
 
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
-    """Slopes in theta and scaled z of fields (n m,): the differences of `exudyn_ehd.film.sensitivity.bore_stencil.gap_slopes`."""
+    """Slopes in theta and scaled z of fields (n m,).
+
+    The differences of `exudyn_ehd.film.sensitivity.bore_stencil.gap_slopes`.
+    """
     n, m = grid.shape
     at = np.arange(n * m).reshape(n, m)
     half = np.full(n * m, 0.5 / grid.width_x[0])
@@ -182,8 +186,8 @@ class TractionChange:
     def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
         """Change (3, n m) of the vertex forces.
 
-        With changes of the unknowns (count,), of the scaled gap and of the bore's scaled displacement ``moved`` (n m,), and of the
-        speeds (2,).
+        With changes of the unknowns (count,), of the scaled gap and of the bore's scaled displacement ``moved`` (n
+        m,), and of the speeds (2,).
         """
         out = self.gap * gap + self.speed @ speed
         pressure = np.zeros(gap.size)

@@ -1,8 +1,8 @@
 """Exact tangent of a bearing's wrench: adjoint solves for the load integrals, then the chain rule to the motion.
 
-For an integral S = sum w p with the film's residual r(p, H, H_t, v) = 0: ``dS = -lam . dr`` at fixed p with ``A^T lam = w``, plus what depends on
-the motion directly. Four integrals carry force and moments; shear needs a fifth where fill or pressure enter it, and gap terms
-and uneven drag together two more.
+For an integral S = sum w p with the film's residual r(p, H, H_t, v) = 0: ``dS = -lam . dr`` at fixed p with ``A^T lam
+= w``, plus what depends on the motion directly. Four integrals carry force and moments; shear needs a fifth where
+fill or pressure enter it, and gap terms and uneven drag together two more.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.ndarray | None = None) -> np.ndarray:
     """d wrench / d motion (6, 10) of a solved film in SI units.
 
-    With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it follows a slow motion,
-    ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient`` (k, 10) of the integrals of
-    `adjoint_rows`, if they are known already.
+    With ``slow_motion`` the columns of the rates include what a liner's deflection adds to the squeeze when it
+    follows a slow motion, ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient``
+    (k, 10) of the integrals of `adjoint_rows`, if they are known already.
     """
     p, w, scales, through_film = film.parts, film.journal, film.scales, None
     if gradient is None and _pressed_contact(film):
@@ -49,16 +49,28 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
         ends = _end_gradient(film)
     out = np.empty((6, MOTION_SIZE))
     wrench_gradient(
-        ds, dc, extra, ends, w.pose, film.loads.integrals, p.pose_scale, p.grid.reference_length, scales.force,
-        scales.shear, w.omega, w.axial_speed, film.loads.couette, out,
-    )  # fmt: skip
+        ds,
+        dc,
+        extra,
+        ends,
+        w.pose,
+        film.loads.integrals,
+        p.pose_scale,
+        p.grid.reference_length,
+        scales.force,
+        scales.shear,
+        w.omega,
+        w.axial_speed,
+        film.loads.couette,
+        out,
+    )
     if film.pressing is not None:
         _add_contacts(film, film.pressing, out)
     return out if through_film is None else out + through_film
 
 
 def film_gradient(film: SolvedFilm, slow_motion: bool, weights: np.ndarray | None = None) -> np.ndarray:
-    """Gradients (k, 10) of the film's integrals, or of their sums with ``weights`` (k, integrals), to (scaled pose, scaled rates, vx, vz)."""
+    """Gradients (k, 10) of the integrals, or of their sums with ``weights``, to (scaled pose and rates, vx, vz)."""
     p, s = film.parts, film.solver
     rows = adjoint_rows(film)
     if weights is not None:
@@ -86,7 +98,10 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
 
 
 def _following_deflection(film: SolvedFilm, solver: NonlinearFilmSolver, by_rate: np.ndarray) -> np.ndarray:
-    """Gradient (k, 4) to the scaled rates through the deflection's rate: a second adjoint solve, of ``by_rate`` (k, n, m) times beta."""
+    """Gradient (k, 4) to the scaled rates through the deflection's rate.
+
+    A second adjoint solve, of ``by_rate`` (k, n, m) times beta.
+    """
     p, w, z = film.parts, solver.work, film.grid.z
     rows = (by_rate * solver.deflection_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
     sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
@@ -117,11 +132,13 @@ def swept_derivatives(film: SolvedFilm) -> tuple[LinkDerivatives, np.ndarray, np
 
 
 def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False) -> Sensitivities:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through the fields of sensitivities, which come back; for any film."""
+    """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, for any film."""
     p, z = film.parts, film.grid.z
     sens = p.solver.sensitivities(lam)
-    if film.limited is not None:
-        _chain_limiter(film, sens)
+    f = film.limited
+    if f is not None:
+        rate = sens.cell if sens.rate is None else sens.rate
+        chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, p.cos_x, p.sin_x, z, pose)
     contract_pose(sens.face, p.cos_f, p.sin_f, z, pose)
@@ -193,7 +210,10 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
 
 
 def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
-    """Weights of the Couette integral at the unknowns: through pressure where they are pressures, through fill elsewhere."""
+    """Weights of the Couette integral at the unknowns.
+
+    Through pressure where they are pressures, through fill elsewhere.
+    """
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
     ratio = s.ones if oil.ratio is None else oil.ratio
     ratio_q = s.nothing if oil.ratio_q is None else oil.ratio_q
@@ -217,9 +237,16 @@ def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:
             dc[8] += float(np.sum(density * oil.ratio_v))
         else:
             dc[8] += couette_gradient_ratio(
-                s.H, g.weight, oil.ratio, oil.ratio_h, oil.ratio_v, s.work.active, g.fixed, s.closure.cavity_shear,
+                s.H,
+                g.weight,
+                oil.ratio,
+                oil.ratio_h,
+                oil.ratio_v,
+                s.work.active,
+                g.fixed,
+                s.closure.cavity_shear,
                 gradient[0],
-            )  # fmt: skip
+            )
     elif s.closure.conserves_mass:
         gradient[0] = -g.weight * s.fill / s.H**2
     else:
@@ -242,27 +269,30 @@ def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
     return None if film.limited is None else film.limited.slope
 
 
-def _chain_limiter(film: SolvedFilm, sens: Sensitivities) -> None:
-    """From the film's gap to the true gap."""
-    f = film.limited
-    assert f is not None
-    rate = sens.cell if sens.rate is None else sens.rate
-    chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
-
-
 def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
     """Add the gradient of the contacts' wrench, pressures and friction, to ``out`` (6, 10), SI units."""
     p, g, motion = film.parts, film.grid, film.journal.motion
     for k, (friction, transition) in enumerate(f.friction):
         if f.integrals[k, 4] != 0.0:
             contact_tangent(
-                f.slope[k], g.weight, p.cos_x, p.sin_x, g.z, motion, p.pose_scale, friction, transition,
-                g.reference_length, f.integrals[k], f.gradients, out,
-            )  # fmt: skip
+                f.slope[k],
+                g.weight,
+                p.cos_x,
+                p.sin_x,
+                g.z,
+                motion,
+                p.pose_scale,
+                friction,
+                transition,
+                g.reference_length,
+                f.integrals[k],
+                f.gradients,
+                out,
+            )
 
 
 def _end_gradient(film: SolvedFilm) -> np.ndarray:
-    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a liner's contact acts on the gap."""
+    """Gradient (4,) of the ends' pressure force to the scaled pose, where a limiter or a contact acts on the gap."""
     slope = _film_gap_slope(film)
     assert slope is not None
     lower, upper = (film.scales.ends * film.grid.width_x[0]).tolist()

@@ -32,7 +32,7 @@ def audit(made, eps=0.5, speed=SPEED, **where):
 
 
 def check_readable(found):
-    """No nan anywhere, one line per finding, advice for whatever is neglected or in vain."""
+    """No nan anywhere, one line per finding, advice for whatever is neglected or unneeded."""
     text = str(found)
     assert "nan" not in text
     assert all(math.isfinite(f.value) and f.value >= 0.0 for f in found.findings)
@@ -40,8 +40,8 @@ def check_readable(found):
     assert len(table) == 2 + len(found.findings)
     for f in found.findings:
         assert f.effect in text and f.indicator in text
-        assert not (f.in_vain and f.matters)
-    for f in (*found.neglected, *found.in_vain):
+        assert not (f.unneeded and f.matters)
+    for f in (*found.neglected, *found.unneeded):
         assert f.advice and f"{f.effect}: {f.advice}" in text
     # a line of the table fits a wide terminal
     assert max(map(len, table)) < 140
@@ -115,9 +115,9 @@ def test_supply_asks_for_mass_conservation():
         in audit(bearing(supply=(groove,)), eps=0.8).neglected
     )
     elrod = ehd.ElrodAdams()
-    assert not audit(bearing(supply=(groove,), cavitation=elrod), eps=0.8).in_vain
+    assert not audit(bearing(supply=(groove,), cavitation=elrod), eps=0.8).unneeded
     still = audit(bearing(end_pressures=SUPPLIED, cavitation=elrod), eps=0.8)
-    assert still["mass conservation"].in_vain
+    assert still["mass conservation"].unneeded
 
 
 def test_elasticity_of_a_liner_given_and_asked_about():
@@ -130,7 +130,7 @@ def test_elasticity_of_a_liner_given_and_asked_about():
     assert named["elasticity"].matters and named["elasticity"].on and not named["elasticity"].advice
     # a soft liner lowers the peak and widens the gap: columns under the rigid film's pressure overestimate
     assert 0.1 < named["elasticity"].value < asked["elasticity"].value
-    assert audit(bearing(bush=stiff), eps=0.5)["elasticity"].in_vain
+    assert audit(bearing(bush=stiff), eps=0.5)["elasticity"].unneeded
     with pytest.raises(ehd.InputError, match="liner must be ElasticLiner"):
         audit(bearing(), liner=2e11)
 
@@ -148,11 +148,11 @@ ON = {
 
 
 @pytest.mark.parametrize("effect", list(ON))
-def test_effects_that_do_not_matter_are_in_vain(effect):
+def test_effects_that_do_not_matter_are_unneeded(effect):
     # slow and nearly concentric: no pressure, no heat, a thick film
     found = audit(bearing(**ON[effect]), eps=0.05, speed=0.2, measure_time=True)
     finding = found[effect]
-    assert finding.on and finding.in_vain and finding in found.in_vain
+    assert finding.on and finding.unneeded and finding in found.unneeded
     assert finding.time_share is not None and 0.0 <= finding.time_share < 1.0
     check_readable(found)
     assert f"{finding.time_share:.0%}" in str(found)
@@ -170,10 +170,10 @@ HARD = {
 
 
 @pytest.mark.parametrize("effect", list(HARD))
-def test_effects_that_matter_are_neither_neglected_nor_in_vain(effect):
+def test_effects_that_matter_are_neither_neglected_nor_unneeded(effect):
     found = audit(bearing(**ON[effect]), **HARD[effect])
     assert found[effect].on and found[effect].matters
-    assert found[effect] not in (*found.neglected, *found.in_vain)
+    assert found[effect] not in (*found.neglected, *found.unneeded)
 
 
 def test_profile_matters_in_thin_films():
@@ -239,7 +239,7 @@ def record(made, motion, time):
     names = [f.name for f in dataclasses.fields(RecordedSteps)][3:]
     return RecordedSteps(
         time=time, motion=motion, force=force, **{n: np.array([row.get(n, np.nan) for row in q]) for n in names}
-    )  # fmt: skip
+    )
 
 
 def orbit(n, radius=0.6, whirl=150.0):
@@ -304,7 +304,7 @@ def test_advised_grids_carry_the_load(n_theta, eps, measured):
     advised = int(audit(made, eps=eps)["grid around"].advice.split("n_theta=")[1].split(" ")[0].rstrip("."))
     followed = bearing(film=ehd.FiniteLength(n_theta=advised, n_z=12))
     finding = audit(followed, eps=eps)["grid around"]
-    assert not finding.matters and not finding.in_vain
+    assert not finding.matters and not finding.unneeded
     fine = load(bearing(film=ehd.FiniteLength(n_theta=512, n_z=12)), eps)
     # the threshold stands for 1 % of the load
     measured("load against 512 columns", abs(load(followed, eps) / fine - 1.0), 0.01)

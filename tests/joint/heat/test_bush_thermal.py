@@ -19,9 +19,14 @@ EFFECTS = {
 
 def solve(bush, thermal=None, lubricant=OIL):
     bearing = ehd.JournalBearing(
-        journal_radius=0.03, length=0.066, radial_clearance=30e-6, lubricant=lubricant, bush=bush, thermal=thermal,
+        journal_radius=0.03,
+        length=0.066,
+        radial_clearance=30e-6,
+        lubricant=lubricant,
+        bush=bush,
+        thermal=thermal,
         film=ehd.FiniteLength(n_theta=48, n_z=8),
-    )  # fmt: skip
+    )
     return ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.8, tilt=(0.0, 5e-5))
 
 
@@ -55,9 +60,14 @@ def test_a_stiff_bush_tends_to_the_rigid_bore_at_first_order(effect):
 
 def test_equilibrium_takes_both():
     bearing = ehd.JournalBearing(
-        journal_radius=0.03, length=0.066, radial_clearance=30e-6, lubricant=OIL, bush=modal(2.1e11), thermal=EFFECTS["lumped"],
+        journal_radius=0.03,
+        length=0.066,
+        radial_clearance=30e-6,
+        lubricant=OIL,
+        bush=modal(2.1e11),
+        thermal=EFFECTS["lumped"],
         film=ehd.FiniteLength(n_theta=48, n_z=8),
-    )  # fmt: skip
+    )
     eq = ehd.equilibrium(bearing, speed=300.0, load=(0.0, -30e3))
     assert np.allclose(eq.film.force[:2], (0.0, 30e3), atol=1e-4)
     cold = ehd.equilibrium(dataclasses.replace(bearing, thermal=None), speed=300.0, load=(0.0, -30e3))

@@ -1,4 +1,6 @@
-"""Heat balances of films whose density follows the pressure: masses, dissipated power, the incompressible limit, exact tangents.
+"""Heat balances of films whose density follows the pressure.
+
+Masses, dissipated power, the incompressible limit, exact tangents.
 
 The oil is ten times softer than mineral oil where an error in the density's share must show.
 """
@@ -19,9 +21,11 @@ SUPPLY, OMEGA, STEP = 320.0, 300.0, 1e-4
 SOFT = ehd.DowsonHigginson(coefficient=6e-9)
 BARUS = ehd.BarusPressure(coefficient=1e-8)
 OIL = ehd.Lubricant(
-    temperature_law=ehd.ReynoldsTemperature(point=(SUPPLY, 0.02), coefficient=0.03), temperature=SUPPLY, density=870.0,
+    temperature_law=ehd.ReynoldsTemperature(point=(SUPPLY, 0.02), coefficient=0.03),
+    temperature=SUPPLY,
+    density=870.0,
     specific_heat=2000.0,
-)  # fmt: skip
+)
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
 LUMPED = ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01)
 FIELD = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0)
@@ -37,9 +41,14 @@ REST = np.array([0.5 * C, 0.3 * C, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, OMEGA, 0.0])
 def make(thermal, law=SOFT, pressure_law=None, **options):
     oil = dataclasses.replace(OIL, density_law=law, pressure_law=pressure_law)
     values = {
-        "journal_radius": R, "length": L, "radial_clearance": C, "lubricant": oil, "thermal": thermal,
-        "end_pressures": (1e5, 4e5), "film": ehd.FiniteLength(n_theta=48, n_z=8),
-    }  # fmt: skip
+        "journal_radius": R,
+        "length": L,
+        "radial_clearance": C,
+        "lubricant": oil,
+        "thermal": thermal,
+        "end_pressures": (1e5, 4e5),
+        "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }
     return build_model(ehd.JournalBearing(**(values | options)))
 
 
@@ -77,7 +86,10 @@ def test_heat_in_is_carried_out_conducted_and_stored(thermal, cavitation, pressu
 @pytest.mark.parametrize("step", [0.0, STEP])
 @pytest.mark.parametrize("cavitation", [CLOSURES[0], *CLOSURES[2:]], ids=lambda c: type(c).__name__)
 def test_flows_are_the_mass_flows_of_the_solved_film(cavitation, step):
-    """The flows that carry heat balance the mass at every vertex of the unbroken film; 1e-11 of the flow: the film's own accuracy."""
+    """The flows that carry heat balance the mass at every vertex of the unbroken film.
+
+    1e-11 of the flow: the film's own accuracy.
+    """
     model = make(FIELD, cavitation=cavitation)
     history, _ = run(model)
     evaluation = model.evaluate(MOTION, history if step else None, step)
@@ -116,10 +128,12 @@ def dissipation(film):
 
 @CLOSURE
 def test_lumped_heat_is_the_dissipated_power(cavitation):
-    """Power of the motion less the work on compressible oil; second order in the grid, first where the rupture line is not resolved.
+    """Power of the motion less the work on compressible oil.
 
-    High end pressures, so that the elastic energy counts: without it 4 % would be left on any grid. On the coarser one 1 % is left
-    (Gumbel 1.2 %), as much as of incompressible oil.
+    Second order in the grid, first where the rupture line is not resolved.
+
+    High end pressures, so that the elastic energy counts: without it 4 % would be left on any grid. On the coarser
+    one 1 % is left (Gumbel 1.2 %), as much as of incompressible oil.
     """
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):
@@ -133,7 +147,10 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
 
 @pytest.mark.parametrize("law", [ehd.DowsonHigginson(), SOFT], ids=["oil", "soft"])
 def test_lumped_heat_is_the_dissipated_power_while_the_film_is_compressed(law):
-    """From a flooded start at ambient density: without the energy that stays in the oil up to a sixth would be left on any grid."""
+    """From a flooded start at ambient density.
+
+    Without the energy that stays in the oil up to a sixth would be left on any grid.
+    """
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):
         film = ehd.FiniteLength(n_theta=n_theta, n_z=n_z)
@@ -150,7 +167,7 @@ def test_lumped_heat_is_the_dissipated_power_while_the_film_is_compressed(law):
 
 
 def test_field_heat_is_the_dissipated_power():
-    """Vertices' areas for the weights of the quadrature, drops of the flow work for drops of pressure over a mean density: second order."""
+    """Areas for the quadrature's weights, drops of the flow work for those of pressure: second order."""
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):
         model = make(FIELD, pressure_law=BARUS, film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
@@ -180,7 +197,8 @@ def test_vanishing_compressibility_recovers_the_incompressible_film(thermal, cav
 @CLOSURE
 @PRESSURE
 def test_tangent_is_exact(thermal, cavitation, pressure_law):
-    """Largest difference to fourth-order central differences, relative to the rows, of several steps (moving rupture lines); 1e-6:
+    """Largest difference to fourth-order central differences, relative to the rows, of several steps (moving rupture
+    lines); 1e-6:
     differences of a film solved to 1e-14."""
     model = make(thermal, pressure_law=pressure_law, cavitation=cavitation)
     history, _ = run(model)
@@ -208,7 +226,8 @@ def test_viscosity_follows_the_temperature_whatever_was_evaluated_before(cavitat
     lumped = make(LUMPED, pressure_law=pressure_law, cavitation=cavitation)
     field = make(FIELD, pressure_law=pressure_law, cavitation=cavitation)
     for model, ones in ((lumped, 1.0), (field, np.ones(field.grid.shape))):
-        # the film at other temperatures before leaves a start for Newton's method, and pressures at which the law is known
+        # the film at other temperatures before leaves a start for Newton's method, and pressures at which the law is
+        # known
         for T in (300.0, 340.0, 350.0, 340.0):
             wrench = model.evaluate(MOTION, History(temperature=T * ones)).wrench
             if T == 340.0:

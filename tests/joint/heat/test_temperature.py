@@ -1,6 +1,7 @@
 """Film temperature against closed forms (Petroff heating, isothermal walls), its balance, its order, its steady state.
 
-One bearing throughout: R = 25 mm, L = 50 mm, c = 25 um. Couette heat per area of the concentric film: mu (R omega)^2 / c.
+One bearing throughout: R = 25 mm, L = 50 mm, c = 25 um. Couette heat per area of the concentric film: mu (R omega)^2
+/ c.
 """
 
 import dataclasses
@@ -64,7 +65,10 @@ def run(model, at, step, steps, history=None):
     "thermal", [ehd.LumpedThermal(supply_temperature=SUPPLY), ehd.FilmEnergy(supply_temperature=SUPPLY)]
 )
 def test_adiabatic_petroff_heating_in_time(thermal):
-    """No through-flow, no conduction: exp(beta (T - T0)) = 1 + beta P0 t / (rho c_p V), approached with the first order."""
+    """No through-flow, no conduction.
+
+    Exp(beta (T - T0)) = 1 + beta P0 t / (rho c_p V), approached with the first order.
+    """
     model, at, end, errors = build_model(bearing(thermal)), motion(), 0.02, []
     volume = 2.0 * math.pi * R * L * C
     exact = math.log(1.0 + BETA * petroff() * end / (CAPACITY * volume)) / BETA
@@ -78,7 +82,10 @@ def test_adiabatic_petroff_heating_in_time(thermal):
 
 
 def test_adiabatic_petroff_heating_along_the_bearing():
-    """Concentric journal that pulls oil through at h w / 2: exp(beta (T - T_s)) = 1 + beta mu_s v^2 z / (rho c_p h q)."""
+    """Concentric journal that pulls oil through at h w / 2.
+
+    Exp(beta (T - T_s)) = 1 + beta mu_s v^2 z / (rho c_p h q).
+    """
     w, errors = 2.0, []
     q = 0.5 * C * w
     for n_z in (40, 80):
@@ -111,12 +118,18 @@ def test_lumped_steady_state_is_petroff_against_the_housing():
 
 @pytest.mark.parametrize("sides", [(4e4, 0.0), (1e4, 3e4)])
 def test_film_between_walls_without_through_flow(sides):
-    """U_b (T - T_b) + U_j (T - T_j) = mu(T) v^2 / h at every point of a concentric film; tends to the walls as U grows."""
+    """U_b (T - T_b) + U_j (T - T_j) = mu(T) v^2 / h at every point of a concentric film.
+
+    Tends to the walls as U grows.
+    """
     bush, journal = sides
     thermal = ehd.FilmEnergy(
-        supply_temperature=SUPPLY, bush_coefficient=bush, bush_temperature=330.0, journal_coefficient=journal,
+        supply_temperature=SUPPLY,
+        bush_coefficient=bush,
+        bush_temperature=330.0,
+        journal_coefficient=journal,
         journal_temperature=310.0,
-    )  # fmt: skip
+    )
     T = ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0).temperature
     heat = LAW.viscosity(T, 870.0) * (R * OMEGA) ** 2 / C
     np.testing.assert_allclose(
@@ -127,13 +140,18 @@ def test_film_between_walls_without_through_flow(sides):
 
 @pytest.mark.parametrize(("bush", "journal"), [(1e9, 1e9), (1e9, 0.0), (0.0, 2e3), (1e3, 3e3), (2e3, 1e9)])
 def test_conduction_across_a_film_without_through_flow(bush, journal):
-    """Uniform heat between two walls: the exact parabola, its mean, from k T'' = -heat / h with k T' = U_b (T - T_b) at y = 0 and
+    """Uniform heat between two walls: the exact parabola, its mean, from k T'' = -heat / h with k T' = U_b (T - T_b)
+    at y = 0 and
     -k T' = U_j (T - T_j) at y = h, for walls of different temperatures."""
     k, T_b, T_j = 0.13, 331.0, 315.0
     thermal = ehd.FilmEnergy(
-        supply_temperature=SUPPLY, bush_coefficient=bush, bush_temperature=T_b, journal_coefficient=journal,
-        journal_temperature=T_j, conductivity=k,
-    )  # fmt: skip
+        supply_temperature=SUPPLY,
+        bush_coefficient=bush,
+        bush_temperature=T_b,
+        journal_coefficient=journal,
+        journal_temperature=T_j,
+        conductivity=k,
+    )
     T = ehd.steady(bearing(thermal), speed=OMEGA, eccentricity_ratio=0.0).temperature
     heat = float(LAW.viscosity(T[0, 0], 870.0)) * (R * OMEGA) ** 2 / C
     # T = a + b y - heat y^2 / (2 k h)
@@ -177,7 +195,7 @@ def test_isothermal_walls_are_the_limit_of_strong_cooling():
 )
 @pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 4e5)])
 def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
-    """Heat in = carried out + conducted + stored, at every accepted step with squeeze and through-flow, and in the steady state."""
+    """Heat in = carried out + conducted + stored, at every accepted step with squeeze, and in the steady state."""
     model = build_model(bearing(thermal, cavitation=cavitation, end_pressures=ends))
     history, worst = run(model, motion(0.6, vx=2e-3, vy=-3e-3), 1e-4, 20)
     assert worst < BALANCE
@@ -210,10 +228,12 @@ def test_field_heat_is_the_mechanical_power():
     for n_theta, n_z in ((48, 8), (192, 32)):
         model = build_model(
             bearing(
-                ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=5e3), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
-                cavitation=ehd.FullSommerfeld(), end_pressures=(0.0, 0.0),
+                ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=5e3),
+                film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+                cavitation=ehd.FullSommerfeld(),
+                end_pressures=(0.0, 0.0),
             )
-        )  # fmt: skip
+        )
         at = motion(0.6, vx=2e-3, vy=-3e-3)
         evaluation = model.evaluate(at)
         film = evaluation.film

@@ -31,14 +31,21 @@ def solid(t):
 
 def solve(bush):
     bearing = ehd.JournalBearing(
-        journal_radius=R, length=L, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=9e-3),
-        film=ehd.FiniteLength(n_theta=96, n_z=16), bush=bush,
-    )  # fmt: skip
+        journal_radius=R,
+        length=L,
+        radial_clearance=30e-6,
+        lubricant=ehd.Lubricant(viscosity=9e-3),
+        film=ehd.FiniteLength(n_theta=96, n_z=16),
+        bush=bush,
+    )
     return ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.6)
 
 
 def test_thin_solid_bush_is_a_liner():
-    """Columns leave out what neighbours do, at the edges and where the pressure bends: less of it the thinner the layer."""
+    """Columns leave out what neighbours do, at the edges and where the pressure bends.
+
+    Less of it the thinner the layer.
+    """
     rigid = solve(None)
     peak, gap = [], []
     for t in (8e-3, 4e-3, 2e-3):

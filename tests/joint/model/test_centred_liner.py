@@ -14,10 +14,15 @@ CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAda
 
 def bearing(cavitation, **options):
     return ehd.JournalBearing(
-        journal_radius=0.02, length=0.02, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.015),
-        film=ehd.FiniteLength(n_theta=48, n_z=4), cavitation=cavitation,
-        bush=ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e9), **options,
-    )  # fmt: skip
+        journal_radius=0.02,
+        length=0.02,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.015),
+        film=ehd.FiniteLength(n_theta=48, n_z=4),
+        cavitation=cavitation,
+        bush=ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e9),
+        **options,
+    )
 
 
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
@@ -34,7 +39,8 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
         model = build_model(made)
         found = model.evaluate_steady(motion) if k % 2 else model.evaluate(motion)
         assert found.status is ehd.Status.CONVERGED
-        # at most the long bearing's force per offset, 12 pi mu L (R/c)^3; pressures below 1e-9 of the speed's count as rounding
+        # at most the long bearing's force per offset, 12 pi mu L (R/c)^3; pressures below 1e-9 of the speed's count
+        # as rounding
         offset, rate = np.hypot(*motion[:2]), np.hypot(*motion[4:6])
         long = 12.0 * np.pi * 0.015 * 0.02 * (0.02 / CLEARANCE) ** 3
         rounding = 1e-9 * 0.015 * 300.0 * (0.02 / CLEARANCE) ** 2 * 0.02 * 0.02
@@ -43,7 +49,7 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
 
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
 def test_slight_films_rupture_without_turning_in_circles(contact):
-    """Steps are measured by a pressure that the speed could make, not by the rounding next to it, which took up to 400 solves."""
+    """Steps are measured by a pressure that the speed could make, not by the rounding next to it (400 solves)."""
     motion = np.zeros(10)
     motion[0], motion[8] = 0.02548220424684501 * CLEARANCE, -123.07779066684151
     found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)

@@ -27,22 +27,27 @@ EFFECTS = {
     "barus, carreau": {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=BARUS, shear_law=CARREAU)},
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=SIGMA)},
     "energy": {
-        "lubricant": ehd.Lubricant(viscosity=MU, **HOT), "thermal": ehd.FilmEnergy(supply_temperature=320.0),
+        "lubricant": ehd.Lubricant(viscosity=MU, **HOT),
+        "thermal": ehd.FilmEnergy(supply_temperature=320.0),
     },
     "barus, lumped": {
         "lubricant": ehd.Lubricant(viscosity=MU, pressure_law=BARUS, **HOT),
         "thermal": ehd.LumpedThermal(supply_temperature=320.0),
     },
-}  # fmt: skip
+}
 CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
 every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
 
 
 def bearing(**options):
     plain = {
-        "journal_radius": R, "length": L, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=MU), "bush": LINER,
+        "journal_radius": R,
+        "length": L,
+        "radial_clearance": C,
+        "lubricant": ehd.Lubricant(viscosity=MU),
+        "bush": LINER,
         "film": ehd.FiniteLength(n_theta=48, n_z=8),
-    }  # fmt: skip
+    }
     return ehd.JournalBearing(**(plain | options))
 
 
@@ -55,7 +60,10 @@ def motion(eps, angle=0.7, speed=SPEED, rate=0.0):
 
 
 def conductance(effect, h, p):
-    """h^3 over the viscosity's ratio across the sliding, times the flow factor, from the textbook formulas; h in m, p in Pa."""
+    """h^3 over the viscosity's ratio across the sliding, times the flow factor, from the textbook formulas.
+
+    H in m, p in Pa.
+    """
     ratio = 1.0
     if "barus" in effect:
         ratio *= np.exp(BARUS.coefficient * p)
@@ -73,7 +81,9 @@ def conductance(effect, h, p):
 
 @pytest.mark.parametrize("effect", ["barus", "roelands", "carreau", "barus, carreau", "rough"])
 def test_flow_through_a_soft_annulus(effect):
-    """Concentric, pressed through from end to end: ``q L = 2 pi R / (12 mu) int g(h(p), p) dp`` with ``h = c + K p``, whatever the course of p.
+    """Concentric, pressed through from end to end.
+
+    ``q L = 2 pi R / (12 mu) int g(h(p), p) dp`` with ``h = c + K p``, whatever the course of p.
 
     The gap opens by a fifth, the oil thickens by half. 5e-4 on 8 intervals, and second order.
     """
@@ -106,15 +116,19 @@ def test_stiff_liner_approaches_the_rigid_bore_at_first_order(closure, effect):
 
 
 WEAK = {
-    "barus": [{"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.BarusPressure(coefficient=a))} for a in (2e-12, 1e-12)],
+    "barus": [
+        {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.BarusPressure(coefficient=a))}
+        for a in (2e-12, 1e-12)
+    ],
     "roelands": [
-        {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.RoelandsPressure(coefficient=a))} for a in (2e-12, 1e-12)
+        {"lubricant": ehd.Lubricant(viscosity=MU, pressure_law=ehd.RoelandsPressure(coefficient=a))}
+        for a in (2e-12, 1e-12)
     ],
     "carreau": [
         {"lubricant": ehd.Lubricant(viscosity=MU, shear_law=ehd.CarreauShear(relaxation_time=2e-6, exponent=1.0 - a))}
         for a in (2e-5, 1e-5)
     ],
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("law", WEAK)
@@ -132,7 +146,10 @@ def test_weak_laws_recover_the_constant_oil(closure, law):
 
 
 def test_thick_oil_opens_its_gap():
-    """The classical pair: piezoviscosity raises the pressure of a rigid bore until it has no film, on a liner it raises the film."""
+    """The classical pair.
+
+    Piezoviscosity raises the pressure of a rigid bore until it has no film, on a liner it raises the film.
+    """
     found = {}
     for bush in (None, LINER):
         for law in (None, BARUS):
@@ -194,7 +211,10 @@ def test_average_gap_is_the_nominal_one_here():
 @pytest.mark.parametrize("contact", [False, True])
 @every_closure
 def test_drag_of_unequally_rough_surfaces_on_a_liner(closure, contact):
-    """Tangent against central differences: the pressure drags the rougher surface more, by a gap that follows the pressure; 1e-6."""
+    """Tangent against central differences.
+
+    The pressure drags the rougher surface more, by a gap that follows the pressure; 1e-6.
+    """
     options = {"roughness": ehd.PatirCheng(composite_roughness=SIGMA, journal_share=0.9)}
     if contact:
         options["asperity"] = ehd.GreenwoodTripp(composite_roughness=SIGMA, composite_modulus=1e10)

@@ -1,4 +1,4 @@
-"""The power that a film takes out of the motion against the heat of its flows, summed link by link, on every kind of bore."""
+"""The power that a film takes out of the motion against the heat of its flows, link by link, on every kind of bore."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ BORES = {
     "modal": ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2),
     "nodal": ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
 }
-# What is left on 48 x 8 and what the finer grid leaves of it: second order; first order where the rupture line is not resolved
-# (Gumbel cuts it off, Elrod-Adams moves the fill upwind).
+# What is left on 48 x 8 and what the finer grid leaves of it: second order; first order where the rupture line is not
+# resolved (Gumbel cuts it off, Elrod-Adams moves the fill upwind).
 CLOSURES = {
     "swift": (ehd.SwiftStieber(), 0.011, 0.3),
     "swift under tension": (ehd.SwiftStieber(cavity_pressure=-3e5), 0.011, 0.3),
@@ -51,9 +51,15 @@ def heat_and_work(film):
 def moving(bore, closure, ends, n_theta, n_z):
     """A film under a bore and a journal that move, and its power loss, W."""
     bearing = ehd.JournalBearing(
-        journal_radius=R, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), bush=BORES[bore],
-        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), cavitation=closure, end_pressures=ends,
-    )  # fmt: skip
+        journal_radius=R,
+        length=0.066,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=MU),
+        bush=BORES[bore],
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+        cavitation=closure,
+        end_pressures=ends,
+    )
     model, motion, history, step = build_model(bearing), MOTION, None, 0.0
     if bore in ("modal", "nodal"):
         q = model.evaluate_steady(motion).bore.coordinates
@@ -62,7 +68,8 @@ def moving(bore, closure, ends, n_theta, n_z):
         history = model.initial_history(motion)
         history, step = dataclasses.replace(history, deflection=0.99 * history.deflection), 1e-3
         if closure.conserves_mass:
-            # every gap full of oil before the step, in which the surfaces' approach and the liner's rate are those of the film
+            # every gap full of oil before the step, in which the surfaces' approach and the liner's rate are those of
+            # the film
             s = model.solver
             history = dataclasses.replace(history, mass=s.H - step * s.H_t - 0.01 * s.deflection)
     evaluation = model.evaluate(motion, history, step)
@@ -97,17 +104,25 @@ def test_power_loss_is_the_heat_of_the_flows_and_the_work_on_the_oil(closure, bo
     ids=["wall", "asperities"],
 )
 def test_power_into_a_liner_by_contact(contact):
-    """A journal pressed into its liner through next to no oil: what it puts in beside what the liner stores is the contact's own energy.
+    """A journal pressed into its liner through next to no oil.
 
-    The contact's energy over the step from its pressure at both ends and the middle of the gap's change (Simpson). The liner's share is
-    backward Euler: first order in the step, halved with it, and many times larger than what is left.
+    What it puts in beside what the liner stores is the contact's own energy.
+
+    The contact's energy over the step from its pressure at both ends and the middle of the gap's change (Simpson).
+    The liner's share is backward Euler: first order in the step, halved with it, and many times larger than what is
+    left.
     """
     left = []
     for step in (4e-4, 2e-4):
         bearing = ehd.JournalBearing(
-            journal_radius=R, length=0.066, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=1e-9), bush=BORES["liner"],
-            film=ehd.FiniteLength(n_theta=48, n_z=8), **contact,
-        )  # fmt: skip
+            journal_radius=R,
+            length=0.066,
+            radial_clearance=C,
+            lubricant=ehd.Lubricant(viscosity=1e-9),
+            bush=BORES["liner"],
+            film=ehd.FiniteLength(n_theta=48, n_z=8),
+            **contact,
+        )
         model, before, after = build_model(bearing), np.zeros(10), np.zeros(10)
         before[0] = 1.1 * C
         after[:] = before

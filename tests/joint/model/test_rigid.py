@@ -15,8 +15,12 @@ from exudyn_ehd.joint.model.rigid import BearingModel
 CLOSURES = (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber())
 FILMS = (ehd.FiniteLength(n_theta=48, n_z=8), ehd.ShortBearing(n_theta=48, n_z=8))
 GENERAL = {
-    "eccentricity": (0.4, 0.3), "tilt": (-0.2, 0.15), "velocity": (-0.2, 0.15), "tilt_rate": (0.1, 0.2), "axial": 0.7,
-}  # fmt: skip
+    "eccentricity": (0.4, 0.3),
+    "tilt": (-0.2, 0.15),
+    "velocity": (-0.2, 0.15),
+    "tilt_rate": (0.1, 0.2),
+    "axial": 0.7,
+}
 # Sums in another order: rounding of a few hundred terms with a condition number of the film up to 1e4.
 ROUNDING = 1e-10
 
@@ -87,8 +91,8 @@ class TestSymmetries:
 def test_journal_and_housing_torque_differ_by_the_moment_of_the_force(make_bearing, make_motion, closure, contact):
     """Torque of the film about the journal's own axis + torque on the bush about its own = the force's moment, e x F.
 
-    Own axis of a tilted journal: through (x + bx z, y + by z), so that the force at z has the arm of that z; the arms of the
-    moments Mx, My are the tilts.
+    Own axis of a tilted journal: through (x + bx z, y + by z), so that the force at z has the arm of that z; the arms
+    of the moments Mx, My are the tilts.
     """
     bearing = make_bearing(1.0, cavitation=closure, contact=contact)
     for state in (GENERAL, {"eccentricity": (0.7, -0.2)}, {"eccentricity": (0.2, 0.5), "speed": -2.0}):
@@ -103,10 +107,12 @@ def test_journal_and_housing_torque_differ_by_the_moment_of_the_force(make_beari
 
 
 def test_axial_force_is_half_of_the_pressure_on_the_gap(make_bearing, make_motion):
-    """Concentric, no spin: Couette shear ``-mu w A / c``, and from the end pressures the shear pi R c dp on each surface.
+    """Concentric, no spin.
 
-    The wrench on the journal is the opposite of the bush's, ``tau = mu w / h - (h / 2) dp/dz``: its end-pressure part is the
-    bush's shear with the opposite sign, which counts the pressure on the film's two end faces to the journal.
+    Couette shear ``-mu w A / c``, and from the end pressures the shear pi R c dp on each surface.
+
+    The wrench on the journal is the opposite of the bush's, ``tau = mu w / h - (h / 2) dp/dz``: its end-pressure part
+    is the bush's shear with the opposite sign, which counts the pressure on the film's two end faces to the journal.
     """
     bearing = make_bearing(1.0, end_pressures=(1e5, 3e5), cavitation=ehd.FullSommerfeld())
     R, L, c = bearing.journal_radius, bearing.length, bearing.radial_clearance
@@ -138,7 +144,9 @@ def test_a_film_at_rest_has_no_pressure_and_still_damps(make_bearing, make_motio
 
 @pytest.mark.parametrize("closure", CLOSURES)
 def test_damping_at_rest_is_the_whole_film_s(make_bearing, make_motion, closure):
-    """The tangent at rest is that of the film without cavitation; a slow motion of a concentric journal meets half of it.
+    """The tangent at rest is that of the film without cavitation.
+
+    A slow motion of a concentric journal meets half of it.
 
     With Gumbel's condition exactly half; Swift-Stieber's film reaches beyond the closing half (7 % more at L/D = 1).
     """
@@ -199,7 +207,8 @@ def test_a_wall_carries_a_journal_beyond_the_bore(make_bearing, make_motion):
 def test_power_loss_is_the_dissipation_of_the_film(make_bearing, make_motion, eccentricity, n_theta):
     """Mechanical power into the film = dissipation ``sum (h^3/12 mu) grad p^2 + sum mu (U^2 + w^2)/h`` at ambient ends.
 
-    Summed independently from the links' pressure drops. Second order in the grid: 0.3 % at 96 x 16, a quarter at 192 x 32.
+    Summed independently from the links' pressure drops. Second order in the grid: 0.3 % at 96 x 16, a quarter at 192
+    x 32.
     """
     film = ehd.FiniteLength(n_theta=n_theta, n_z=n_theta // 6)
     bearing = make_bearing(1.0, cavitation=ehd.FullSommerfeld(), film=film)
@@ -238,7 +247,7 @@ def test_the_ruptured_film_shears_its_share(make_bearing, make_motion):
 
 @pytest.mark.parametrize("state", (GENERAL, {"eccentricity": (0.5, 0.1), "velocity": (0.3, 0.0), "speed": 0.0}))
 def test_mass_balance(make_bearing, make_motion, state):
-    """Leakage = rate at which the clearance shrinks (no source inside a periodic film without cavitation), to rounding."""
+    """Leakage = rate at which the clearance shrinks: a periodic film without cavitation has no source; to rounding."""
     bearing = make_bearing(1.0, cavitation=ehd.FullSommerfeld(), end_pressures=(1e5, 4e5))
     model = build_model(bearing)
     q = model.evaluate(make_motion(bearing, **state)).quantities()
@@ -258,7 +267,10 @@ def test_leakage_of_a_concentric_annulus(make_bearing, make_motion):
 
 
 def test_refined_peak_hides_the_grid(make_bearing, make_motion):
-    """Turning the journal by parts of a column: the largest vertex ripples, the peak of the parabola a third of that."""
+    """Turning the journal by parts of a column.
+
+    The largest vertex ripples, the peak of the parabola a third of that.
+    """
     bearing = make_bearing(1.0, film=ehd.FiniteLength(n_theta=48, n_z=10))
     model, values = build_model(bearing), []
     for angle in np.linspace(0.0, 2 * np.pi / 48, 9):

@@ -112,7 +112,7 @@ def test_absent_supply_is_absent(make_bearing, monkeypatch):
     def forbidden(*args, **kwargs):
         raise AssertionError("called without supply")
 
-    monkeypatch.setattr("exudyn_ehd.joint.model.rigid.SupplyMap", forbidden)
+    monkeypatch.setattr("exudyn_ehd.joint.model.parts.SupplyMap", forbidden)
     monkeypatch.setattr("exudyn_ehd.bearing.check_supply", forbidden)
     model = build_model(make_bearing(film=GRID))
     evaluation = model.evaluate(MOTION, spin=3.0)
@@ -155,11 +155,14 @@ def test_sudden_velocity_in_a_steady_mass_conserving_film(make_bearing):
     for k, velocity in enumerate(((v, 0.0), (0.0, v))):
         forces = [
             ehd.steady(
-                bearing, speed=150.0, eccentricity_ratio=result.eccentricity_ratio, direction=angle,
+                bearing,
+                speed=150.0,
+                eccentricity_ratio=result.eccentricity_ratio,
+                direction=angle,
                 velocity=(s * velocity[0], s * velocity[1]),
             ).force[:2]
             for s in (1.0, -1.0)
-        ]  # fmt: skip
+        ]
         numeric = -(forces[0] - forces[1]) / (2.0 * v)
         # The instant is a step of 1e-9 s, whose mass balance leaves 1e-16 / 1e-9 = 1e-7 of rounding in rates.
         np.testing.assert_allclose(numeric, result.damping[:, k], atol=1e-5 * np.abs(result.damping).max())
@@ -168,9 +171,14 @@ def test_sudden_velocity_in_a_steady_mass_conserving_film(make_bearing):
 def test_groove_up_to_the_ends_feeds_what_leaks_without_mass_conservation():
     groove = ehd.AxialGroove(angle=0.3, width_angle=0.7, pressure=2e5)
     bearing = ehd.JournalBearing(
-        journal_radius=0.05, length=0.1, radial_clearance=5e-5, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=32, n_z=4), cavitation=ehd.FullSommerfeld(), supply=(groove,),
-    )  # fmt: skip
+        journal_radius=0.05,
+        length=0.1,
+        radial_clearance=5e-5,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=4),
+        cavitation=ehd.FullSommerfeld(),
+        supply=(groove,),
+    )
     film = ehd.steady(bearing, speed=100.0, eccentricity_ratio=0.5, direction=1.0)
     # the end's half control volumes next to the groove are full, too
     assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-11)

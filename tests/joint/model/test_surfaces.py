@@ -19,9 +19,12 @@ LINER = ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)
 
 def bearing(**options):
     values = {
-        "journal_radius": R, "length": L, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=0.03),
+        "journal_radius": R,
+        "length": L,
+        "radial_clearance": C,
+        "lubricant": ehd.Lubricant(viscosity=0.03),
         "film": ehd.FiniteLength(n_theta=64, n_z=8),
-    } | options  # fmt: skip
+    } | options
     return ehd.JournalBearing(**values)
 
 
@@ -36,7 +39,10 @@ def contact_only(motion, **options):
 
 
 def brute_force(film, motion):
-    """Wrench of the contact by a loop over vertices: pressure along -e_r, friction against the slip, moments about O."""
+    """Wrench of the contact by a loop over vertices.
+
+    Pressure along -e_r, friction against the slip, moments about O.
+    """
     g, f = film.grid, film.pressing
     v = np.array([R * motion[8], motion[9]])
     slip = v / math.sqrt(float(v @ v) + ASPERITY.transition_speed**2)
@@ -61,7 +67,10 @@ def normal_wrench(integrals, motion):
 
 
 def plain_contact(film, P, motion):
-    """Integrals (5,), friction (6,) and whole wrench (6,) of contact pressures P (n, m) in arrays: the plain reference of the kernels."""
+    """Integrals (5,), friction (6,) and whole wrench (6,) of contact pressures P (n, m) in arrays.
+
+    The plain reference of the kernels.
+    """
     p, g = film.parts, film.grid
     basis = np.stack([p.cos_x[:, None] + 0 * g.z, p.sin_x[:, None] + 0 * g.z])
     basis = np.concatenate([basis, basis * g.z, np.ones((1, *g.shape))])
@@ -119,7 +128,10 @@ def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
 @pytest.mark.parametrize("speed", [SPEED, -SPEED, 0.1, 0.0])
 @pytest.mark.parametrize("tilt", [(0.0, 0.0), (1e-4, -5e-5)])
 def test_contact_wrench_point_by_point(speed, tilt):
-    """Force and moment to rounding; the torque differs by e x F of the pressures, which act on the journal through its axis."""
+    """Force and moment to rounding.
+
+    The torque differs by e x F of the pressures, which act on the journal through its axis.
+    """
     motion = at(0.98, 0.4, speed, axial=0.5, tilt=tilt)
     evaluation = contact_only(motion)
     wrench, film = evaluation.wrench, evaluation.film
@@ -153,7 +165,10 @@ def test_parts_of_contact_and_film_add_up():
     "options", [{"asperity": ASPERITY}, {"contact": ehd.RegularisedWall(onset=1e-6)}], ids=["asperity", "wall"]
 )
 def test_surfaces_that_part_and_meet_again(options):
-    """Nothing of an earlier contact stays behind: every state has the bits of a fresh model, far films those of smooth surfaces."""
+    """Nothing of an earlier contact stays behind.
+
+    Every state has the bits of a fresh model, far films those of smooth surfaces.
+    """
     touching, apart = at(0.99, tilt=(1e-5, 0.0)), at(0.5, 2.0)
     model = build_model(bearing(**options))
     for motion in (touching, apart, touching, apart):
@@ -169,7 +184,10 @@ def test_surfaces_that_part_and_meet_again(options):
 
 
 def test_coulomb_friction_above_the_transition_speed():
-    """Torque mu_b R sum(p dA) in the limit of fast sliding; (v0/v)^2 / 2 = 3e-6 below it, e/R = 1e-3 from the lever arm."""
+    """Torque mu_b R sum(p dA) in the limit of fast sliding.
+
+    (v0/v)^2 / 2 = 3e-6 below it, e/R = 1e-3 from the lever arm.
+    """
     motion = at(0.98)
     evaluation = contact_only(motion)
     normal = evaluation.film.pressing.integrals[0, 4] * R**2
@@ -177,7 +195,9 @@ def test_coulomb_friction_above_the_transition_speed():
 
 
 def test_contact_is_conservative():
-    """Work of the contact's pressures around a closed path of position and tilt vanishes: their potential is a function of the pose.
+    """Work of the contact's pressures around a closed path of position and tilt vanishes.
+
+    Their potential is a function of the pose.
 
     Trapezoidal rule on a smooth closed path of 400 points: converges faster than any power; 1e-6 of the work one way.
     """
@@ -206,7 +226,10 @@ def test_contact_supports_a_standing_journal():
 
 
 def test_wear_grows_by_archard():
-    """One step: k p v dt at every vertex to rounding; two halves of a step from the same state wear the same to first order."""
+    """One step: k p v dt at every vertex to rounding.
+
+    Two halves of a step from the same state wear the same to first order.
+    """
     rate, step = 1e-13, 1e-3
     model = build_model(bearing(asperity=ASPERITY, wear=ehd.ArchardWear(wear_rate=rate)))
     motion = at(0.98, axial=1.0)
@@ -246,15 +269,18 @@ def test_history_enters_at_the_start_of_the_step_only():
 
 
 def test_minimum_gap_with_a_profile():
-    """Oval bore and concentric journal: c - amplitude at a vertex; with an eccentric one the least of all vertices and links."""
+    """Oval bore and concentric journal: c - amplitude at a vertex.
+
+    With an eccentric one the least of all vertices and links.
+    """
     amplitude = 3e-6
     oval = bearing(profile=ehd.OutOfRound(order=2, amplitude=amplitude))
     assert build_model(oval).evaluate(at(0.0)).quantities()["minimum_gap"] == pytest.approx(C - amplitude, rel=1e-12)
     q = build_model(oval).evaluate(at(0.6, 0.7)).quantities()
     theta = np.linspace(0, 2 * np.pi, 100001)
     exact = np.min(C - 0.6 * C * np.cos(theta - 0.7) + amplitude * np.cos(2 * theta))
-    # A vertex or link lies within 1/256 turn of the minimum, 0.5 (0.6 + 4 * 0.15) (2 pi / 256)^2 c = 4e-4 c, and the profile on links is
-    # the mean of both vertices, 0.5 * 0.6 (2 pi / 128)^2 c = 7e-4 c.
+    # A vertex or link lies within 1/256 turn of the minimum, 0.5 (0.6 + 4 * 0.15) (2 pi / 256)^2 c = 4e-4 c, and the
+    # profile on links is the mean of both vertices, 0.5 * 0.6 (2 pi / 128)^2 c = 7e-4 c.
     assert q["minimum_gap"] == pytest.approx(exact, abs=1.1e-3 * C)
 
 
@@ -267,8 +293,8 @@ def test_a_crowned_journal_carries_less_but_tilts_more():
 
 
 def test_lobes_balance_the_torque():
-    """The bore's torque holds e x F and the pressure on its lobes: torque about the journal's own axis, from the wrench and from the
-    shear on the journal. Concentric in an oval bore: friction on both surfaces is the same.
+    """The bore's torque holds e x F and the pressure on its lobes: torque about the journal's own axis, from the
+    wrench and from the shear on the journal. Concentric in an oval bore: friction on both surfaces is the same.
     """
     model = build_model(bearing(profile=ehd.OutOfRound(order=2, amplitude=4e-6)))
     q = model.evaluate(at(0.0)).quantities()
@@ -282,7 +308,10 @@ def test_lobes_balance_the_torque():
 
 
 def test_loss_of_a_lobed_film_is_that_of_viscous_flow():
-    """Power into the film = Couette + Poiseuille dissipation, summed over links without any use of forces; 1 % of discretisation."""
+    """Power into the film = Couette + Poiseuille dissipation, summed over links without any use of forces.
+
+    1 % of discretisation.
+    """
     options = {"profile": ehd.OutOfRound(order=3, amplitude=4e-6), "cavitation": ehd.FullSommerfeld()}
     model = build_model(bearing(film=ehd.FiniteLength(n_theta=192, n_z=16), **options))
     q = model.evaluate(at(0.5)).quantities()
@@ -312,7 +341,10 @@ def test_liner_history_relaxes():
 
 
 def test_liner_mass_balance():
-    """Oil pressed out by a step = leakage: the film's content changes by inflow only; to 1e-10 of the flow through the gap."""
+    """Oil pressed out by a step = leakage: the film's content changes by inflow only.
+
+    To 1e-10 of the flow through the gap.
+    """
     model = build_model(
         bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9), cavitation=ehd.FullSommerfeld())
     )
@@ -335,10 +367,12 @@ THICKENING = {"pressure_law": ehd.BarusPressure(coefficient=1e-7)}
     "cavitation", [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber()], ids=lambda c: type(c).__name__
 )
 def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
-    """Force of a slowly moving journal minus the steady one, by a long step of the transient film, against the damping columns.
+    """Force of a slowly moving journal minus the steady one.
 
-    A step of 10 s at 1 nm/s moves by 5e-4 c; relaxation within 1 ms leaves 1e-4. The film alone, without the liner's rate, would
-    miss more than a tenth.
+    By a long step of the transient film, against the damping columns.
+
+    A step of 10 s at 1 nm/s moves by 5e-4 c; relaxation within 1 ms leaves 1e-4. The film alone, without the liner's
+    rate, would miss more than a tenth.
     """
     oil = ehd.Lubricant(viscosity=0.03, **laws)
     liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)

@@ -1,4 +1,7 @@
-"""A free journal under a suddenly applied load, implicit in time: the exact tangent keeps Newton's iterations at the plain film's."""
+"""A free journal under a suddenly applied load, implicit in time.
+
+The exact tangent keeps Newton's iterations at the plain film's.
+"""
 
 import dataclasses
 
@@ -31,13 +34,22 @@ EFFECTS = {
 
 
 def run(effects, cavitation):
-    """Backward Euler of the journal's two translations; returns iterations per step, orbit (STEPS, 2) and film temperature."""
+    """Backward Euler of the journal's two translations.
+
+    Returns iterations per step, orbit (STEPS, 2) and film temperature.
+    """
     effects = dict(effects)
     thermal = effects.pop("thermal", None)
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.05, radial_clearance=25e-6, lubricant=dataclasses.replace(OIL, **effects),
-        cavitation=cavitation, thermal=thermal, end_pressures=(1e5, 1e5), film=ehd.FiniteLength(n_theta=64, n_z=8),
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.05,
+        radial_clearance=25e-6,
+        lubricant=dataclasses.replace(OIL, **effects),
+        cavitation=cavitation,
+        thermal=thermal,
+        end_pressures=(1e5, 1e5),
+        film=ehd.FiniteLength(n_theta=64, n_z=8),
+    )
     model = build_model(bearing)
     position, velocity, orbit, total = np.array([1e-7, 0.0]), np.zeros(2), [], 0
     motion = np.zeros(10)

@@ -1,4 +1,7 @@
-"""Convergence of a tilted journal's steady film on a flexible bore: bush mesh, modes, film grid; and where its smallest gap is."""
+"""Convergence of a tilted journal's steady film on a flexible bore: bush mesh, modes, film grid.
+
+And where its smallest gap is.
+"""
 
 from __future__ import annotations
 
@@ -22,9 +25,13 @@ def modal(axial=4, radial=2, circumferential=24, **options):
 
 def solve(bush, n_theta=96, n_z=12):
     bearing = ehd.JournalBearing(
-        journal_radius=R, length=LENGTH, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=9e-3), bush=bush,
+        journal_radius=R,
+        length=LENGTH,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=9e-3),
+        bush=bush,
         film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
-    )  # fmt: skip
+    )
     return ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.8, direction=-np.pi / 2, tilt=(0.0, TILT))
 
 
@@ -36,7 +43,8 @@ def values(film):
 def test_bush_mesh_converges():
     results = [values(solve(modal(2 * k, k, 12 * k, tolerance=0.01))) for k in (1, 2, 3)]
     first, second = (abs(b - a) for a, b in itertools.pairwise(results))
-    # errors h^2 with h = 1, 1/2, 1/3 make (1 - 1/4) / (1/4 - 1/9) = 5.4 of the ratio, h makes 3; 7.2 (peak) and 3.8 (load) measured
+    # errors h^2 with h = 1, 1/2, 1/3 make (1 - 1/4) / (1/4 - 1/9) = 5.4 of the ratio, h makes 3; 7.2 (peak) and 3.8
+    # (load) measured
     assert first[0] > 5.4 * second[0]
     assert first[1] > 3.0 * second[1]
     assert np.all(second < 0.003 * results[-1])

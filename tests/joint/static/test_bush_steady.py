@@ -18,7 +18,8 @@ C = 30e-6
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=4, radial=2, circumferential=24)
 
 
-# The load of a film whose vertices are no closer than the mesh's nodes is not smooth on the mesh: fine grid and mesh to compare.
+# The load of a film whose vertices are no closer than the mesh's nodes is not smooth on the mesh: fine grid and mesh
+# to compare.
 FINE = dataclasses.replace(CYLINDER, circumferential=40)
 FINE_FILM = ehd.FiniteLength(n_theta=96, n_z=12)
 # Soft bores give way next to their ends within an interval of the former.
@@ -39,9 +40,13 @@ def nodal(modulus=2.1e11, mesh=CYLINDER):
 
 def make_bearing(bush, **options):
     given = {
-        "journal_radius": 0.03, "length": 0.066, "radial_clearance": C, "lubricant": ehd.Lubricant(viscosity=9e-3),
-        "film": ehd.FiniteLength(n_theta=64, n_z=8), "bush": bush,
-    }  # fmt: skip
+        "journal_radius": 0.03,
+        "length": 0.066,
+        "radial_clearance": C,
+        "lubricant": ehd.Lubricant(viscosity=9e-3),
+        "film": ehd.FiniteLength(n_theta=64, n_z=8),
+        "bush": bush,
+    }
     return ehd.JournalBearing(**(given | options))
 
 
@@ -83,7 +88,10 @@ def test_uniform_pressure_opens_the_bore_as_lame_says_and_leaves_no_force(make):
 
 @pytest.mark.parametrize("n_z", [8, 24])
 def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(n_z):
-    """Against the mesh under consistent nodal forces of the same pressure; modes hold uniform and axially linear pressure exactly."""
+    """Against the mesh under consistent nodal forces of the same pressure.
+
+    Modes hold uniform and axially linear pressure exactly.
+    """
     p = 1e7
     bush = modal(tolerance=0.1)
     bearing = make_bearing(bush, end_pressures=(p, 0.0), film=ehd.FiniteLength(n_theta=64, n_z=n_z))
@@ -193,7 +201,10 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
 
 
 def test_damping_is_that_of_a_bore_that_follows_slowly():
-    """K q = Q with the rates of journal and bore: dq/dx by differences of steady films, the balance by scipy, force by differences."""
+    """K q = Q with the rates of journal and bore.
+
+    Dq/dx by differences of steady films, the balance by scipy, force by differences.
+    """
     bearing = make_bearing(modal(7e10, tolerance=0.1, tilted=False))
     eq = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -20e3))
     model = build_model(bearing)
@@ -247,13 +258,19 @@ def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
     """A rigid bore's clearance is no limit for a journal on a soft bush."""
     mesh = ehd.HollowCylinder(inner_radius=0.025, thickness=0.01, length=0.025, axial=2, radial=2, circumferential=16)
     soft = ehd.ModalBush(
-        mesh=mesh, tolerance=0.2, tilted=False,
+        mesh=mesh,
+        tolerance=0.2,
+        tilted=False,
         material=ehd.SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=1000.0),
-    )  # fmt: skip
+    )
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.025, radial_clearance=5e-5, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=32, n_z=6), bush=soft,
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=5e-5,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=6),
+        bush=soft,
+    )
     eq = ehd.equilibrium(bearing, speed=300.0, load=(0.0, -20.0))
     assert eq.eccentricity_ratio > 1.2
     assert eq.film.minimum_gap > 0.0
@@ -261,7 +278,8 @@ def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
 
 
 def test_the_audit_takes_the_profile_from_the_undeformed_bore():
-    """A soft bush deflects by more than its crown's height: the profile's indicator is that of a rigid bush with the same crown, for
+    """A soft bush deflects by more than its crown's height: the profile's indicator is that of a rigid bush with the
+    same crown, for
     the smallest gap of the film at hand; without a crown there is none."""
     crown = ehd.Crown(drop=1e-6)
     film = solve(modal(2.1e10), profile=crown)

@@ -92,7 +92,10 @@ class TestEquilibrium:
 
     @pytest.mark.parametrize("closure", CLOSURES)
     def test_finds_every_tilted_load_that_the_film_can_carry(self, make_bearing, closure):
-        """Loads of random tilted positions, up to 98 % of the gap at an end. (A prescribed tilt carries a bounded load only.)"""
+        """Loads of random tilted positions, up to 98 % of the gap at an end.
+
+        (A prescribed tilt carries a bounded load only.)
+        """
         rng = np.random.default_rng(1)
         for _ in range(40):
             bearing = make_bearing(rng.choice([0.25, 1.0, 2.0]), film=FILM, cavitation=closure)
@@ -194,8 +197,13 @@ class TestWhirlThreshold:
 def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so():
     groove = ehd.AxialGroove(angle=np.radians(270.0), width_angle=np.radians(15.0), length=0.06, pressure=7e4)
     bearing = ehd.JournalBearing(
-        journal_radius=0.05, length=0.08, radial_clearance=150e-6, lubricant=ehd.Lubricant(viscosity=0.01),
-        cavitation=ehd.ElrodAdams(), supply=(groove,), film=ehd.FiniteLength(n_theta=96, n_z=8),
-    )  # fmt: skip
+        journal_radius=0.05,
+        length=0.08,
+        radial_clearance=150e-6,
+        lubricant=ehd.Lubricant(viscosity=0.01),
+        cavitation=ehd.ElrodAdams(),
+        supply=(groove,),
+        film=ehd.FiniteLength(n_theta=96, n_z=8),
+    )
     with pytest.raises(ehd.FilmError, match=r"no position found that carries 3000 N.*supply area"):
         ehd.equilibrium(bearing, speed=100.0 * np.pi, load=(0.0, -3000.0))

@@ -76,9 +76,18 @@ class TestSteady:
 
     @pytest.mark.parametrize(
         "wrong",
-        [{"eccentricity_ratio": -0.1}, {"eccentricity_ratio": math.nan}, {"eccentricity_ratio": "0.5"}, {"speed": math.inf},
-         {"direction": None}, {"tilt": (1e-4,)}, {"tilt": 1e-4}, {"velocity": (0.0, math.nan)}, {"axial_speed": math.nan}],
-    )  # fmt: skip
+        [
+            {"eccentricity_ratio": -0.1},
+            {"eccentricity_ratio": math.nan},
+            {"eccentricity_ratio": "0.5"},
+            {"speed": math.inf},
+            {"direction": None},
+            {"tilt": (1e-4,)},
+            {"tilt": 1e-4},
+            {"velocity": (0.0, math.nan)},
+            {"axial_speed": math.nan},
+        ],
+    )
     def test_input(self, make_bearing, wrong):
         with pytest.raises(ehd.InputError, match=f"steady: {next(iter(wrong))}"):
             ehd.steady(make_bearing(1.0), **{"speed": SPEED, "eccentricity_ratio": 0.5, **wrong})
@@ -95,9 +104,12 @@ class TestSolveFilm:
         # The bearing takes the gap on the links itself, solve_film the mean of both neighbours: (pi/32)^2 / 2 = 0.5 %.
         film = ehd.solve_film(self.GRID, self._gap(), lubricant=self.OIL, surface_speed=(0.03 * SPEED, 0.0))
         bearing = ehd.JournalBearing(
-            journal_radius=0.03, length=0.06, radial_clearance=30e-6, lubricant=self.OIL,
+            journal_radius=0.03,
+            length=0.06,
+            radial_clearance=30e-6,
+            lubricant=self.OIL,
             film=ehd.FiniteLength(n_theta=32, n_z=6),
-        )  # fmt: skip
+        )
         reference = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.5)
         np.testing.assert_allclose(film.pressure, reference.pressure, atol=0.02 * reference.pressure.max())
         assert film.load == pytest.approx((reference.pressure * self.GRID.weight).sum() * 0.03**2, rel=0.02)

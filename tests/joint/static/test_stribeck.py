@@ -14,9 +14,13 @@ ASPERITY = ehd.GreenwoodTripp(
 
 def bearing(**options):
     return ehd.JournalBearing(
-        journal_radius=0.02, length=0.03, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=ehd.FiniteLength(n_theta=64, n_z=8), **options,
-    )  # fmt: skip
+        journal_radius=0.02,
+        length=0.03,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=64, n_z=8),
+        **options,
+    )
 
 
 def test_three_regimes():

@@ -1,4 +1,7 @@
-"""Shear and contact friction on the nodes of a bore: a plain twin, resultants, exact tangent, an operator, Couette shear in closed form."""
+"""Shear and contact friction on the nodes of a bore.
+
+A plain twin, resultants, exact tangent, an operator, Couette shear in closed form.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,8 @@ from exudyn_ehd.status import Status
 MORE = OPTIONS | {
     "asperity": {
         "asperity": ehd.GreenwoodTripp(
-            composite_roughness=3e-6, composite_modulus=1e11,
+            composite_roughness=3e-6,
+            composite_modulus=1e11,
             friction_coefficient=0.12,
         )
     },
@@ -22,7 +26,7 @@ MORE = OPTIONS | {
         "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5),
         "lubricant": ehd.Lubricant(viscosity=9e-3, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7)),
     },
-}  # fmt: skip
+}
 
 
 def evaluated(option, seed=1):
@@ -122,6 +126,7 @@ def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
         else:
             raise AssertionError("not a smooth state: choose another one")
         numeric = (ends[0] - ends[1]) / (2.0 * size)
-        # 1e-6 as in the test of the pressure's loads; shear alone acts along z, and is a thousandth of pressure elsewhere
+        # 1e-6 as in the test of the pressure's loads; shear alone acts along z, and is a thousandth of pressure
+        # elsewhere
         error = np.abs(nodal[:, :, j] * unit[j] - numeric).max(axis=0)
         assert np.all(error < 1e-6 * rows), (j, size, error / rows)

@@ -1,4 +1,7 @@
-"""Drag of a pressure gradient on unequally rough surfaces: ridges solved exactly, momentum, reciprocity with the flow, and what is off."""
+"""Drag of a pressure gradient on unequally rough surfaces.
+
+Ridges solved exactly, momentum, reciprocity with the flow, and what is off.
+"""
 
 from __future__ import annotations
 
@@ -19,10 +22,15 @@ def model_of(share, n_theta=48, *, pattern=1 / 9, **options):
     rough = ehd.PatirCheng(composite_roughness=SIGMA, pattern=pattern, journal_share=share)
     return build_model(
         ehd.JournalBearing(
-            journal_radius=R, length=L, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), roughness=rough,
-            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_theta // 6), **options,
+            journal_radius=R,
+            length=L,
+            radial_clearance=C,
+            lubricant=ehd.Lubricant(viscosity=MU),
+            roughness=rough,
+            film=ehd.FiniteLength(n_theta=n_theta, n_z=n_theta // 6),
+            **options,
         )
-    )  # fmt: skip
+    )
 
 
 def at(eps, axial=0.0, tilt=(0.0, 0.0)):
@@ -31,8 +39,9 @@ def at(eps, axial=0.0, tilt=(0.0, 0.0)):
 
 @pytest.mark.parametrize(("moving", "resting"), [(0.3, 0.0), (0.0, 0.3), (0.2, 0.1), (0.15, 0.15)])
 def test_ridges_across_are_pulled_by_what_they_carry(moving, resting):
-    """Two sinusoidal surfaces, averaged over their relative position: under a unit pressure gradient the wall forces, shear and pressure on
-    the slopes, are the mean flows which one surface's unit speed carries in the other's frame; half the gap more and less of the same.
+    """Two sinusoidal surfaces, averaged over their relative position: under a unit pressure gradient the wall forces,
+    shear and pressure on the slopes, are the mean flows which one surface's unit speed carries in the other's frame;
+    half the gap more and less of the same.
 
     Reynolds' equation of a unit mean gap, unit viscosity; sums over a period of smooth functions are exact to rounding.
     """
@@ -63,7 +72,10 @@ def test_ridges_along_are_pulled_alike():
 
 @pytest.mark.parametrize("share", [0.0, 0.8])
 def test_integrals_are_those_of_the_shear_flow_factor(share):
-    """sigma phi_s times the pressure gradient by central differences at the vertices: 2 % of a second-order difference on this grid."""
+    """sigma phi_s times the pressure gradient by central differences at the vertices.
+
+    2 % of a second-order difference on this grid.
+    """
     model = model_of(share, 96)
     film = model.evaluate(at(0.5, axial=0.5)).film
     g, P, t = model.grid, film.oil.P, model.solver.H * C / SIGMA
@@ -91,7 +103,8 @@ def heat(film):
 @pytest.mark.parametrize("share", [0.0, 0.5, 0.8, 1.0])
 @pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 2e5)])
 def test_power_becomes_heat_for_every_share(share, ends):
-    """Without the uneven drag 1 to 2 % of the pressure flow's heat would be missing on every grid; with it what is left is the grid's
+    """Without the uneven drag 1 to 2 % of the pressure flow's heat would be missing on every grid; with it what is
+    left is the grid's
     second order, as with equal shares."""
     left = []
     for n in (48, 96):
@@ -114,7 +127,7 @@ def test_both_walls_together_hold_the_pressure(share):
 
 
 def test_a_rough_journal_is_pulled_along():
-    """The pressure rises where the film is thick and falls where it is thin, where the rougher surface takes the larger share."""
+    """The pressure rises where the film is thick and falls where it is thin: there the rougher surface takes more."""
     found = {}
     for share in (0.0, 1.0):
         film = model_of(share).evaluate(at(0.5)).film
@@ -138,9 +151,14 @@ def test_tangent_with_laws_of_the_oil(law, share, profile):
     rough = ehd.PatirCheng(composite_roughness=SIGMA, pattern=1 / 3, journal_share=share)
     model = build_model(
         ehd.JournalBearing(
-            journal_radius=R, length=L, radial_clearance=C, roughness=rough, film=ehd.FiniteLength(n_theta=48, n_z=8), **options
+            journal_radius=R,
+            length=L,
+            radial_clearance=C,
+            roughness=rough,
+            film=ehd.FiniteLength(n_theta=48, n_z=8),
+            **options,
         )
-    )  # fmt: skip
+    )
     motion = at(0.6, axial=0.3, tilt=(0.04 * C / L, -0.02 * C / L))
     scale = np.array([C, C, C / L, C / L, C * SPEED, C * SPEED, C / L * SPEED, C / L * SPEED, SPEED, R * SPEED])
     tangent, difference = model.evaluate(motion).tangent() * scale, np.empty((6, 10))

@@ -22,18 +22,24 @@ STATES = {
     "tilted": {"eccentricity": (0.4, -0.3), "tilt": (0.3, 0.2)},
     "squeezing": {"eccentricity": (-0.5, 0.3), "velocity": (0.4, -0.3)},
     "everything": {
-        "eccentricity": (0.35, 0.3), "tilt": (-0.2, 0.25), "velocity": (-0.2, 0.15), "tilt_rate": (0.1, 0.2),
-        "axial": 0.7, "speed": 1.0,
+        "eccentricity": (0.35, 0.3),
+        "tilt": (-0.2, 0.25),
+        "velocity": (-0.2, 0.15),
+        "tilt_rate": (0.1, 0.2),
+        "axial": 0.7,
+        "speed": 1.0,
     },
     "reversed": {"eccentricity": (0.6, 0.1), "velocity": (0.1, 0.2), "tilt": (0.1, 0.1), "speed": -1.3, "axial": -0.3},
     "no spin": {"eccentricity": (0.3, 0.1), "velocity": (0.5, 0.4), "tilt_rate": (0.1, -0.3), "speed": 0.0},
     "high": {"eccentricity": (0.93, 0.05), "velocity": (0.02, 0.1)},
-}  # fmt: skip
+}
 FILM = ehd.FiniteLength(n_theta=48, n_z=8)
 
 
 def _check(bearing, motion, scale):
-    """Tangent (6, 10) against central differences; rows by their largest entry, columns by the natural unit of the motion.
+    """Tangent (6, 10) against central differences.
+
+    Rows by their largest entry, columns by the natural unit of the motion.
 
     A state is smooth if no vertex changes sides within the step. Steps: 1e-5 of the natural unit times the gap that is
     left. Their truncation is 1e-10 of a value that varies over that gap and rounding about 1e-16 / 1e-5, so that 1e-6
@@ -79,10 +85,11 @@ OPTIONS = {
     "wall": {"contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7)},
     "wall, Gumbel": {"contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7), "cavitation": ehd.Gumbel()},
     "wall, end pressures": {
-        "contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7), "end_pressures": (2e5, 5e4),
+        "contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7),
+        "end_pressures": (2e5, 5e4),
         "cavitation": ehd.FullSommerfeld(),
     },
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("state", [s for s in STATES if s != "no spin"])
@@ -111,8 +118,8 @@ def test_damping_is_symmetric_and_positive(make_bearing, make_motion, closure):
     """The rates enter through the same weights that collect the load; the damping matrix is symmetric
     (not for Gumbel's film, which collects the load over a part of it only).
 
-    For the generalised force (Fx, Fy, My, -Mx) of the rates (x', y', bx', by'); the load's quadrature in z differs from the
-    control volumes' area, which leaves a few per mille.
+    For the generalised force (Fx, Fy, My, -Mx) of the rates (x', y', bx', by'); the load's quadrature in z differs
+    from the control volumes' area, which leaves a few per mille.
     """
     bearing = make_bearing(1.0, cavitation=CLOSURES[closure], film=ehd.FiniteLength(n_theta=48, n_z=24))
     motion = make_motion(bearing, (0.5, 0.2), (0.1, 0.2))

@@ -1,0 +1,114 @@
+"""Indicators of what no option switches: laminar flow without inertia, grid, time step, and its ringing."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from exudyn_ehd.film.models import LongBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
+from exudyn_ehd.joint.audit.ringing import REMEDY, WINDOW, watched
+
+# Grids this many times finer than needed cost time for nothing.
+TOO_FINE = 6.0
+
+
+def _reynolds(case: Case) -> float:
+    b = case.bearing
+    return max(b.lubricant.density * s.speed * b.radial_clearance / s.viscosity for s in case.samples)
+
+
+def vortices(case: Case) -> Finding:
+    """Taylor number."""
+    value = _reynolds(case) * math.sqrt(case.bearing.clearance_ratio)
+    return finding(
+        "Taylor vortices",
+        "Re sqrt(c / R)",
+        value,
+        None,
+        mattering="beyond the laminar film: friction and load are too low here.",
+    )
+
+
+def turbulence(case: Case) -> Finding:
+    """Reynolds number of the Couette flow."""
+    return finding(
+        "turbulence",
+        "Re = rho U c / mu",
+        _reynolds(case),
+        None,
+        mattering="beyond the laminar film: friction and load are too low here.",
+    )
+
+
+def inertia(case: Case) -> Finding:
+    """Reduced Reynolds number."""
+    return finding(
+        "fluid inertia",
+        "Re c / R",
+        _reynolds(case) * case.bearing.clearance_ratio,
+        None,
+        mattering="the Reynolds equation leaves the fluid's inertia out: take forces as estimates.",
+    )
+
+
+def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
+    if isinstance(case.bearing.film, ImpedanceMap):
+        return None
+    value, size = case.smallest(field), getattr(case.bearing.film, name)
+    needed = LIMITS[effect].value
+    found = finding(effect, f"intervals across the peak at half its height, {name} = {size}", value, None)
+    unit = 8 if name == "n_theta" else 2
+    wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))
+    if found.matters:
+        return replace(found, advice=f"the pressure peak is too narrow for the grid: {name}={wanted}.")
+    wanted = max(wanted, 48 if name == "n_theta" else 6)
+    if value > TOO_FINE * needed and wanted < size:
+        return replace(found, unneeded=True, advice=f"finer than the pressure needs: {name}={wanted} would do.")
+    return found
+
+
+def grid_columns(case: Case) -> Finding | None:
+    """Columns across the pressure peak; an impedance map has its error sampled when it is built."""
+    return _grid(case, "n_theta", "columns", "grid around")
+
+
+def grid_rows(case: Case) -> Finding | None:
+    """Rows across the pressure peak; the slices of a long bearing are no grid."""
+    return None if isinstance(case.bearing.film, LongBearing) else _grid(case, "n_z", "rows", "grid along")
+
+
+def time_step(case: Case) -> Finding | None:
+    """Motion per accepted step against the gap."""
+    if case.record is None:
+        return None
+    return finding(
+        "time step",
+        "motion in a step / smallest gap",
+        case.record.largest_advance(case.bearing.length),
+        None,
+        mattering="the journal crosses much of its gap in one step: take smaller steps.",
+    )
+
+
+def ringing(case: Case) -> Finding | None:
+    """Forces that alternate from step to step."""
+    record, b = case.record, case.bearing
+    if record is None:
+        return None
+    watch = watched(record.time, record.force, 2.0 * b.journal_radius * b.length)
+    when = (
+        ""
+        if watch.most == 0
+        else f", at {watch.first:.4g} s"
+        if watch.first == watch.last
+        else f", {watch.first:.4g} to {watch.last:.4g} s"
+    )
+    return finding(
+        "ringing",
+        f"times within {WINDOW} steps that the force is thrown into alternation{when}",
+        float(watch.most),
+        None,
+        mattering="forces and pressures jump from step to step: " + REMEDY,
+    )

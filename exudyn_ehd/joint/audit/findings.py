@@ -1,0 +1,140 @@
+"""What an audit says about an effect, and the limit from which on each effect matters."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.audit.ringing import LIMIT
+from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
+
+
+class Limit(NamedTuple):
+    """Where an effect begins to matter: above ``value``, or ``below`` it; ``source`` says what it stands for there."""
+
+    value: float
+    source: str
+    below: bool = False
+
+
+# An effect matters where leaving it out would change load, peak pressure, friction or smallest gap by some 5 to 10 %.
+# Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
+LIMITS = {
+    "misalignment": Limit(0.1, "of the mid-plane gap: that much of the smallest gap, 1 % of the peak pressure"),
+    "elasticity": Limit(0.1, "of the smallest gap: 6 % of the peak pressure at the same position"),
+    "profile": Limit(0.1, "of the smallest gap, as for elasticity"),
+    "piezoviscosity": Limit(0.1, "alpha p_max: 3 % of the load, 5 % of the peak pressure"),
+    "heating": Limit(0.1, "change of the viscosity"),
+    "shear thinning": Limit(1.0, "shear rate over the one at which a multigrade oil begins to thin"),
+    "roughness": Limit(3.0, "h_min / sigma: 6 % of the load by flow factors; below, asperities carry", below=True),
+    "contact": Limit(2e-3, "of the load: 5 % of the friction, where a film has 0.004 and asperities 0.1"),
+    "wear": Limit(1e-4, "of the load: wear asks for less contact than friction"),
+    "squeeze": Limit(0.05, "of the sources of the Reynolds equation"),
+    "cavitation": Limit(0.01, "of the bore"),
+    "mass conservation": Limit(0.05, "of the bore, moving or refilled"),
+    "Taylor vortices": Limit(41.2, "concentric journal: G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923) 289"),
+    "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow"),
+    "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
+    "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
+    "grid along": Limit(3.0, "intervals: as around", below=True),
+    "time step": Limit(0.2, "of the smallest gap"),
+    "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Finding:
+    """What an audit says about one effect.
+
+    Attributes
+    ----------
+    effect, indicator : str
+        Its name, and what ``value`` is.
+    value, threshold : float
+        The indicator at the worst state, and from where on the effect matters.
+    below : bool
+        The effect matters below the threshold, not above.
+    on : bool or None
+        Whether the bearing has it; None for an assumption or a number that can't be switched.
+    matters : bool
+        Value beyond the threshold.
+    unneeded : bool
+        It takes time although it does not matter.
+    advice : str
+        What to do about it; empty if nothing.
+    time_share : float or None
+        Share of the time of a film evaluation with tangent that the effect takes, 0 to 1; None if not measured.
+    """
+
+    effect: str
+    indicator: str
+    value: float
+    threshold: float
+    below: bool = False
+    on: bool | None
+    matters: bool
+    unneeded: bool = False
+    advice: str = ""
+    time_share: float | None = None
+
+    @property
+    def in_vain(self) -> bool:
+        """Another name of ``unneeded``."""
+        return self.unneeded
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """What is audited.
+
+    Worst films, the record they come from if there is one, and a liner that the bearing does not have.
+    """
+
+    bearing: JournalBearing
+    samples: list[Sample]
+    record: RecordedSteps | None = None
+    liner: ElasticLiner | None = None
+
+    def largest(self, name: str) -> float:
+        """Largest value of a number of the samples."""
+        return max(getattr(sample, name) for sample in self.samples)
+
+    def smallest(self, name: str) -> float:
+        """Smallest value of a number of the samples."""
+        return min(getattr(sample, name) for sample in self.samples)
+
+
+def finding(
+    effect: str,
+    indicator: str,
+    value: float,
+    on: bool | None,
+    *,
+    limit: Limit | None = None,
+    mattering: str = "",
+    needless: str | None = None,
+) -> Finding:
+    """A finding with the advice for the case at hand.
+
+    ``limit`` in place of the effect's own of `LIMITS`; ``mattering``: advice if it matters but is off; ``needless``: if
+    it is on and does not matter, None for an effect that is never unneeded.
+    """
+    limit = LIMITS[effect] if limit is None else limit
+    matters = value < limit.value if limit.below else value > limit.value
+    unneeded = on is True and not matters and needless is not None
+    advice = mattering if matters and not on else ""
+    if unneeded and needless:
+        advice = needless
+    return Finding(
+        effect=effect,
+        indicator=indicator,
+        value=value,
+        threshold=limit.value,
+        below=limit.below,
+        on=on,
+        matters=matters,
+        unneeded=unneeded,
+        advice=advice,
+    )

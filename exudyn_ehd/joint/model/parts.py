@@ -1,0 +1,70 @@
+"""Grid, solver and buffers of a bearing model: what stays from evaluation to evaluation."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.models import film_grid, film_solver
+from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, LimiterFields
+
+
+def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
+    """Parts of the model of a bearing with its effects, on the grid that starts at ``start_angle``, rad."""
+    R, c = bearing.journal_radius, bearing.radial_clearance
+    open_ring = isinstance(bearing.inlet, MaximumGap)
+    grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring)
+    supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
+    liner: NonlinearFilmSolver | None = None
+    if effects.liner is not None:
+        liner = NonlinearFilmSolver(
+            grid,
+            bearing.cavitation,
+            squeeze=bearing.squeeze,
+            contact=next(iter(effects.contacts), None),
+            limiter=effects.limiter,
+            flux_effects=effects.flux,
+            oil=effects.pressure_law,
+            density=effects.density,
+        )
+    solver = liner or film_solver(
+        bearing.film,
+        grid,
+        bearing.cavitation,
+        squeeze=bearing.squeeze,
+        flux_effects=effects.flux,
+        density=effects.density,
+    )
+    compressible = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
+    contacts = None
+    if effects.contacts:
+        friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
+        contacts = ContactFields(grid.shape, friction, max(f.presses_below for f in effects.contacts))
+        if liner is not None:
+            # contact and film gap on a liner come out of its film solve
+            contacts.P, contacts.slope = [liner.contact_pressure], [liner.contact_slope]
+    pose_scale = np.array([1.0 / c, 1.0 / c, R / c, R / c])
+    return FilmParts(
+        bearing=bearing,
+        grid=grid,
+        solver=solver,
+        liner=liner,
+        compressible=None if effects.density is None else compressible,
+        supply=supply,
+        contacts=contacts,
+        limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
+        cos_x=np.cos(grid.x),
+        sin_x=np.sin(grid.x),
+        cos_f=np.cos(grid.x_face),
+        sin_f=np.sin(grid.x_face),
+        half_length=0.5 * bearing.length / R,
+        pose_scale=pose_scale,
+        motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),
+        flow_scale=c * R**2,
+        uneven_drag=effects.uneven_drag,
+        evaluations=Evaluations(),
+    )
