@@ -22,12 +22,12 @@ from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
 from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.static_modes import BoreModes
 from exudyn_ehd.status import Status
 
-SIZE = 10
 # Period over 2 pi of a mode on its numerical mass, s.
 NUMERICAL_PERIOD = 1e-6
 
@@ -161,7 +161,7 @@ def initial_coordinates(
     film = ElasticBearingModel(
         bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
-    motion = np.empty(SIZE)
+    motion = np.empty(MOTION_SIZE)
     relative.relative_motion(sides[0].frame, sides[1].frame, motion)
     settled = film.evaluate_steady(motion)
     return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None

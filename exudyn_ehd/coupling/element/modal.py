@@ -17,10 +17,9 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.static_modes import BoreModes
-
-SIZE = 10
 
 
 class BoreFilmElement(FilmElement):
@@ -144,7 +143,7 @@ class ModalFilmElement(BoreFilmElement):
         n, k = self.rigid_size, self.stiffness.size
         force = np.empty(len(trial.q))
         self._rigid_force(evaluation.wrench, force[:n])
-        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[SIZE : SIZE + k]
+        force[n:] = evaluation.bore_load - self.stiffness * trial.motion[MOTION_SIZE : MOTION_SIZE + k]
         if self.inertia is not None:
             on_housing, on_modes = self.inertia.force(*self._inertia_state(trial))
             force[: self.sides[0].size] += on_housing
@@ -153,7 +152,7 @@ class ModalFilmElement(BoreFilmElement):
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         T, n, k = self._evaluation(trial).combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :SIZE]))
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
         whole = np.empty((n + k, n + k))
         relative.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)
         if self.inertia is not None:

@@ -16,10 +16,11 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.object import FlexibleBush
 from exudyn_ehd.coupling.contract import Evaluation, Index, Side, Trial
-from exudyn_ehd.coupling.element.modal import SIZE, BoreFilmElement
+from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.tangent.nodes import BoreForces
 from exudyn_ehd.status import Status
 
@@ -106,8 +107,8 @@ class NodalFilmElement(BoreFilmElement):
         wrench, nodal = evaluation.nodal_tangent(self.forces)
         T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(wrench[:, :SIZE]))
-        by_place, by_rate = T[:, SIZE : SIZE + k], T[:, SIZE + k :]
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(wrench[:, :MOTION_SIZE]))
+        by_place, by_rate = T[:, MOTION_SIZE : MOTION_SIZE + k], T[:, MOTION_SIZE + k :]
         place, rate_place = self._housing_maps()
         A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]
         along = A[:, :2].T
@@ -119,7 +120,7 @@ class NodalFilmElement(BoreFilmElement):
         by_bore[0][:, n:] = _per_node(by_place, along) + _per_node(by_rate, turning)
         by_bore[1][:, n:] = _per_node(by_rate, along)
         stiffness, damping = (
-            self._assemble(b, block, T[:, :SIZE] @ motion)
+            self._assemble(b, block, T[:, :MOTION_SIZE] @ motion)
             for b, block, motion in zip(by_bore, rigid[:2], rigid[2:], strict=True)
         )
         if n_h:
