@@ -269,10 +269,9 @@ def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) ->
 
 
 @njit(cache=True, fastmath=_FAST)
-def drag_sums(P, flux, mesh):
-    """(E_x, E_z) of the pressures P (n, m); ``flux``: `LinkFlux`."""
+def drag_sums(P, cx, HF, cz, gap_z, mesh):
+    """(E_x, E_z) of the pressures P (n, m)."""
     n, m = P.shape
-    cx, HF, cz, gap_z = flux.cx, flux.gap_x, flux.cz, flux.gap_z
     width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
     along = 0.0
     across = 0.0
@@ -288,10 +287,9 @@ def drag_sums(P, flux, mesh):
 
 
 @njit(cache=True, fastmath=_FAST)
-def drag_rhs(order, count, active, flux, mesh, rows):
+def drag_rhs(order, count, active, cx, HF, cz, gap_z, mesh, rows):
     """Add the unknown pressures' weights in E_x and E_z to rows (2, count); nothing where the pressure is clipped."""
     n, m = active.shape
-    cx, HF, cz, gap_z = flux.cx, flux.gap_x, flux.cz, flux.gap_z
     width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
     along, across = np.empty((n, m)), np.empty((n, m))
     for i in range(n):
@@ -315,10 +313,9 @@ def drag_rhs(order, count, active, flux, mesh, rows):
 
 
 @njit(cache=True, fastmath=_FAST)
-def drag_gap_slopes(P, flux, slope, face_slope, mesh, face_out, cell_out):
+def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face_out, cell_out):
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices."""
     n, m = P.shape
-    cx_h, cz_h = flux.cx_h, flux.cz_h
     width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
@@ -335,10 +332,10 @@ def drag_gap_slopes(P, flux, slope, face_slope, mesh, face_out, cell_out):
 
 
 @njit(cache=True)
-def drag_pose_gradient(P, flux, slope, face_slope, mesh, at, out):
+def drag_pose_gradient(P, cx_h, cz_h, slope, face_slope, mesh, at, out):
     """Add the gradients of `drag_gap_slopes` to the scaled pose to out (2, >= 4): of E_x and of E_z."""
     face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
-    drag_gap_slopes(P, flux, slope, face_slope, mesh, face[0], cell[0])
+    drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face[0], cell[0])
     along, across = np.zeros((1, 4)), np.zeros((1, 4))
     contract_pose(face, at.cos_f, at.sin_f, at.z, along)
     contract_pose(cell, at.cos_x, at.sin_x, at.z, across)

@@ -46,15 +46,15 @@ def link_factors(fill, rho, fx, fz, sigma_x_out, sigma_z_out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def link_derivatives(P, H, HF, flux, sigma, vx, vz, flow_x, mesh, out):
+def link_derivatives(P, H, HF, slopes, by_speed, sigma, vx, vz, flow_x, mesh, out):
     """Derivatives of all links' flows.
 
     Parameters
     ----------
     P, H, HF : (n, m) arrays
         Pressure, gaps at vertices and on the links i -> i+1.
-    flux : LinkFlux or None
-        None: plain film.
+    slopes, by_speed : tuples of (n, m) arrays or None
+        `LinkFlux.slopes` and `LinkFlux.by_speed`; None: plain film, conductances that do not depend on the speed.
     sigma : (sigma_x, sigma_z) or None
         (n, m) arrays; None: a full film of density ratio 1.
     vx, vz, flow_x : float
@@ -71,35 +71,35 @@ def link_derivatives(P, H, HF, flux, sigma, vx, vz, flow_x, mesh, out):
         wx = mesh.width_x[i]
         for j in range(m):
             v = linked * vx if sigma is None else linked * vx * sigma[0][i, j]
-            if flux is None:
+            if slopes is None:
                 h = HF[i, j]
                 g_h = 3.0 * h * h
             else:
-                v *= flux.cx_h[i, j]
-                g_h = flux.gx_h[i, j]
+                v *= slopes[4][i, j]
+                g_h = slopes[0][i, j]
             out.DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
         for j in range(m):
-            carrier = HF[i, j] if flux is None else flux.cx[i, j]
+            carrier = HF[i, j] if slopes is None else slopes[2][i, j]
             carried = linked * carrier if sigma is None else linked * carrier * sigma[0][i, j]
             out.SX[i, j] = carried * width_z[j]
         for j in range(m - 1):
             v = vz if sigma is None else vz * sigma[1][i, j]
-            if flux is None:
+            if slopes is None:
                 h = 0.5 * (H[i, j] + H[i, j + 1])
                 g_h = 3.0 * h * h
             else:
-                v *= flux.cz_h[i, j]
-                g_h = flux.gz_h[i, j]
+                v *= slopes[5][i, j]
+                g_h = slopes[1][i, j]
             out.DZ[i, j] = (v - g_h * (mesh.link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
         for j in range(m - 1):
-            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flux is None else flux.cz[i, j]
+            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if slopes is None else slopes[3][i, j]
             carried = carrier if sigma is None else carrier * sigma[1][i, j]
             out.SZ[i, j] = carried * wx
-        if flux is not None and flux.speeds:
+        if by_speed is not None:
             for j in range(m):
-                out.SX[i, j] -= flux.gx_v[i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
+                out.SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
             for j in range(m - 1):
-                out.SZX[i, j] = -flux.gz_v[i, j] * (mesh.link_z[j] * (P[i, j + 1] - P[i, j])) * wx
+                out.SZX[i, j] = -by_speed[1][i, j] * (mesh.link_z[j] * (P[i, j + 1] - P[i, j])) * wx
 
 
 def contract_links(lam: np.ndarray, d: LinkDerivatives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -76,6 +76,21 @@ class LinkFlux(NamedTuple):
     cz: np.ndarray
     cz_h: np.ndarray
 
+    @property
+    def flow(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Conductances and carriers alone."""
+        return self.gx, self.gz, self.cx, self.cz
+
+    @property
+    def slopes(self) -> tuple[np.ndarray, ...]:
+        """Conductances' derivatives, carriers and their derivatives, each in theta and z."""
+        return self.gx_h, self.gz_h, self.cx, self.cz, self.cx_h, self.cz_h
+
+    @property
+    def by_speed(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Conductances' derivatives to the speed; None if they have none."""
+        return (self.gx_v, self.gz_v) if self.speeds else None
+
     def reset(self) -> None:
         """Plain carriers, and no dependence on the speed, where effects have left others."""
         if self.carriers:
@@ -141,44 +156,44 @@ def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
 
 
 @njit(cache=True, fastmath=_FAST)
-def conductances(H, HF, flux, flow_x, mesh, kx_out, kz_out):
+def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
     """Conductances of the links with their metric, ``H^3 width / distance``.
 
     ``flow_x`` = 0 drops the circumferential pressure flow.
 
-    ``flux``: `LinkFlux`, or None for a plain film.
+    ``flow``: `LinkFlux.flow`, or None for a plain film.
     """
     n, m = H.shape
     for i in range(n):
         lx = mesh.link_x[i] * flow_x
         wx = mesh.width_x[i]
         for j in range(m):
-            if flux is None:
+            if flow is None:
                 h = HF[i, j]
                 g = h * h * h
             else:
-                g = flux.gx[i, j]
+                g = flow[0][i, j]
             kx_out[i, j] = g * lx * mesh.width_z[j]
         for j in range(m - 1):
-            if flux is None:
+            if flow is None:
                 h = 0.5 * (H[i, j] + H[i, j + 1])
                 g = h * h * h
             else:
-                g = flux.gz[i, j]
+                g = flow[1][i, j]
             kz_out[i, j] = g * mesh.link_z[j] * wx
         kz_out[i, m - 1] = 0.0
 
 
 @njit(cache=True, fastmath=_FAST)
-def couette_fluxes(H, HF, flux, vx, vz, mesh, fx_out, fz_out):
-    """Couette fluxes of the links; 0 where there is no link. ``flux`` as in `conductances`."""
+def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
+    """Couette fluxes of the links; 0 where there is no link. ``flow`` as in `conductances`."""
     n, m = H.shape
     for i in range(n):
         v = vx if mesh.link_x[i] != 0.0 else 0.0
         for j in range(m):
-            fx_out[i, j] = v * (HF[i, j] if flux is None else flux.cx[i, j]) * mesh.width_z[j]
+            fx_out[i, j] = v * (HF[i, j] if flow is None else flow[2][i, j]) * mesh.width_z[j]
         for j in range(m - 1):
-            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flux is None else flux.cz[i, j]
+            carrier = 0.5 * (H[i, j] + H[i, j + 1]) if flow is None else flow[3][i, j]
             fz_out[i, j] = vz * carrier * mesh.width_x[i]
         fz_out[i, m - 1] = 0.0
 
@@ -203,6 +218,16 @@ def add_squeeze(H_t, width_x, width_z, b_out):
     for i in range(n):
         for j in range(m):
             b_out[i, j] -= H_t[i, j] * width_x[i] * width_z[j]
+
+
+@njit(cache=True)
+def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz_out, b_out):
+    """Coefficients of the links and right-hand side in one call; ``H_t``: None without the storage term."""
+    conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out)
+    couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out)
+    right_hand_side(fx_out, fz_out, b_out)
+    if H_t is not None:
+        add_squeeze(H_t, mesh.width_x, mesh.width_z, b_out)
 
 
 @njit(cache=True)

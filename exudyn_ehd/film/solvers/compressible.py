@@ -325,8 +325,10 @@ class CompressibleFilmSolver(FilmSolver):
 
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
+        f = self.flux
+        slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         link_derivatives(
-            self.system.linear_pressure, self.H, self.HF, self.flux, self._sigma(), self.vx, self.vz, self.flow_x, self.grid.mesh,
+            self.system.linear_pressure, self.H, self.HF, slopes, by_speed, self._sigma(), self.vx, self.vz, self.flow_x, self.grid.mesh,
             self.link_fields,
         )  # fmt: skip
         return self.link_fields

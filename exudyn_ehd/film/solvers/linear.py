@@ -18,12 +18,9 @@ from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, contract_links, link_derivatives, link_factors
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
-    add_squeeze,
-    conductances,
-    couette_fluxes,
     fill_balance,
     link_flux,
-    right_hand_side,
+    set_links,
     vertex_balance,
 )
 from exudyn_ehd.status import Status
@@ -186,12 +183,9 @@ class FilmSolver:
         status, steps : Status, int
             Outcome and number of linear solves.
         """
-        g, s = self.grid, self.system
+        s = self.system
         self.vx, self.vz = vx, vz
         self._set_links()
-        right_hand_side(s.fx, s.fz, s.b)
-        if self.squeeze:
-            add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
         s.cavity_pressure = cavity_pressure
         if self.closure.clips:
             np.copyto(s.linear_pressure, s.pressure)
@@ -208,15 +202,15 @@ class FilmSolver:
         return status, steps + fine_steps
 
     def _set_links(self) -> None:
-        """Conductances and Couette fluxes of the links."""
+        """Conductances and Couette fluxes of the links, and the right-hand side."""
         s, f, mesh = self.system, self.flux, self.grid.mesh
         if f is not None:
             first, *others = self.flux_effects
             first.start(f, self.H, self.vx, self.vz)
             for effect in others:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
-        conductances(self.H, self.HF, f, self.flow_x, mesh, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, f, self.vx, self.vz, mesh, s.fx, s.fz)
+        H_t, flow = self.H_t if self.squeeze else None, None if f is None else f.flow
+        set_links(self.H, self.HF, H_t, flow, self.vx, self.vz, self.flow_x, mesh, s.kx, s.kz, s.fx, s.fz, s.b)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
@@ -280,11 +274,14 @@ class FilmSolver:
         if self.closure.conserves_mass:
             sigma = self.sigma
             link_factors(s.fill, self.ones, s.fx, s.fz, *sigma)
+        f = self.flux
+        slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         link_derivatives(
             s.linear_pressure,
             self.H,
             self.HF,
-            self.flux,
+            slopes,
+            by_speed,
             sigma,
             self.vx,
             self.vz,

@@ -35,7 +35,6 @@ from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.cavitation.active_set import clip_pressure
-from exudyn_ehd.film.reynolds.links import conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
@@ -126,11 +125,7 @@ class ClassicSolver(FilmSolver):
         g, s, w = self.grid, self.system, self.work
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
-        conductances(self.H, self.HF, None, 1.0, g.mesh, s.kx, s.kz)
-        couette_fluxes(self.H, self.HF, None, vx, vz, g.mesh, s.fx, s.fz)
-        right_hand_side(s.fx, s.fz, s.b)
-        if self.squeeze:
-            s.b -= self.H_t * self.area
+        self._set_links()
         s.linear_pressure[:] = np.where(g.fixed, s.pressure, 0.0)
         sweeps = sor_solve(
             self.H,

@@ -14,13 +14,14 @@ from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 def drag_integrals(parts: FilmParts, P: np.ndarray) -> tuple[float, float]:
     """E_x and E_z of the film that ``parts.solver`` holds, with its pressure P (n, m)."""
-    return drag_sums(P, _flux(parts.solver), parts.grid.mesh)
+    f = _flux(parts.solver)
+    return drag_sums(P, f.cx, f.gap_x, f.cz, f.gap_z, parts.grid.mesh)
 
 
 def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
     """Add the weights of the unknown pressures in E_x and E_z to ``rows`` (2, count)."""
-    w = film.solver.work
-    drag_rhs(w.order, w.count, w.active, _flux(film.solver), film.grid.mesh, rows)
+    f, w = _flux(film.solver), film.solver.work
+    drag_rhs(w.order, w.count, w.active, f.cx, f.gap_x, f.cz, f.gap_z, film.grid.mesh, rows)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -47,7 +48,8 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
         contract_pose(cell[1:], p.cos_x, p.sin_x, g.z, gradient[1:, :4])
         contract_pose(cell[:1], p.cos_x, p.sin_x, g.z, gradient[:1, :4])
         return
-    drag_pose_gradient(film.oil.P, _flux(film.solver), *_gap_slopes(film), g.mesh, g.directions, gradient)
+    f = _flux(film.solver)
+    drag_pose_gradient(film.oil.P, f.cx_h, f.cz_h, *_gap_slopes(film), g.mesh, g.directions, gradient)
 
 
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
@@ -64,9 +66,9 @@ def _gap_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
 def _slopes(film: SolvedFilm, slope: np.ndarray, face_slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Gradients of E_x on the links i -> i+1 and of E_z at the vertices (n, m), times the gaps' slopes there."""
-    g = film.grid
+    f, g = _flux(film.solver), film.grid
     face, cell = np.empty(g.shape), np.empty(g.shape)
-    drag_gap_slopes(film.oil.P, _flux(film.solver), slope, face_slope, g.mesh, face, cell)
+    drag_gap_slopes(film.oil.P, f.cx_h, f.cz_h, slope, face_slope, g.mesh, face, cell)
     return face, cell
 
 

@@ -74,7 +74,7 @@ def test_adjoint_sensitivities(make_film, seed, cut, flow_x):
     rng = np.random.default_rng(seed)
     P, lam = rng.normal(size=f.H.shape), rng.normal(size=(2, *f.H.shape))
     d = LinkDerivatives(*np.zeros((5, *f.H.shape)))
-    link_derivatives(P, f.H, f.HF, None, None, f.vx, f.vz, flow_x, f.mesh, d)
+    link_derivatives(P, f.H, f.HF, None, None, None, f.vx, f.vz, flow_x, f.mesh, d)
     cell, face, speed = contract_links(lam, d)
     step = 1e-5  # the residual is cubic in the gap: central differences leave step^2 = 1e-10 and rounding 1e-10
     for k in range(2):
