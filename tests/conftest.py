@@ -12,11 +12,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import matplotlib
+import numpy as np
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RADIUS = 0.025
@@ -41,6 +43,55 @@ def _own_cache(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("EXUDYN_EHD_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield
+
+
+def _films_of_all_kernels():
+    """Options of bearings that use the kernels of nearly all tests, in two halves that take as long to compile."""
+    oil = {"viscosity": VISCOSITY, "temperature": 325.0}
+    hot = ehd.ReynoldsTemperature(point=(325.0, VISCOSITY), coefficient=0.03)
+    mesh = ehd.HollowCylinder(inner_radius=RADIUS, thickness=0.01, length=0.05, axial=1, radial=1, circumferential=8)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+    conserving = {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)}
+    liner = {"bush": ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)}
+    touching = {"asperity": ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=1e10)}
+    rough = {"roughness": ehd.PatirCheng(composite_roughness=1e-6, journal_share=0.9)}
+    thin = {"lubricant": ehd.Lubricant(**oil, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))}
+    dense = {"lubricant": ehd.Lubricant(**oil, density_law=ehd.DowsonHigginson())}
+    energy = {
+        "lubricant": ehd.Lubricant(temperature=325.0, temperature_law=hot),
+        "thermal": ehd.FilmEnergy(supply_temperature=320.0),
+    }
+    modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
+    nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
+    return (
+        [conserving, conserving | thin, conserving | liner, liner | touching, rough, energy],
+        [{}, dense, modal, modal | conserving, nodal, thin, touching],
+    )
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _kernels_compiled_once(_own_cache):
+    """Each worker of a parallel run first compiles its half of the kernels, and finds the other in numba's cache.
+
+    Else every worker compiles nearly all of them: 190 s of processor time with an empty cache.
+    """
+    worker = os.environ.get("PYTEST_XDIST_WORKER")
+    if worker is None:
+        return
+    motion = np.array([0.5 * CLEARANCE, 0.4 * CLEARANCE, 1e-4, 0.0, 1e-3, 0.0, 0.0, 0.0, 300.0, 0.1])
+    plain = {
+        "journal_radius": RADIUS,
+        "length": 2.0 * RADIUS,
+        "radial_clearance": CLEARANCE,
+        "lubricant": ehd.Lubricant(viscosity=VISCOSITY),
+        "film": ehd.FiniteLength(n_theta=32, n_z=6),
+    }
+    for options in _films_of_all_kernels()[int(worker.removeprefix("gw")) % 2]:
+        model = build_model(ehd.JournalBearing(**(plain | options)))
+        evaluation = model.evaluate(motion, model.initial_history(motion), 1e-4)
+        evaluation.tangent()
+        evaluation.quantities()
+        evaluation.history()
 
 
 @pytest.fixture(scope="session")
