@@ -112,7 +112,7 @@ class PressureLaw(Protocol):
         """q(p), Pa."""
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), mu(p)/mu_0 (= dp/dq but for a compressible film) and its derivative to q (1/Pa).
+        """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q (1/Pa).
 
         False where q has no p.
         """
@@ -172,7 +172,7 @@ class ShearProduct:
 
 @dataclass(frozen=True)
 class Effects:
-    """What takes part in a bearing model beside the plain film; empty by default.
+    """What takes part in a bearing model in addition to the plain film; empty by default.
 
     Attributes
     ----------

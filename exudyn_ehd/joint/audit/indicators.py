@@ -128,8 +128,8 @@ def heating(case: Case) -> Finding:
         f"{coefficient:.3g} 1/K x rise of {rise:.3g} K",
         coefficient * rise,
         b.thermal is not None,
-        mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, or the viscosity at its "
-        "running temperature.",
+        mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, or the viscosity at "
+        "its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
     )
 
@@ -167,7 +167,7 @@ def roughness(case: Case) -> Finding:
         _roughness_ratio(case),
         case.bearing.roughness is not None,
         mattering="give the bearing roughness=PatirCheng(composite_roughness=...).",
-        needless="the film is thick beside the roughness: roughness=None.",
+        needless="the film is thick next to the roughness: roughness=None.",
     )
 
 

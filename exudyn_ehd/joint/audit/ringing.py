@@ -8,7 +8,7 @@ value: d changes its sign from step to step below some three steps per period on
 *zigzags* at a step if d there points against the d before and behind, and is more than a tenth of the force.
 
 That alone is no fault: whatever starts suddenly leaves an alternation that generalized alpha damps within some steps.
-A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces beside
+A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces next to
 the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than the five steps before,
 and alternations that do not fade, once in so many steps.
 """
@@ -27,7 +27,7 @@ from exudyn_ehd.status import RingingWarning
 LOCAL_SHARE, LARGEST_SHARE, FADING = 0.1, 0.01, 0.99
 # Cosine between the d of steps in succession, and the smaller ones' share of the middle one.
 OPPOSITE, EVEN = -0.5, 0.3
-# Mean pressure on the projected area below which a force is none: rounding beside an ideal joint, Pa.
+# Mean pressure on the projected area below which a force is none: rounding next to an ideal joint, Pa.
 NEGLIGIBLE = 100.0
 # A burst is so much stronger than the steps before, or has kept such a share of its size over so many zigzags; steps
 # between two bursts.

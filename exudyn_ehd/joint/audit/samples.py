@@ -55,9 +55,9 @@ class RecordedSteps:
         tilt = np.array([tilt_loss(bearing, m) for m in self.motion])
         squeeze = np.array([squeeze_share(bearing, m) for m in self.motion])
         speed = np.abs(self.motion[:, 8])
-        given_way = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
+        deflected = self.bore_displacement / np.maximum(self.minimum_gap, 1e-3 * bearing.radial_clearance)
         loss = np.abs(self.power_loss)
-        keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, given_way)
+        keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, deflected)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
 
     def largest_advance(self, length: float) -> float:

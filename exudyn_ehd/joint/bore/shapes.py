@@ -61,7 +61,7 @@ class Bore(Protocol):
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at flat vertices ``places`` times ``weight``, both (count,), into tiles from column ``first`` on.
 
-        Tiles as of `exudyn_ehd.film.banded.many_sides.make_tiles`.
+        Tiles as made by `exudyn_ehd.film.banded.many_sides.make_tiles`.
 
         The coordinates come in the sequence ``order``.
         """

@@ -231,7 +231,7 @@ class BearingModel:
             return self._result(status, journal, _no_wrench(), iterations, c * smallest, None)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()
-            if p.liner is not None and p.contacts is not None:
+            if p.contacts is not None:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
         loads = film_loads(p, self.scales, journal, oil, extra, pressing)
         film = SolvedFilm(
