@@ -123,7 +123,7 @@ class _RelaxedFilm:
         )
 
     def loads(self, motion, P):
-        m, s, g = self.model, self.model.solver, self.model.grid
+        m, s, g = self.model.parts, self.model.solver, self.model.grid
         pose, rate = motion[:4] * m.pose_scale, motion[4:8] * m.pose_scale
         vx, vz = 0.5 * motion[8], 0.5 * motion[9] / g.reference_length
         rigid_gap(pose, m.cos_x, m.sin_x, g.z, 1.0, s.H)
@@ -137,7 +137,7 @@ class _RelaxedFilm:
         sweeps = _sor(y.kx, y.kz, y.b, 0.0, self.relax, self.tolerance, P)
         out = np.empty(4)
         pressure_integrals(P, g.weight, m.cos_x, m.sin_x, g.z, out)
-        return out * m.force_scale, sweeps
+        return out * self.model.scales.force, sweeps
 
     def __call__(self):
         motion = self.motions[self.k % len(self.motions)]

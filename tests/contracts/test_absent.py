@@ -72,7 +72,7 @@ EFFECTS = {
         ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
     ),
-    "mass conservation": (("film.cavitation.elrod_adams", "film.cavitation.cavity_transport", "film.cavitation.cavity_adjoint"), {"cavitation": CLOSURES["elrod"]}),
+    "mass conservation": (("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"), {"cavitation": CLOSURES["elrod"]}),
 }  # fmt: skip
 
 
@@ -80,7 +80,7 @@ EFFECTS = {
 SHARED = {
     "banded.lu", "cavitation.closures", "cavitation.active_set", "models", "banded.numbering", "banded.substitution", "banded.workspace", "banded.ldl", "sensitivity.mirror_symmetry", "reynolds.gap", "grid", "loads", "lubricant.lubricant", "lubricant.named_oils",
     "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "sensitivity.rigid", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.many_sides",
-    "surfaces.patir_cheng", "solvers.liner.parts", "surfaces.elastic_liner", "solvers.balance", "banded.assemble",
+    "cavitation.cavity_transport", "surfaces.patir_cheng", "solvers.liner.parts", "surfaces.elastic_liner", "solvers.balance", "banded.assemble",
 }  # fmt: skip
 
 

@@ -111,7 +111,7 @@ def test_only_pressure_differences_count(make_bearing, closure, film):
     for _ in range(40):
         motion = _random_motion(rng, low.bearing, largest=0.9)
         a, b = low.evaluate(motion), high.evaluate(motion)
-        pa, pb = low.solver.pressure * low.pressure_scale, high.solver.pressure * high.pressure_scale
+        pa, pb = (m.solver.pressure * m.scales.pressure for m in (low, high))
         # Rounding of the linear solution, relative to the largest pressure; condition numbers reach 1e4.
         size = max(abs(pa).max(), lift)
         np.testing.assert_allclose(pb - pa, lift, atol=1e-10 * size)
