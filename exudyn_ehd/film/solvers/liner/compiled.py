@@ -127,9 +127,6 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
         else:
             P[:] = trial[0]
         moved += share * size
-        if norm <= noise:
-            ok, count, width = _factor(P, fixed, numbers, columns, links, rates, matrix, active)
-            return ok, step, ok, count, width
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and (not clips or norm <= BALANCED / ROUNDING * noise)
@@ -138,4 +135,8 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
                 return True, step, not borrowed and moved <= RULE.exact, count, width
         ready = ready and (fresh or borrowed or size <= RULE.reusable * last)
         last, last_left = size, left
+    if norm <= noise:
+        # a film that carries nothing: its balances hold to rounding, and its steps never stand still
+        ok, count, width = _factor(P, fixed, numbers, columns, links, rates, matrix, active)
+        return ok, RULE.most_steps, ok, count, width
     return False, RULE.most_steps, False, count, width
