@@ -65,6 +65,15 @@ class CarreauShear:
         b = 1.0 + (self.relaxation_time * np.asarray(rate)) ** 2
         return self.residual + (1.0 - self.residual) * b ** (0.5 * (self.exponent - 1.0))
 
+    @property
+    def onset(self) -> float:
+        """Shear rate from which on the oil thins, 1/s."""
+        return 1.0 / self.relaxation_time
+
+    def bound(self, radius: float, clearance: float) -> ShearThinning:
+        """The law as flux effect and shear factor of a bearing of this radius and clearance, m."""
+        return ShearThinning(self, radius, clearance)
+
 
 class ShearThinning(FluxEffect):
     """A `CarreauShear` in scaled form: flux effect and shear factor of one bearing model.

@@ -137,7 +137,7 @@ def heating(case: Case) -> Finding:
 def shear_thinning(case: Case) -> Finding:
     """Largest shear rate against the onset of thinning."""
     law = case.bearing.lubricant.shear_law
-    onset = TYPICAL_SHEAR_ONSET if law is None else 1.0 / law.relaxation_time
+    onset = TYPICAL_SHEAR_ONSET if law is None else law.onset
     rate = max(s.speed / s.minimum_gap for s in case.samples)
     return finding(
         "shear thinning",

@@ -10,7 +10,6 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
 from exudyn_ehd.joint.seams import FluxEffect, PressureLaw, ShearFactor, ShearProduct, ThermalEffect
 from exudyn_ehd.status import InputError
@@ -55,7 +54,7 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
     flux: tuple[FluxEffect, ...] = ()
     factor: ShearFactor | None = None
     if oil.shear_law is not None:
-        thinning = ShearThinning(oil.shear_law, bearing.journal_radius, bearing.radial_clearance)
+        thinning = oil.shear_law.bound(bearing.journal_radius, bearing.radial_clearance)
         flux, factor = (thinning,), thinning
     if thermal is None:
         return Rheology(flux, law, factor, None, density)
