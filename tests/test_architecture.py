@@ -91,12 +91,10 @@ def test_options_are_frozen_and_keyword_only():
 
 
 # How large things may be; docstrings don't count. A reader holds no more than this at once.
-LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 411, 96, 28, 16
+LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 490, 78, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE = 100, 200, 17500
-# Files that import each other in a circle, imports for types alone included.
-IN_CIRCLES = 5
+MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 17200
 
 
 def _docstring_lines(tree):
@@ -143,14 +141,15 @@ def _circles(graph):
 
 
 def test_no_circle_of_files():
+    """Imports inside functions and for types alone included."""
     trees = {_module(path): tree for path, _, tree, _ in _parsed()}
     circles = _circles({name: set(_imports(tree, trees)) for name, tree in trees.items()})
-    assert sum(map(len, circles)) <= IN_CIRCLES, [sorted(c) for c in circles]
+    assert not circles, [sorted(c) for c in circles]
 
 
 def test_folders_are_small():
     for folder in {path.parent for path in _sources()}:
-        assert len(list(folder.glob("*.py"))) <= MOST_FILES, folder
+        assert len(set(folder.glob("*.py")) - {folder / "__init__.py"}) <= MOST_FILES, folder
 
 
 def test_files_functions_and_signatures_are_short():

@@ -1,7 +1,7 @@
 """What is off is not called: nothing of an effect's modules runs in a film without it, and with it something does.
 
-Every function, kernel and method of the modules that belong to an effect alone is replaced by one that raises, wherever it is
-bound. Films then give the bits that they gave before.
+Every function, kernel and method of the modules that belong to an effect alone is replaced
+by one that raises, wherever it is bound. Films then give the bits that they gave before.
 """
 
 import importlib
@@ -43,20 +43,41 @@ EFFECTS = {
     "wear": (("film.surfaces.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
-    "shear law": (("film.lubricant.shear_thinning",), oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6))),
+    "shear law": (
+        ("film.lubricant.shear_thinning",),
+        oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6)),
+    ),
     "density law": (
-        ("film.lubricant.density", "film.lubricant.density_field", "film.solvers.density_newton", "film.solvers.compressible"),
+        (
+            "film.lubricant.density",
+            "film.lubricant.density_field",
+            "film.solvers.density_newton",
+            "film.solvers.compressible",
+        ),
         oil(density_law=ehd.DowsonHigginson()),
     ),
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
     "liner": (
-        ("film.solvers.nonlinear", "film.solvers.liner.balance", "film.solvers.liner.elements", "film.solvers.liner.gap_response", "film.solvers.liner.continuation", "film.solvers.liner.compiled"),
+        (
+            "film.solvers.nonlinear",
+            "film.solvers.liner.balance",
+            "film.solvers.liner.elements",
+            "film.solvers.liner.gap_response",
+            "film.solvers.liner.continuation",
+            "film.solvers.liner.compiled",
+        ),
         {"bush": LINER},
     ),
     "liner in contact": (("film.solvers.newton", "film.solvers.liner.kernels"), {"bush": LINER, "asperity": ASPERITY}),
     "bush": (
-        ("joint.bore.shapes", "joint.model.flexible", "joint.tangent.bore", "joint.bore.equilibrium", "solid.static_modes"),
+        (
+            "joint.bore.shapes",
+            "joint.model.flexible",
+            "joint.tangent.bore",
+            "joint.bore.equilibrium",
+            "solid.static_modes",
+        ),
         {
             "bush": ehd.ModalBush(
                 mesh=ehd.HollowCylinder(
@@ -72,23 +93,57 @@ EFFECTS = {
         ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
     ),
-    "mass conservation": (("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"), {"cavitation": CLOSURES["elrod"]}),
-}  # fmt: skip
+    "mass conservation": (
+        ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),
+        {"cavitation": CLOSURES["elrod"]},
+    ),
+}
 
 
-# Modules that every film uses, that describe a scene, or (the last line) whose kernels only other kernels of their effect call.
+# Modules that every film uses, that describe a scene, or (the last line) whose
+# kernels only other kernels of their effect call.
 SHARED = {
-    "banded.lu", "cavitation.closures", "cavitation.active_set", "models", "banded.numbering", "banded.substitution", "banded.workspace", "banded.ldl", "sensitivity.mirror_symmetry", "reynolds.gap", "grid", "loads", "lubricant.lubricant", "lubricant.named_oils",
-    "reynolds.links", "solvers.linear", "reynolds.stepped_gap", "sensitivity.bore_stencil", "sensitivity.rigid", "supply", "reynolds.link_derivatives", "lubricant.temperature_viscosity", "heat.options", "banded.many_sides",
-    "cavitation.cavity_transport", "surfaces.patir_cheng", "solvers.liner.parts", "surfaces.elastic_liner", "solvers.balance", "banded.assemble",
-}  # fmt: skip
+    "banded.lu",
+    "cavitation.closures",
+    "cavitation.active_set",
+    "models",
+    "banded.numbering",
+    "banded.substitution",
+    "banded.workspace",
+    "banded.ldl",
+    "sensitivity.mirror_symmetry",
+    "reynolds.gap",
+    "grid",
+    "loads",
+    "lubricant.lubricant",
+    "lubricant.named_oils",
+    "reynolds.links",
+    "solvers.linear",
+    "reynolds.stepped_gap",
+    "sensitivity.bore_stencil",
+    "sensitivity.rigid",
+    "supply",
+    "reynolds.link_derivatives",
+    "lubricant.temperature_viscosity",
+    "heat.options",
+    "banded.many_sides",
+    "cavitation.cavity_transport",
+    "surfaces.patir_cheng",
+    "solvers.liner.parts",
+    "surfaces.elastic_liner",
+    "solvers.balance",
+    "banded.assemble",
+}
 
 
 def bearing(**options):
     values = oil() | {
-        "journal_radius": 0.025, "length": 0.05, "radial_clearance": C, "end_pressures": (1e5, 2e5),
+        "journal_radius": 0.025,
+        "length": 0.05,
+        "radial_clearance": C,
+        "end_pressures": (1e5, 2e5),
         "film": ehd.FiniteLength(n_theta=48, n_z=8),
-    }  # fmt: skip
+    }
     return ehd.JournalBearing(**(values | options))
 
 

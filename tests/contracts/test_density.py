@@ -1,4 +1,5 @@
-"""A compressible film with every closure: exact tangent, incompressible limit, oil mass, a solution, no cost when off."""
+"""A compressible film with every closure: exact tangent, incompressible limit,
+oil mass, a solution, no cost when off."""
 
 import dataclasses
 
@@ -42,7 +43,8 @@ def start(model):
 
 
 def tangent_error(model, history, step=STEP, columns=range(10)):
-    """Largest difference to fourth-order central differences, over the rows; the best of several steps (rupture moves)."""
+    """Largest difference to fourth-order central differences, over the rows;
+    the best of several steps (rupture moves)."""
     columns = list(columns)
     exact = (model.evaluate(MOTION, history, step).tangent() * UNIT)[:, columns]
     size, errors = np.abs(exact).max(axis=1, keepdims=True), []

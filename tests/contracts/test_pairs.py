@@ -69,9 +69,14 @@ def _bearing(names, closure):
             "temperature": 320.0,
         }
     return ehd.JournalBearing(
-        journal_radius=0.025, length=0.04, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02, **lubricant),
-        film=ehd.FiniteLength(n_theta=40, n_z=6), cavitation=CLOSURES[closure], **options,
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.04,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.02, **lubricant),
+        film=ehd.FiniteLength(n_theta=40, n_z=6),
+        cavitation=CLOSURES[closure],
+        **options,
+    )
 
 
 def _differences(model, history, step, direction, h=1e-6):

@@ -34,7 +34,8 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
     kx, kz : (n, m) arrays
         Not zero where vertices are linked in theta and in z.
     slopes : (5, n m) array
-        Of the flow a -> b to the unknowns at a and at b, in theta, then in z; of the storage to the vertex's own unknown.
+        Of the flow a -> b to the unknowns at a and at b, in theta, then in z;
+        of the storage to the vertex's own unknown.
     """
     n, m = number.shape
     size, rows = _unsigned(n * m), _unsigned(m)

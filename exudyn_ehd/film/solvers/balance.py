@@ -1,12 +1,14 @@
 """Mass balance of a film and its derivatives, for every film whose gap or density answers to the pressure.
 
-The film at one state is a set of coefficients, `FilmTerms`. With the mean density rho of a link's ends and the fill of its upstream end,
+The film at one state is a set of coefficients, `FilmTerms`. With the mean
+density rho of a link's ends and the fill of its upstream end,
 
     flow over the link a -> b    k (P_a - P_b) + f fill_upstream (rho_a + rho_b) / 2,
     storage of a vertex          area (rho (grow fill + known) + kept),
 
-the balance is what leaves a vertex and what it stores. Its derivatives to the unknowns (P where ``full``, else the fill) are kept per link, the
-slopes that `banded.assemble` takes: what the density answers here, what the gap answers in `exudyn_ehd.film.solvers.liner.gap_response`.
+the balance is what leaves a vertex and what it stores. Its derivatives to the unknowns (P
+where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: what
+the density answers here, what the gap answers in `exudyn_ehd.film.solvers.liner.gap_response`.
 """
 
 from __future__ import annotations
@@ -20,7 +22,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class FilmTerms(NamedTuple):
-    """One film's coefficients, (n, m) each: conductances and Couette fluxes of the links, storage, areas, prescribed vertices."""
+    """One film's coefficients, (n, m) each: conductances and Couette fluxes of
+    the links, storage, areas, prescribed vertices."""
 
     kx: np.ndarray
     kz: np.ndarray
@@ -73,7 +76,8 @@ def _gather_flows(area, grow, known, kept, fill, rho, across, across_in, along, 
 
 @njit(cache=True)
 def film_balance(P, fill, rho, film, out):
-    """Mass that leaves every vertex (n, m) and that it stores: 0 where the film is solved; None for a fill or density of one everywhere."""
+    """Mass that leaves every vertex (n, m) and that it stores: 0 where the film
+    is solved; None for a fill or density of one everywhere."""
     n, m = P.shape
     size = n * m
     last = size - m
@@ -82,13 +86,27 @@ def film_balance(P, fill, rho, film, out):
     along = np.empty(size + m)
     across = np.empty(size + 1)
     _link_flows(
-        kx[:last], fx[:last], p[:last], p[m:], part(fill, 0, last), part(fill, m, size), part(rho, 0, last), part(rho, m, size),
+        kx[:last],
+        fx[:last],
+        p[:last],
+        p[m:],
+        part(fill, 0, last),
+        part(fill, m, size),
+        part(rho, 0, last),
+        part(rho, m, size),
         along[m:size],
-    )  # fmt: skip
+    )
     _link_flows(
-        kx[last:], fx[last:], p[last:], p[:m], part(fill, last, size), part(fill, 0, m), part(rho, last, size), part(rho, 0, m),
+        kx[last:],
+        fx[last:],
+        p[last:],
+        p[:m],
+        part(fill, last, size),
+        part(fill, 0, m),
+        part(rho, last, size),
+        part(rho, 0, m),
         along[size:],
-    )  # fmt: skip
+    )
     along[:m] = along[size:]
     # nothing flows over the last row's links in z
     e = size - 1
@@ -105,9 +123,18 @@ def film_balance(P, fill, rho, film, out):
     )
     across[0] = across[size] = 0.0
     _gather_flows(
-        film.area.reshape(-1), film.grow.reshape(-1), film.known.reshape(-1), film.kept.reshape(-1), part(fill, 0, size),
-        part(rho, 0, size), across[1:], across[:size], along[m:], along[:size], q,
-    )  # fmt: skip
+        film.area.reshape(-1),
+        film.grow.reshape(-1),
+        film.known.reshape(-1),
+        film.kept.reshape(-1),
+        part(fill, 0, size),
+        part(rho, 0, size),
+        across[1:],
+        across[:size],
+        along[m:],
+        along[:size],
+        q,
+    )
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -124,7 +151,8 @@ def violation(r, P, fixed, pc, complementary):
 
 @njit(cache=True, fastmath=_FAST)
 def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, out):
-    """Derivatives of the flows over links a -> b at fixed gaps to the unknown at one end, b (side 1) or a (-1); by: of its density."""
+    """Derivatives of the flows over links a -> b at fixed gaps to the unknown
+    at one end, b (side 1) or a (-1); by: of its density."""
     for c in range(out.size):
         half, mean = 0.5 * f[c], f[c]
         if fill_a is not None:
@@ -157,9 +185,11 @@ def _storage_slopes(area, full, fill, rho, by, grow, known, out):
 
 @njit(cache=True)
 def film_slopes(fill, full, rho, rho_P, film, slopes):
-    """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps; unknowns are pressures where ``full``, else fills.
+    """Derivatives (5, n m) as `banded.assemble` takes them, at fixed gaps;
+    unknowns are pressures where ``full``, else fills.
 
-    ``fill`` and ``full``, ``rho`` and ``rho_P`` are None together: a film that is full everywhere, an incompressible one.
+    ``fill`` and ``full``, ``rho`` and ``rho_P`` are None together: a film that
+    is full everywhere, an incompressible one.
     """
     n, m = film.kx.shape
     size = n * m

@@ -1,23 +1,24 @@
 """Compressible film: the density follows the pressure, on any closure.
 
-With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of `exudyn_ehd.film.lubricant.density`, scaled to P, the mass balance
-of a control volume reads
+With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of
+`exudyn_ehd.film.lubricant.density`, scaled to P, the mass balance of a control volume reads
 
     sum over its links of (sigma V H - H^3 dP/ds) + d(rho fill H)/dt area = 0,
 
-the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled form of
-`exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's ends (second order) times the fill of its upstream end. The closures
-are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over the whole film, cut off afterwards; the density
-answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
+the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled
+form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's ends (second order) times the fill of
+its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
+the whole film, cut off afterwards; the density answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 
-Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history there is no rate
-of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as the strain of the oil, dp / K
-with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H: 1 % for 10 MPa during which the gap
-changes by half. The rates at an instant (a history without a time step) leave it out likewise. A flooded start
-holds oil of ambient density, so that its film builds up the pressure over some steps.
+Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history
+there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
+the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H:
+1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
+out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
 
-Newton's method with the exact non-symmetric matrix starts from the last film, else from the incompressible one. Should it fail, the
-density's departure from a constant is switched on in steps. Oil that no pressure of the law's range carries has no film.
+Newton's method with the exact non-symmetric matrix starts from the last film, else
+from the incompressible one. Should it fail, the density's departure from a constant
+is switched on in steps. Oil that no pressure of the law's range carries has no film.
 """
 
 from __future__ import annotations
@@ -88,9 +89,17 @@ class CompressibleFilmSolver(FilmSolver):
         self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
         lower, upper = w.lower, w.upper
         self.buffers = Buffers(
-            w.order, w.number, lower, upper, w.inv_diag, w.unknowns, np.full((6, self.area.size), np.nan), np.ones(shape),
-            np.zeros(shape), np.zeros(shape),
-        )  # fmt: skip
+            w.order,
+            w.number,
+            lower,
+            upper,
+            w.inv_diag,
+            w.unknowns,
+            np.full((6, self.area.size), np.nan),
+            np.ones(shape),
+            np.zeros(shape),
+            np.zeros(shape),
+        )
         self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
         self.sigma_known = False
         self.exact = False
@@ -124,10 +133,12 @@ class CompressibleFilmSolver(FilmSolver):
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
-        """Solve for the gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        """Solve for the gaps now stored; parameters as for `FilmSolver.solve`,
+        ``mass_old`` the old value of rho fill H."""
         w = self.work
         if mass_old is not None and step <= 0.0:
-            # What an instant keeps is the volume: a full film follows the gap with the density that its pressure gives it.
+            # What an instant keeps is the volume: a full film follows the gap
+            # with the density that its pressure gives it.
             at_cavity = self.law.density.ratio(self._cavity_in_pascal(cavity_pressure))
             mass_old = np.minimum(mass_old / at_cavity, self.H)
         steps = 0
@@ -194,9 +205,20 @@ class CompressibleFilmSolver(FilmSolver):
     def _newton(self, share: float) -> tuple[bool, int]:
         s, w = self.system, self.work
         ok, steps, self.exact, w.count, w.width = solve_compressible(
-            self.film, self.pressure_scale, s.cavity_pressure, self.kind, self.law.kernel_table, share, self.held, w.count,
-            w.width, w.active, self.buffers, s.linear_pressure, self._fill,
-        )  # fmt: skip
+            self.film,
+            self.pressure_scale,
+            s.cavity_pressure,
+            self.kind,
+            self.law.kernel_table,
+            share,
+            self.held,
+            w.count,
+            w.width,
+            w.active,
+            self.buffers,
+            s.linear_pressure,
+            self._fill,
+        )
         self.held = ok
         return ok, steps
 
@@ -245,15 +267,24 @@ class CompressibleFilmSolver(FilmSolver):
         return self.sigma_x, self.sigma_z
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of the last solution (n, m) with their derivatives to the transformed pressure.
+        """Scaled pressure and viscosity ratio of the last solution (n, m) with
+        their derivatives to the transformed pressure.
 
         False where that has no pressure.
         """
         s, b = self.system, self.buffers
         if viscosity_at(
-            s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, b.known, b.rho, p_out, ratio_out, ratio_P_out,
+            s.pressure,
+            self.pressure_scale,
+            self._floor,
+            self.law.kernel_table,
+            b.known,
+            b.rho,
+            p_out,
+            ratio_out,
+            ratio_P_out,
             p_P_out,
-        ):  # fmt: skip
+        ):
             return True
         if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
             return False
@@ -263,7 +294,8 @@ class CompressibleFilmSolver(FilmSolver):
         return True
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of the last solution (n, m) and its derivative to the transformed one; False where that has no pressure."""
+        """Scaled pressure of the last solution (n, m) and its derivative to the
+        transformed one; False where that has no pressure."""
         s, table = self.system, self.law.kernel_table
         if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.buffers.known, p_out, p_P_out):
             return True
@@ -271,12 +303,14 @@ class CompressibleFilmSolver(FilmSolver):
         return self.viscosity(p_out, rest[0], rest[1], p_P_out)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette mass flows of the links in theta and z, and the rate at which a full film's mass grows with its gap."""
+        """Couette mass flows of the links in theta and z, and the rate at which
+        a full film's mass grows with its gap."""
         sigma_x, sigma_z = self._sigma()
         return self.system.fx * sigma_x, self.system.fz * sigma_z, self.rho * self.H_t
 
     def flow_work(self, P: np.ndarray) -> np.ndarray:
-        """Scaled integral of dp over the density ratio up to scaled true pressures P; see `DowsonHigginson.flow_work`."""
+        """Scaled integral of dp over the density ratio up to scaled true
+        pressures P; see `DowsonHigginson.flow_work`."""
         return self.law.density.flow_work(P * self.pressure_scale) / self.pressure_scale
 
     def inflow(self) -> np.ndarray:
@@ -286,7 +320,8 @@ class CompressibleFilmSolver(FilmSolver):
         return np.where(self.grid.fixed, balance, 0.0)
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k,
+        count) is overwritten, fields (k, n, m) come back."""
         w = self.work
         solve_exact_transposed(
             self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
@@ -328,9 +363,18 @@ class CompressibleFilmSolver(FilmSolver):
         f = self.flux
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         link_derivatives(
-            self.system.linear_pressure, self.H, self.HF, slopes, by_speed, self._sigma(), self.vx, self.vz, self.flow_x, self.grid.mesh,
+            self.system.linear_pressure,
+            self.H,
+            self.HF,
+            slopes,
+            by_speed,
+            self._sigma(),
+            self.vx,
+            self.vz,
+            self.flow_x,
+            self.grid.mesh,
             self.link_fields,
-        )  # fmt: skip
+        )
         return self.link_fields
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:

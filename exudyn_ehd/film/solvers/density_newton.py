@@ -1,7 +1,7 @@
 """Newton's method for the compressible film and its sets; see `exudyn_ehd.film.solvers.compressible`.
 
-Symbols: P transformed pressure, fill film fraction, rho density ratio at the vertices and rho_P its derivative to P; full: P is the
-unknown of a vertex, else its fill.
+Symbols: P transformed pressure, fill film fraction, rho density ratio at the vertices
+and rho_P its derivative to P; full: P is the unknown of a vertex, else its fill.
 """
 
 from __future__ import annotations
@@ -24,13 +24,15 @@ SET_TOLERANCE = 1e-12
 ERROR_TOLERANCE = 1e-14
 # Pa: a film at rest has no pressures but rounding, and no share of those would ever stand.
 SMALLEST_PEAK = 1e-6
-# A step so small leaves an error of its square; a factor from so near, or one with which steps shrink so fast, counts as exact.
+# A step so small leaves an error of its square; a factor from so near, or one
+# with which steps shrink so fast, counts as exact.
 LAST_STEP = 1e-7
-# Steps without a limit; then the share of the way to the end of the law's range that one may cover, and steps in a row that may want more.
+# Steps without a limit; then the share of the way to the end of the law's range
+# that one may cover, and steps in a row that may want more.
 WHOLE_STEPS = 16
 TO_THE_END = 0.9
-# Share of the pressure that a wedge as deep as the gap makes: below it a film without a solution so far is that of a journal in the centre but
-# for rounding, whose pressures are rounding too.
+# Share of the pressure that a wedge as deep as the gap makes: below it a film without a solution
+# so far is that of a journal in the centre but for rounding, whose pressures are rounding too.
 ROUNDING_SHARE = 1e-6
 # Rounding of a vertex's balance, share of the largest flow, and of that wedge's pressure: no reason to change sides.
 ROUNDING = 1e-14
@@ -41,9 +43,11 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class Buffers(NamedTuple):
-    """Arrays that a solution works on: numbering, factor (`dense_band`), right-hand side, what is known of the law and fields.
+    """Arrays that a solution works on: numbering, factor (`dense_band`),
+    right-hand side, what is known of the law and fields.
 
-    ``known`` (6, n m) as of `exudyn_ehd.film.lubricant.density_field`; rho and residual are those of the last balance, rho_P that of the last factor.
+    ``known`` (6, n m) as of `exudyn_ehd.film.lubricant.density_field`; rho and
+    residual are those of the last balance, rho_P that of the last factor.
     """
 
     order: np.ndarray
@@ -100,12 +104,14 @@ def _wedge(film):
 
 @njit(cache=True)
 def _take(P, fill, full, order, count, x, pc, kind, end, least):
-    """Add the step x; returns its largest share of the peak pressure (or of a full film), the peak and how often the law's end cut it.
+    """Add the step x; returns its largest share of the peak pressure (or of a
+    full film), the peak and how often the law's end cut it.
 
     The peak counts as ``least`` at least.
 
-    The density climbs ever more steeply towards ``end``, where the pressure has no bound (viscosity laws whose integral is finite), and is
-    taken as constant beyond, so that whole steps across it can bounce back for ever. Cut steps cover nine tenths of the way.
+    The density climbs ever more steeply towards ``end``, where the pressure has no bound
+    (viscosity laws whose integral is finite), and is taken as constant beyond, so that
+    whole steps across it can bounce back for ever. Cut steps cover nine tenths of the way.
     """
     at, share, sides = P.reshape(-1), fill.reshape(-1), full.reshape(-1)
     cuts = 0
@@ -143,7 +149,8 @@ def _unsettled(P, r, fixed, full, floor):
 
 @njit(cache=True)
 def _select(P, fill, r, fixed, full, pc, kind, floor, piled):
-    """Vertices change sides: pressures below ``floor``, films above 1 (or, without a fill, oil that piles up); returns their number.
+    """Vertices change sides: pressures below ``floor``, films above 1 (or,
+    without a fill, oil that piles up); returns their number.
 
     Oil piles up where the balance r is not above ``piled``.
     """
@@ -201,10 +208,10 @@ def _balance(P, fill, film, kind, b):
 def solve_compressible(film, scale, pc, kind, law, share, held, count, width, full, b, P, fill):
     """Newton from P, fill and the sets in ``full``; returns (ok, steps, exact, count, width).
 
-    A factor serves further steps as long as the sets stay and each step is five times smaller than the last; the first step takes
-    that of the last film (``count``, ``width``) if there is one (``held``). A film that presses against the end of the law's range for
-    `MAX_CUT_STEPS` has no pressure there. ``exact`` says that the last factor is that of the
-    solution.
+    A factor serves further steps as long as the sets stay and each step is five times smaller
+    than the last; the first step takes that of the last film (``count``, ``width``) if there is
+    one (``held``). A film that presses against the end of the law's range for `MAX_CUT_STEPS`
+    has no pressure there. ``exact`` says that the last factor is that of the solution.
     """
     floor = -np.inf if kind == FULL else pc
     _start(P, fill, film, full, pc, kind)
@@ -277,7 +284,8 @@ def raise_to(P, fixed, lowest):
 
 @njit(cache=True)
 def solve_exact_transposed(P, fill, film, kind, scale, floor, law, full, count, width, b, exact, x):
-    """Solve the transposed system at the solution for every row of x (k, count), in place; ``exact``: its factor is there."""
+    """Solve the transposed system at the solution for every row of x (k,
+    count), in place; ``exact``: its factor is there."""
     if not exact:
         factor_compressible(P, fill, film, kind, scale, floor, law, 1.0, full, b)
     solve_lu_transposed(

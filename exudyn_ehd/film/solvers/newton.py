@@ -1,7 +1,8 @@
 """Newton's method for a film whose gap or density answers to its pressure, together with its sets.
 
-The chord method: a factor serves further steps while the sets stay and the steps contract, and the contraction also says what is left after a
-step (E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, 1996, section IV.8). Steps are halved while the balances do not improve.
+The chord method: a factor serves further steps while the sets stay and the steps contract, and the
+contraction also says what is left after a step (E. Hairer, G. Wanner, Solving Ordinary
+Differential Equations II, 1996, section IV.8). Steps are halved while the balances do not improve.
 """
 
 from __future__ import annotations
@@ -43,7 +44,8 @@ RULE = Rule()
 
 
 class Step(NamedTuple):
-    """Newton's step: largest change of a pressure over the peak or of a fill; over what counts after it; the peak; safe share of the step."""
+    """Newton's step: largest change of a pressure over the peak or of a fill;
+    over what counts after it; the peak; safe share of the step."""
 
     size: float
     left: float
@@ -85,7 +87,8 @@ class Balance(Protocol):
         """Number of unknowns of the factor."""
 
     def step(self, gap: float) -> Step:
-        """Newton's step with the factor at hand, and the trial state after its safe share; ``gap`` is the smallest one."""
+        """Newton's step with the factor at hand, and the trial state after its
+        safe share; ``gap`` is the smallest one."""
 
     def move(self, share: float, peak: float) -> int:
         """The trial state after another ``share`` of the step; returns how many unknowns change sides."""
@@ -165,7 +168,8 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
 
 
 def _left(left: float, last: float, fresh: bool, rule: Rule) -> float:
-    """What a step leaves over what may be left: about its square, or with an older factor itself times its ratio to the last one."""
+    """What a step leaves over what may be left: about its square, or with an
+    older factor itself times its ratio to the last one."""
     return left * left / (rule.square if fresh else rule.converged * min(max(last, 1e-300), 1.0))
 
 

@@ -1,6 +1,8 @@
-"""Film on an elastic liner, alone or with contact, mass-conserving cavitation, laws of the oil, density or flow factors.
+"""Film on an elastic liner, alone or with contact, mass-conserving cavitation,
+laws of the oil, density or flow factors.
 
-The liner is a layer of Winkler elements: each deflects in proportion to the pressure on it, that of the film and of the contact,
+The liner is a layer of Winkler elements: each deflects in proportion to the
+pressure on it, that of the film and of the contact,
 
     G = G_rigid + D,    D = beta (p + P_c(G)),
 
@@ -33,11 +35,11 @@ ends with NO_PRESSURE. Couette flows and storage carry the density as in `exudyn
 
 `ElrodAdams` has the balance of `exudyn_ehd.film.cavitation.elrod_adams` with the content ``rho fill H(P)``: at full
 vertices the unknown pressure takes part in the storage through liner and density, at cavitated ones the unknown is the
-fill and the element rests under the cavity's pressure. `SwiftStieber` always has a film as long as the cavity's pressure
-leaves a gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a solution
-(Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the cavity's, but
-the liner answers to the clipped one; no theorem says that such a film exists, and of extreme steady ones some are not
-found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
+fill and the element rests under the cavity's pressure. `SwiftStieber` always has a film as long as the cavity's
+pressure leaves a gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a
+solution (Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the
+cavity's, but the liner answers to the clipped one; no theorem says that such a film exists, and of extreme steady ones
+some are not found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
 
 Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess; should it fail,
 pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`).
@@ -72,7 +74,8 @@ NEARLY_SOLID = 0.9
 class NonlinearFilmSolver(FilmSolver):
     """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors.
 
-    The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves those that the film sees in ``H``, ``HF`` and ``H_t``.
+    The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves
+    those that the film sees in ``H``, ``HF`` and ``H_t``.
 
     Parameters
     ----------
@@ -193,7 +196,8 @@ class NonlinearFilmSolver(FilmSolver):
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0
     ) -> tuple[Status, int]:
-        """Solve for the undeformed gaps now stored; parameters as for `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
+        """Solve for the undeformed gaps now stored; parameters as for
+        `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
         s, g, e = self.system, self.grid, self.elements
         self.vx, self.vz = vx, vz
         s.cavity_pressure = cavity_pressure
@@ -283,7 +287,8 @@ class NonlinearFilmSolver(FilmSolver):
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k, count) is overwritten, fields (k, n, m) come back."""
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k,
+        count) is overwritten, fields (k, n, m) come back."""
         w, e = self.work, self.elements
         if not e.exact:
             e.factor()
@@ -307,9 +312,19 @@ class NonlinearFilmSolver(FilmSolver):
         e = self.elements
         by_gap, by_rate = e.storage_gradients()
         gap_gradient(
-            lam, e.by.reshape(4, *self.grid.shape), e.flows_by_speed(), e.slope_fields, by_gap, by_rate if self.squeeze else self.nothing,
-            cos_x, sin_x, cos_f, sin_f, self.grid.z, gradient,
-        )  # fmt: skip
+            lam,
+            e.by.reshape(4, *self.grid.shape),
+            e.flows_by_speed(),
+            e.slope_fields,
+            by_gap,
+            by_rate if self.squeeze else self.nothing,
+            cos_x,
+            sin_x,
+            cos_f,
+            sin_f,
+            self.grid.z,
+            gradient,
+        )
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
@@ -331,7 +346,8 @@ class NonlinearFilmSolver(FilmSolver):
         )
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m); of masses if compressible."""
+        """Couette flows of the links in theta and z, and the rate of a full
+        film's content per area, all (n, m); of masses if compressible."""
         s, e = self.system, self.elements
         if e.rho is None:
             return super().couette_flows()
@@ -349,7 +365,8 @@ class NonlinearFilmSolver(FilmSolver):
         return np.where(self.grid.fixed, balance, 0.0)
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure and viscosity ratio of a compressible film (n, m) with their derivatives to the transformed pressure.
+        """Scaled pressure and viscosity ratio of a compressible film (n, m)
+        with their derivatives to the transformed pressure.
 
         False where that has no pressure.
         """
@@ -362,7 +379,8 @@ class NonlinearFilmSolver(FilmSolver):
         return True
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
-        """Scaled pressure of a compressible film (n, m) and its derivative to the transformed one; False where that has no pressure."""
+        """Scaled pressure of a compressible film (n, m) and its derivative to
+        the transformed one; False where that has no pressure."""
         rest = np.empty((2, *p_out.shape))
         return self.viscosity(p_out, rest[0], rest[1], p_P_out)
 

@@ -1,6 +1,7 @@
 """Wrench of contact pressures with its gradient, shear between rough surfaces; chain rule through a gap limiter.
 
-Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z (m,); basis e = (cos, sin, z cos, z sin, 1).
+Symbols: weight integration weights (n, m), cos_x / sin_x at the vertices, z
+(m,); basis e = (cos, sin, z cos, z sin, 1).
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 def contact_wrench(P, weight, cos_x, sin_x, z, motion, friction, transition, R, integrals_out, drag_out, wrench):
     """Integrals ``sum P weight e`` of one contact's pressures, their wrench and that of their Coulomb friction.
 
-    The pressures do no work on the journal's spin, so that their torque about O is e x F; friction acts at the bore's points against the
-    slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
+    The pressures do no work on the journal's spin, so that their torque about O is e x F; friction
+    acts at the bore's points against the slip, regularised as ``v / sqrt(|v|^2 + v0^2)``.
 
     Parameters
     ----------
@@ -72,9 +73,11 @@ def contact_wrench(P, weight, cos_x, sin_x, z, motion, friction, transition, R, 
 def contact_tangent(
     slope, weight, cos_x, sin_x, z, motion, pose_scale, friction, transition, R, integrals, grads_out, tangent
 ):
-    """Add d(wrench of `contact_wrench`) / d(motion) to ``tangent`` (6, 10), from the ``slope`` (n, m) of the pressure with the scaled gap.
+    """Add d(wrench of `contact_wrench`) / d(motion) to ``tangent`` (6, 10),
+    from the ``slope`` (n, m) of the pressure with the scaled gap.
 
-    ``grads_out`` (5, 4): gradients ``-sum slope weight e (cos, sin, z cos, z sin)`` of the ``integrals`` (5,) to the scaled pose.
+    ``grads_out`` (5, 4): gradients ``-sum slope weight e (cos, sin, z cos, z sin)``
+    of the ``integrals`` (5,) to the scaled pose.
     """
     n, m = slope.shape
     G = grads_out
@@ -146,7 +149,8 @@ def contact_tangent(
 
 @njit(cache=True)
 def contact_adjoint_rhs(order, count, weight, by_pressure, cos_x, sin_x, z, rhs_out):
-    """Weights of the five integrals of `contact_wrench` at the unknowns, rhs_out (5, count), with d(contact pressure)/dP (n, m)."""
+    """Weights of the five integrals of `contact_wrench` at the unknowns,
+    rhs_out (5, count), with d(contact pressure)/dP (n, m)."""
     m = z.size
     for r in range(count):
         i = order[r] // m

@@ -1,12 +1,12 @@
 """Elastic liner: a layer on a stiff housing that deflects by itself under every point, inside the film solve.
 
-A layer of thickness t on a stiff housing, pressed by p without sliding sideways (plane strain in both directions along the surface),
-deflects by
+A layer of thickness t on a stiff housing, pressed by p without sliding sideways
+(plane strain in both directions along the surface), deflects by
 
     delta = K_nu t p / E,    K_nu = (1 + nu)(1 - 2 nu) / (1 - nu),
 
-the Winkler model: right for layers thinner than the contact is wide, and without meaning for incompressible ones. The film on it is that of
-`exudyn_ehd.film.solvers.nonlinear`.
+the Winkler model: right for layers thinner than the contact is wide, and without meaning
+for incompressible ones. The film on it is that of `exudyn_ehd.film.solvers.nonlinear`.
 """
 
 from __future__ import annotations
@@ -40,8 +40,8 @@ class ElasticLiner:
         nu = require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0)
         if nu > 0.49:
             raise InputError(
-                f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does not give "
-                "way in columns, take a bush with a mesh."
+                f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does "
+                "not give way in columns, take a bush with a mesh."
             )
 
     @property

@@ -3,8 +3,9 @@
 For a gap h below the onset h0, with s = h / h0:
 
 * contact pressure ``p_w = pressure (1 - s)^2`` (continuous first derivative, still rising for h < 0), and
-* the film sees ``h0 g(s)``, ``g = 1 - a tanh((1 - s) / a)``, a = 1 - residual gap share: equal to s up to second derivatives at
-  s = 1 and never below ``residual h0``, so that the Reynolds equation keeps a solution while surfaces press on each other.
+* the film sees ``h0 g(s)``, ``g = 1 - a tanh((1 - s) / a)``, a = 1 - residual gap
+  share: equal to s up to second derivatives at s = 1 and never below ``residual h0``,
+  so that the Reynolds equation keeps a solution while surfaces press on each other.
 
 The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own.
 """
@@ -98,7 +99,8 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
 
 @njit(cache=True)
 def settle_wall(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
-    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``, q = compliance times pressure, by its larger root.
+    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``,
+    q = compliance times pressure, by its larger root.
 
     With the pressure there, and its derivative to G over ``scale``.
     """

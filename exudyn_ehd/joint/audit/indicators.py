@@ -128,8 +128,8 @@ def heating(case: Case) -> Finding:
         f"{coefficient:.3g} 1/K x rise of {rise:.3g} K",
         coefficient * rise,
         b.thermal is not None,
-        mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, or the viscosity at "
-        "its running temperature.",
+        mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, "
+        "or the viscosity at its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
     )
 

@@ -244,7 +244,8 @@ def rod_bush(size: ladders.MeshSize) -> HollowCylinder:
 
 
 def bush_study(scene: MovingScene) -> Study:
-    """Bushes in a moving scene: rigid, Winkler elements, modal by tolerance; nodal ones are compared at steady positions."""
+    """Bushes in a moving scene: rigid, Winkler elements, modal by tolerance;
+    nodal ones are compared at steady positions."""
     settings = ladders.bush_ladder(rod_bush, STEEL, tilted=False, tolerances=(0.2, 0.08, 0.04, 0.02), nodal_meshes=())
     return Study(
         name=f"{scene.name}_bush",

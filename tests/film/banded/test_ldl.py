@@ -142,7 +142,18 @@ def test_a_singular_film_is_refused(make_film):
     f = make_film(9)
     w = Workspace(12, 6)
     ok, _, _ = solve_on_active(
-        np.zeros_like(f.kx), np.zeros_like(f.kz), f.b, np.ones((12, 6), dtype=bool), w.order, w.old_order, 0, 0, w.number, w.band,
-        w.inv_diag, w.unknowns, np.zeros((12, 6)),
-    )  # fmt: skip
+        np.zeros_like(f.kx),
+        np.zeros_like(f.kz),
+        f.b,
+        np.ones((12, 6), dtype=bool),
+        w.order,
+        w.old_order,
+        0,
+        0,
+        w.number,
+        w.band,
+        w.inv_diag,
+        w.unknowns,
+        np.zeros((12, 6)),
+    )
     assert not ok

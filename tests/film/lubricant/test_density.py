@@ -1,4 +1,5 @@
-"""Dowson and Higginson's density against the published forms, and the transform of a compressible film against quadrature."""
+"""Dowson and Higginson's density against the published forms, and the transform
+of a compressible film against quadrature."""
 
 import numpy as np
 import pytest

@@ -78,7 +78,8 @@ def test_conductance_kernel(tangent):
 
 @pytest.mark.parametrize("vx", [0.0, 150.0, -4e4])
 def test_conductances_from_scratch(vx):
-    """`thin_flux` is H^3 and its derivatives through `thin_conductance`, also beyond the table's end (a rate of 50 / lambda)."""
+    """`thin_flux` is H^3 and its derivatives through `thin_conductance`, also
+    beyond the table's end (a rate of 50 / lambda)."""
     gap_x, H = np.random.default_rng(5).uniform(0.2, 2.0, (2, 5, 4))
     gap_z, *found = (np.empty_like(H) for _ in range(7))
     law = (vx, 2e-3, 0.6, 0.2, TABLE)

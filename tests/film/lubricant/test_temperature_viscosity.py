@@ -86,8 +86,9 @@ def test_iso_grades_lie_in_the_standard_limits():
         assert low < kinematic(oil) < high
 
 
-# Reference viscosities L and H of ASTM D2270 at the oil's viscosity at 100 degrees Celsius, and the index that makers print with these
-# points: Mobil Oil Australia's product pages (2012), Shell's sheet of Omala S2 G 220 (98, of a viscosity before rounding).
+# Reference viscosities L and H of ASTM D2270 at the oil's viscosity at 100 degrees
+# Celsius, and the index that makers print with these points: Mobil Oil Australia's product
+# pages (2012), Shell's sheet of Omala S2 G 220 (98, of a viscosity before rounding).
 D2270 = {
     "ISO VG 22": (29.07, 22.05, None),
     "ISO VG 32": (47.31, 32.37, None),
@@ -108,7 +109,8 @@ D2270 = {
 
 @pytest.mark.parametrize("name", list(D2270))
 def test_viscosity_index(name):
-    """Of both points after ASTM D2270, procedures A and B; as printed, to its rounding, or 95 to 102 for plain mineral oils."""
+    """Of both points after ASTM D2270, procedures A and B; as printed, to its
+    rounding, or 95 to 102 for plain mineral oils."""
     L, H, printed = D2270[name]
     U, Y = (ISO_GRADES | MULTIGRADES)[name][:2]
     index = 100.0 * (L - U) / (L - H)
@@ -120,8 +122,9 @@ def test_viscosity_index(name):
         assert index == pytest.approx(printed, abs=0.5 if name in MULTIGRADES else 2.0)
 
 
-# Other oils of the ISO grades: dynamic viscosities at 40 and 100 degrees Celsius over the density (mm2/s), and that (kg/m3). 32 to 68: those of
-# the rotor dynamics code ROSS (Petrobras); the others: Mobilgear 600 XP (ExxonMobil's sheet of 2020, density to two digits).
+# Other oils of the ISO grades: dynamic viscosities at 40 and 100 degrees Celsius over the
+# density (mm2/s), and that (kg/m3). 32 to 68: those of the rotor dynamics code ROSS
+# (Petrobras); the others: Mobilgear 600 XP (ExxonMobil's sheet of 2020, density to two digits).
 OTHER_ISO = {
     "ISO VG 32": (32.0, 5.34, 874.0),
     "ISO VG 46": (46.0, 7.04, 863.0),
@@ -144,8 +147,8 @@ def test_iso_grades_are_near_other_oils(name):
 
 # SAE J300 (2015), high-temperature grades: kinematic viscosity at 100 degrees Celsius in mm2/s.
 J300_HOT = {"20": (6.9, 9.3), "30": (9.3, 12.5), "40": (12.5, 16.3), "50": (16.3, 21.9)}
-# Another oil of the grade: nu at 40 and at 100 degrees Celsius in mm2/s. 10W-40: mean of five oils tested by the Petroleum Quality Institute
-# of America, May 2016; 5W-30: SBK Diamond 7000; the others: Casstek (makers' data sheets).
+# Another oil of the grade: nu at 40 and at 100 degrees Celsius in mm2/s. 10W-40: mean of five oils tested by the
+# Petroleum Quality Institute of America, May 2016; 5W-30: SBK Diamond 7000; the others: Casstek (makers' data sheets).
 OTHER_OILS = {
     "SAE 0W-20": (47.6, 8.6),
     "SAE 5W-30": (60.4, 9.8),
@@ -178,7 +181,8 @@ DELVAC = {"SAE 30": (106.0, 11.8), "SAE 40": (146.0, 14.6), "SAE 50": (231.0, 19
 
 @pytest.mark.parametrize("name", list(DELVAC))
 def test_sae_grades_are_near_present_oils(name):
-    """Within 18 %: the fits of 1982 are of oils of a viscosity index below the 99 of these, which thin more with temperature."""
+    """Within 18 %: the fits of 1982 are of oils of a viscosity index below the
+    99 of these, which thin more with temperature."""
     oil = ehd.oil(name)
     for T, nu, density in zip((T40, T100), DELVAC[name], (875.0, 837.0), strict=True):
         assert oil.at(T).viscosity == pytest.approx(1e-6 * nu * density, rel=0.18)

@@ -1,4 +1,5 @@
-"""Liner with contact, mass-conserving cavitation, laws of the oil or flow factors: columns, a readable twin solved by scipy, limits, balances."""
+"""Liner with contact, mass-conserving cavitation, laws of the oil or flow
+factors: columns, a readable twin solved by scipy, limits, balances."""
 
 import itertools
 import math
@@ -94,7 +95,8 @@ def solve(solver, beta, eps=0.6, rate=0.0, cold=True, mass_old=None, delta_old=N
 
 
 def contact_twin(contact):
-    """(pressure over the film's scale, gap that the film sees) as functions of one true gap, from the textbook formulas."""
+    """(pressure over the film's scale, gap that the film sees) as functions of
+    one true gap, from the textbook formulas."""
     if contact == "none":
         return lambda g: 0.0, lambda g: g
     if contact == "wall":
@@ -314,8 +316,9 @@ def pressures(solver):
 def test_scipy_finds_the_same_film(closure, contact, effect, motion):
     """The twin's equations on 16 x 4, solved by MINPACK from the rigid film; deep contact where there is one.
 
-    One unknown u per vertex: the pressure above, and (minus) slack or missing oil below the cavity pressure. 1e-7 of the peak: MINPACK's tolerance
-    and the bracketing of the columns; with asperities the tabulated contact pressure, good to 1e-6, and the tabulated flow factors.
+    One unknown u per vertex: the pressure above, and (minus) slack or missing oil below the
+    cavity pressure. 1e-7 of the peak: MINPACK's tolerance and the bracketing of the columns;
+    with asperities the tabulated contact pressure, good to 1e-6, and the tabulated flow factors.
     """
     g, beta = SMALL, 0.01
     eps = 0.7 if contact == "none" else 1.05
@@ -358,9 +361,20 @@ def test_scipy_finds_the_same_film(closure, contact, effect, motion):
     def equations(u):
         P, fill, slack = parts(u)
         r = twin(
-            g, rigid, P, fill, beta, contact, 50.0, 3.0, inverse if mass is not None or not closure.conserves_mass else 0.0,
-            delta if step > 0.0 and not closure.conserves_mass else np.zeros(g.shape), mass, closure, effect,
-        )  # fmt: skip
+            g,
+            rigid,
+            P,
+            fill,
+            beta,
+            contact,
+            50.0,
+            3.0,
+            inverse if mass is not None or not closure.conserves_mass else 0.0,
+            delta if step > 0.0 and not closure.conserves_mass else np.zeros(g.shape),
+            mass,
+            closure,
+            effect,
+        )
         return (r + slack)[free]
 
     guess = pressures(start)[free] / peak
@@ -429,8 +443,8 @@ def test_the_start_changes_no_result(closure, contact):
 
 @every_contact
 def test_oil_is_kept_over_a_transient(contact):
-    """An orbit through contact on a soft liner: what enters is what the content gains, to 1e-10 of the flows at every one of 200 steps, with
-    fills from 0 to 1."""
+    """An orbit through contact on a soft liner: what enters is what the content
+    gains, to 1e-10 of the flows at every one of 200 steps, with fills from 0 to 1."""
     s, step = solver_of(ehd.ElrodAdams(), contact), 4e-4
     depth = 0.85 if contact == "none" else 1.0
     rest = solve(s, 0.01, 0.3)

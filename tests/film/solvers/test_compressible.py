@@ -1,4 +1,5 @@
-"""Compressible film on sliders: against the ordinary differential equation, uniform mass flow, kernels against twins."""
+"""Compressible film on sliders: against the ordinary differential equation,
+uniform mass flow, kernels against twins."""
 
 import numpy as np
 import pytest
@@ -26,7 +27,8 @@ def slider(n, pressure_law=None, closure=CLOSURES[0], density=DENSITY):
 
 
 def reference(x, pressure_law):
-    """Pressure at x / L: ``rho (U h / 2 - h^3 p' / (12 mu)) = m`` integrated from the inlet, m by shooting to p(L) = 0."""
+    """Pressure at x / L: ``rho (U h / 2 - h^3 p' / (12 mu)) = m`` integrated
+    from the inlet, m by shooting to p(L) = 0."""
 
     def course(m, dense):
         def slope(s, p):
@@ -154,7 +156,8 @@ def test_matrix_of_a_full_film_equals_the_general_one(count):
 
 @pytest.mark.parametrize("case", ["full", "partly", "cut", "across a cavity", "history"])
 def test_matrix_is_the_derivative_of_the_balance(case):
-    """Central differences, which are exact as the balance is linear in every unknown; signs of the Couette fluxes at random."""
+    """Central differences, which are exact as the balance is linear in every
+    unknown; signs of the Couette fluxes at random."""
     rng = np.random.default_rng(6)
     n, m = 8, 5
     P, rho, rho_P = 1.0 + rng.random((3, n, m))
@@ -230,11 +233,16 @@ def test_oil_beyond_the_law_has_no_pressure():
 
 @pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
 def test_journal_in_the_centre_but_for_rounding(closure):
-    """The pressures are rounding themselves: no step becomes a small share of them, and vertices change sides for nothing."""
+    """The pressures are rounding themselves: no step becomes a small share of
+    them, and vertices change sides for nothing."""
     bearing = ehd.JournalBearing(
-        journal_radius=0.02, length=0.02, radial_clearance=25e-6, cavitation=closure, film=ehd.FiniteLength(n_theta=45, n_z=4),
+        journal_radius=0.02,
+        length=0.02,
+        radial_clearance=25e-6,
+        cavitation=closure,
+        film=ehd.FiniteLength(n_theta=45, n_z=4),
         lubricant=ehd.Lubricant(viscosity=0.015, density_law=DENSITY),
-    )  # fmt: skip
+    )
     model, rng = build_model(bearing), np.random.default_rng(0)
     for _ in range(40):
         motion = np.zeros(10)

@@ -49,7 +49,8 @@ def test_full_sommerfeld_in_z(make_bearing):
 
 @pytest.mark.parametrize(("cavitation", "name"), [(ehd.Gumbel(), "Gumbel"), (ehd.SwiftStieber(), "Swift-Stieber")])
 def test_other_closures_stay_within_a_bound(make_bearing, cavitation, name):
-    """The rupture line snaps to cells, so that no order can be asserted state by state: a bound falls by four per halving.
+    """The rupture line snaps to cells, so that no order can be asserted state
+    by state: a bound falls by four per halving.
 
     The worst of several directions between two columns counts. Bound at 32 columns: 0.8 % of the load's size, about
     twice the worst that was seen.

@@ -133,7 +133,8 @@ def test_a_bore_that_touches_at_its_ends_has_no_film():
 
 
 def test_rate_of_the_liner_is_backward_euler():
-    """A step from a relaxed liner feeds it: the balance of the twin with the deflection's rate, and the steady film in the end."""
+    """A step from a relaxed liner feeds it: the balance of the twin with the
+    deflection's rate, and the steady film in the end."""
     closure, beta, step = ehd.SwiftStieber(), 0.01, 1e-3
     old = np.zeros(GRID.shape)
     s = solve(closure, beta, delta_old=old, step=step)
@@ -167,7 +168,8 @@ def test_refused_values(option, value):
 
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_film_at_rest_carries_nothing(closure):
-    """A soft liner, all but touched, without speed or rate: no pressure beside the one that would open it to its clearance, 1 / beta."""
+    """A soft liner, all but touched, without speed or rate: no pressure beside
+    the one that would open it to its clearance, 1 / beta."""
     solver = NonlinearFilmSolver(GRID, closure)
     solver.beta = 0.1
     solver.H[:], solver.HF[:], _ = gaps(0.994)
@@ -177,8 +179,8 @@ def test_a_film_at_rest_carries_nothing(closure):
 
 
 def test_a_film_that_breaks_always_exists():
-    """Soft to stiff liners, nearly touched, under speeds and rates of any direction and two orders of size: 150 films from afar and from
-    a dry guess."""
+    """Soft to stiff liners, nearly touched, under speeds and rates of any
+    direction and two orders of size: 150 films from afar and from a dry guess."""
     rng, solver = np.random.default_rng(3), NonlinearFilmSolver(GRID, ehd.SwiftStieber())
     for k in range(150):
         x, rate = 0.3 + GRID.x, 10.0 ** rng.uniform(-1.0, 4.0) * rng.choice([0.0, 1.0])
@@ -194,9 +196,9 @@ def test_a_film_that_breaks_always_exists():
 
 
 def test_separation_pulls_a_soft_liner_shut():
-    """Without cavitation the film between surfaces that part, followed from a stiff to a soft liner, loses its smallest gap before it
-    ends: to 1 % of the rigid one and less, so that no film of a softer liner is left to be found. Without separation it never ends.
-    """
+    """Without cavitation the film between surfaces that part, followed from a stiff to a
+    soft liner, loses its smallest gap before it ends: to 1 % of the rigid one and less, so
+    that no film of a softer liner is left to be found. Without separation it never ends."""
     closure, beta, factor = ehd.FullSommerfeld(), 1e-4, 2.0
     solver = solve(closure, beta, eps=0.5, rate=-30.0)
     while factor > 1.001:
@@ -230,7 +232,8 @@ def bearing_on_liner(closure, modulus, length, n_theta, n_z):
 
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
-    """Aligned, a hair from the bore: the flows balance to rounding at no pressure, and no step of Newton's would ever stand still."""
+    """Aligned, a hair from the bore: the flows balance to rounding at no
+    pressure, and no step of Newton's would ever stand still."""
     model = bearing_on_liner(closure, 1e8, 0.005, 64, 16)
     evaluation = model.evaluate(np.array([1.9e-5, 4.4e-6, 0, 0, 0, 0, 0, 0, 0, -0.57]))
     assert evaluation.status is ehd.Status.CONVERGED
@@ -239,7 +242,8 @@ def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
 
 
 def test_suction_that_is_cut_off_spoils_no_balance():
-    """A linear film 1e5 times deeper below the cavity pressure than above it: the balance of what presses holds to 1e-9 of its flows."""
+    """A linear film 1e5 times deeper below the cavity pressure than above it:
+    the balance of what presses holds to 1e-9 of its flows."""
     model = bearing_on_liner(ehd.Gumbel(), 7e10, 0.04, 64, 10)
     model.evaluate(
         np.array([-2.08374301e-06, -1.98784312e-05, 0, 0, -2.16895329e-05, 2.79668814e-05, -2.7e-03, -1.4e-04, 0, 0])

@@ -36,7 +36,8 @@ def contact(u):
 
 
 def test_pressure_function_equals_quadrature():
-    """Below 1e-6 relative everywhere, on the table, on the series below -8 and down to 1e-16 of the value at contact."""
+    """Below 1e-6 relative everywhere, on the table, on the series below -8 and
+    down to 1e-16 of the value at contact."""
     u = np.concatenate((np.linspace(-14.0, 7.9, 120), [-8.0, -7.999999, -8.000001]))
     exact = np.array([integral(2.5, x) for x in u])
     np.testing.assert_allclose(contact(u)[0], exact, rtol=1e-6)
@@ -69,7 +70,8 @@ def test_parabolic_cylinder_form(order):
 
 
 def test_pressure_scale():
-    """16 sqrt(2) pi / 15 (eta beta sigma)^2 sqrt(sigma / beta) E', worked out by hand for 0.05, 0.01 and 1e11 Pa: 118.48 MPa."""
+    """16 sqrt(2) pi / 15 (eta beta sigma)^2 sqrt(sigma / beta) E', worked out
+    by hand for 0.05, 0.01 and 1e11 Pa: 118.48 MPa."""
     assert ASPERITY.pressure_scale == pytest.approx(118.4768e6, rel=1e-6)
 
 
@@ -86,7 +88,19 @@ def test_average_gap_is_the_mean_of_the_clipped_gap():
     slope, bend, link_slope = np.empty(H.shape), np.empty(H.shape), np.empty(H.shape)
     AverageGap(sigma, a).limit(H, link, rate, slope, bend, link_slope)
     y = x - a
-    exact = a + np.array([quad(lambda s, y=v: max(y + s, 0.0) * norm.pdf(s), -v, -v + 20 + max(v, 0), epsabs=1e-14, limit=200, points=[0.0])[0] for v in y])  # fmt: skip
+    exact = a + np.array(
+        [
+            quad(
+                lambda s, y=v: max(y + s, 0.0) * norm.pdf(s),
+                -v,
+                -v + 20 + max(v, 0),
+                epsabs=1e-14,
+                limit=200,
+                points=[0.0],
+            )[0]
+            for v in y
+        ]
+    )
     np.testing.assert_allclose(H[0] / sigma, exact, atol=1e-12)
     np.testing.assert_allclose(slope[0], norm.cdf(y), atol=2e-12)
     np.testing.assert_allclose(bend[0] / 0.7 * sigma, norm.pdf(y), atol=1e-10)
@@ -105,10 +119,15 @@ def test_average_gap_stays_positive_however_deep():
 @pytest.mark.parametrize(
     ("option", "value"),
     [
-        ("composite_roughness", 0.0), ("composite_modulus", -1.0), ("density_radius_roughness", 0.0),
-        ("roughness_radius_ratio", math.nan), ("friction_coefficient", -0.1), ("transition_speed", 0.0), ("residual_film", 0.5),
+        ("composite_roughness", 0.0),
+        ("composite_modulus", -1.0),
+        ("density_radius_roughness", 0.0),
+        ("roughness_radius_ratio", math.nan),
+        ("friction_coefficient", -0.1),
+        ("transition_speed", 0.0),
+        ("residual_film", 0.5),
     ],
-)  # fmt: skip
+)
 def test_refused_values(option, value):
     values = {"composite_roughness": 1e-6, "composite_modulus": 1e11} | {option: value}
     with pytest.raises(ehd.InputError, match=rf"GreenwoodTripp\.{option}"):

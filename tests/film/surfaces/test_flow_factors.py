@@ -1,4 +1,5 @@
-"""Flow factors: tables against formulas, limits, derivatives, and the flow through a sinusoidal roughness by its exact solution."""
+"""Flow factors: tables against formulas, limits, derivatives, and the flow
+through a sinusoidal roughness by its exact solution."""
 
 import csv
 import math
@@ -99,7 +100,8 @@ def test_all_factors_stay_positive_and_smooth(pattern, share):
 @pytest.mark.parametrize("share", [0.5, 0.8])
 @pytest.mark.parametrize("slope", [0.0, 0.03])
 def test_one_pass_is_the_plain_film_times_its_factors(share, slope):
-    """Aligned and tilted gaps, into buffers that an effect of another step has used; 1e-14: rounding of products in another order."""
+    """Aligned and tilted gaps, into buffers that an effect of another step has
+    used; 1e-14: rounding of products in another order."""
     flow, _ = rough(3.0, share)
     column = np.linspace(0.05, 1.9, 7)[:, None]
     H, HF = column + slope * np.arange(5.0), 1.1 * column - slope * np.arange(5.0)
@@ -123,7 +125,8 @@ def test_smooth_surfaces_are_the_limit():
 
 
 def test_friction_factor_is_the_mean_inverse_gap_and_the_drag_of_ripples():
-    """h_T E[1 / gap] over gaps above sigma / 100 by quadrature, 5e-5 of the table's interpolation; plus Phi_fs h_T / h within its range."""
+    """h_T E[1 / gap] over gaps above sigma / 100 by quadrature, 5e-5 of the
+    table's interpolation; plus Phi_fs h_T / h within its range."""
     _, shear = rough()
     H = np.array([-1.0, 0.0, 0.3, 1.0, 2.0, 3.0, 5.0, 12.0, 40.0])
     t = average_gap_ratio(H, 0.02)
@@ -160,11 +163,10 @@ def test_shear_stress_factor_of_the_isotropic_pattern():
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 def test_friction_factors_agree_with_the_flow_factors(pattern):
-    """Small roughness of any pattern has Phi_fs = Phi_s / H = 1 - phi_fp to second order in 1 / H, and phi_fp H = H - Phi_s by
-    reciprocity (a surface that drags oil along is pushed by the pressure that drives it). The three are fits to separate
-    simulations: they differ by up to 22 % for Phi_fs at H = 4 (below H = 3 each has higher orders of its own), and by
-    2.3 % of H between Phi_s and the published phi_fp = 1 - D exp(-s H).
-    """
+    """Small roughness of any pattern has Phi_fs = Phi_s / H = 1 - phi_fp to second order in 1 / H, and
+    phi_fp H = H - Phi_s by reciprocity (a surface that drags oil along is pushed by the pressure that drives it). The
+    three are fits to separate simulations: they differ by up to 22 % for Phi_fs at H = 4 (below H = 3 each has
+    higher orders of its own), and by 2.3 % of H between Phi_s and the published phi_fp = 1 - D exp(-s H)."""
     with open(DATA / "patir_cheng_flow_factors.csv", encoding="utf-8") as file:
         rows = {round(float(Fraction(r["gamma"])), 6): r for r in csv.DictReader(file)}
     D, s = (float(rows[round(pattern, 6)][k]) for k in ("D_phifp", "s_phifp"))
@@ -177,10 +179,11 @@ def test_friction_factors_agree_with_the_flow_factors(pattern):
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
 def test_tangential_force_of_ridges_across_the_motion(share):
-    """1 + 4 v of the smooth film's, v = (sigma / h)^2, however the roughness is shared between the moving and the resting surface.
+    """1 + 4 v of the smooth film's, v = (sigma / h)^2, however the roughness is
+    shared between the moving and the resting surface.
 
-    Reynolds' equation of two sinusoidal surfaces, averaged over their relative position: shear plus pressure on the slopes of the
-    resting surface. Amplitudes of 1 % leave terms of the order 1e-8 beside v = 1e-4 / 2.
+    Reynolds' equation of two sinusoidal surfaces, averaged over their relative position: shear plus pressure
+    on the slopes of the resting surface. Amplitudes of 1 % leave terms of the order 1e-8 beside v = 1e-4 / 2.
     """
     x = np.linspace(0.0, 2.0 * np.pi, 256, endpoint=False)
     moving, resting = 0.01 * math.sqrt(share), 0.01 * math.sqrt(1.0 - share)
@@ -198,8 +201,8 @@ def test_tangential_force_of_ridges_across_the_motion(share):
 
 
 def test_lay_decides_the_direction_of_easy_flow():
-    """Ridges along the motion ease the flow along it, ridges across hinder it; for parallel ridges the exact limits are E[h^3] / h^3
-    and 1 / (h^3 E[h^-3])."""
+    """Ridges along the motion ease the flow along it, ridges across hinder it; for
+    parallel ridges the exact limits are E[h^3] / h^3 and 1 / (h^3 E[h^-3])."""
     H = 3.0
     along, isotropic, across = (pressure_flow_factor(H, g) for g in (9.0, 1.0, 1 / 9))
     assert 1 + 3 / H**2 > along > 1.0 > isotropic > across > 0.0

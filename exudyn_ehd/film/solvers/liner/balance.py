@@ -1,4 +1,5 @@
-"""Balance of a film on the Winkler elements of a liner, with contact, laws of the oil, flow factors and density; see `exudyn_ehd.film.solvers.nonlinear`."""
+"""Balance of a film on the Winkler elements of a liner, with contact, laws of
+the oil, flow factors and density; see `exudyn_ehd.film.solvers.nonlinear`."""
 
 from __future__ import annotations
 
@@ -193,12 +194,19 @@ class LinerBalance:
         f, w, start = self.film, self.film.work, self.reusable and self.film.work.warm
         self.reusable = self.exact = self.known_slopes = False
         ok, steps, self.exact, w.count, w.width = solve_plain(
-            tuple(self.u), tuple(self.trial), f.grid.fixed, (f.system.cavity_pressure, f.vx, f.vz, self.beta),
+            tuple(self.u),
+            tuple(self.trial),
+            f.grid.fixed,
+            (f.system.cavity_pressure, f.vx, f.vz, self.beta),
             (self.kind == CLIPPED, self._chooses()),
             (self.load_fields, self.rigid, self.true_gap, self.deflection_old, self.gap_fields, self.slope_fields),
-            (self.metric, self.term_fields, self.known), tuple(self.rates), (self.by, self.slopes, w.number, self.factored), self.residual,
-            w.active, (start, w.warm, w.count, w.width),
-        )  # fmt: skip
+            (self.metric, self.term_fields, self.known),
+            tuple(self.rates),
+            (self.by, self.slopes, w.number, self.factored),
+            self.residual,
+            w.active,
+            (start, w.warm, w.count, w.width),
+        )
         self.reusable = ok
         return ok, steps
 
@@ -256,14 +264,24 @@ class LinerBalance:
         return True
 
     def settle(self, P: np.ndarray) -> bool:
-        """Every element under the film of the unknown P, with the gaps that the film sees; False where the oil has no pressure."""
+        """Every element under the film of the unknown P, with the gaps that the
+        film sees; False where the oil has no pressure."""
         f, contact = self.film, self.contact
         self.known_slopes = False
         if contact is None and self.oil is None:
             smallest, on_links = deflect(
-                P, f.grid.fixed, f.system.cavity_pressure, self.kind == CLIPPED, self.load_fields, self.rigid, self.beta,
-                self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields,
-            )  # fmt: skip
+                P,
+                f.grid.fixed,
+                f.system.cavity_pressure,
+                self.kind == CLIPPED,
+                self.load_fields,
+                self.rigid,
+                self.beta,
+                self.true_gap,
+                self.deflection_old,
+                self.rates.liner,
+                self.gap_fields,
+            )
         else:
             if not self.press(P):
                 return False
@@ -305,9 +323,20 @@ class LinerBalance:
         else:
             self.set_links()
         norm = liner_residual(
-            state.P, state.fill if self.fills else None, self.rho, self.load_fields, self.gap_fields, self.term_fields, f.grid.fixed,
-            self.known, tuple(self.rates), self.beta, f.system.cavity_pressure, self._chooses(), self.residual,
-        )  # fmt: skip
+            state.P,
+            state.fill if self.fills else None,
+            self.rho,
+            self.load_fields,
+            self.gap_fields,
+            self.term_fields,
+            f.grid.fixed,
+            self.known,
+            tuple(self.rates),
+            self.beta,
+            f.system.cavity_pressure,
+            self._chooses(),
+            self.residual,
+        )
         return norm, self.smallest
 
     def _plain_balance(self, P: np.ndarray) -> tuple[float, float]:
@@ -315,22 +344,49 @@ class LinerBalance:
         f = self.film
         self.known_slopes = False
         norm, self.smallest = plain_residual(
-            P, f.grid.fixed, (f.system.cavity_pressure, f.vx, f.vz, self.beta), (self.kind == CLIPPED, self._chooses()),
-            self.load_fields, self.rigid, self.true_gap, self.deflection_old, self.gap_fields, self.metric, self.term_fields, self.known,
-            tuple(self.rates), self.residual,
-        )  # fmt: skip
+            P,
+            f.grid.fixed,
+            (f.system.cavity_pressure, f.vx, f.vz, self.beta),
+            (self.kind == CLIPPED, self._chooses()),
+            self.load_fields,
+            self.rigid,
+            self.true_gap,
+            self.deflection_old,
+            self.gap_fields,
+            self.metric,
+            self.term_fields,
+            self.known,
+            tuple(self.rates),
+            self.residual,
+        )
         return norm, self.smallest
 
     def gradients(self) -> None:
         """Derivatives of gaps and of the links' flows at the present state, into ``answer`` and ``by``."""
         f, u = self.film, self.u
         answer_columns(
-            u.P, self.load_fields, self.rigid_slope, self.contact_G, self.bend, self.beta, self.rates.liner, self.slope_fields
-        )  # fmt: skip
+            u.P,
+            self.load_fields,
+            self.rigid_slope,
+            self.contact_G,
+            self.bend,
+            self.beta,
+            self.rates.liner,
+            self.slope_fields,
+        )
         link_gradients(
-            u.P, u.fill if self.fills else None, self.rho, self.term_fields, f.grid.fixed, self.gap_fields, self.links, self.metric,
-            f.vx, f.vz, self.by,
-        )  # fmt: skip
+            u.P,
+            u.fill if self.fills else None,
+            self.rho,
+            self.term_fields,
+            f.grid.fixed,
+            self.gap_fields,
+            self.links,
+            self.metric,
+            f.vx,
+            f.vz,
+            self.by,
+        )
         self.known_slopes = True
 
     # --- what Newton's method asks for
@@ -369,9 +425,21 @@ class LinerBalance:
             self.gradients()
         active = w.active if self._chooses() else ~g.fixed
         ok, w.count, w.width = factor_liner(
-            self._sides(u), (self.rho, self.rho_P), self.term_fields, g.fixed, self.slope_fields, self.load_fields, tuple(self.rates),
-            self.beta, self.by, self.slopes, self.metric, active, w.number, self.factored,
-        )  # fmt: skip
+            self._sides(u),
+            (self.rho, self.rho_P),
+            self.term_fields,
+            g.fixed,
+            self.slope_fields,
+            self.load_fields,
+            tuple(self.rates),
+            self.beta,
+            self.by,
+            self.slopes,
+            self.metric,
+            active,
+            w.number,
+            self.factored,
+        )
         return bool(ok)
 
     def unknowns(self) -> int:
@@ -382,10 +450,18 @@ class LinerBalance:
         """Newton's step with the factor at hand, and the trial state after it; ``gap`` is the smallest one."""
         w, opening, pc = self.film.work, gap / self.beta, self.film.system.cavity_pressure
         *found, self.changes = liner_step(
-            self.residual, tuple(self.u), self.load_fields, self.gaps.H, self.answer.H_P, self.factored, w.count, w.width,
+            self.residual,
+            tuple(self.u),
+            self.load_fields,
+            self.gaps.H,
+            self.answer.H_P,
+            self.factored,
+            w.count,
+            w.width,
             (self.kind == CLIPPED and not self.fills, self._chooses(), self.fills),
-            (pc, self.cavity_load, max(LEAST_DEFLECTION * opening, self.slight), opening, ROUNDED * self.slight), tuple(self.trial),
-        )  # fmt: skip
+            (pc, self.cavity_load, max(LEAST_DEFLECTION * opening, self.slight), opening, ROUNDED * self.slight),
+            tuple(self.trial),
+        )
         return Step(*found)
 
     def move(self, share: float, peak: float) -> int:
@@ -393,10 +469,17 @@ class LinerBalance:
         self.press(self.u.P)
         self.changes = int(
             take_step(
-                tuple(self.u), self.load_fields, self.factored, self.film.work.count, share, self.film.system.cavity_pressure,
-                (self._chooses(), self.fills), max(SUCTION * peak, ROUNDED * self.slight), tuple(self.trial),
+                tuple(self.u),
+                self.load_fields,
+                self.factored,
+                self.film.work.count,
+                share,
+                self.film.system.cavity_pressure,
+                (self._chooses(), self.fills),
+                max(SUCTION * peak, ROUNDED * self.slight),
+                tuple(self.trial),
             )
-        )  # fmt: skip
+        )
         return self.changes
 
     def accept(self) -> int:

@@ -1,4 +1,5 @@
-"""`newton.newton` compiled as a whole for a film that only the liner answers to: as fast as it is, calls from Python would cost half as much again."""
+"""`newton.newton` compiled as a whole for a film that only the liner answers
+to: as fast as it is, calls from Python would cost half as much again."""
 
 from __future__ import annotations
 
@@ -34,8 +35,21 @@ def _factor(P, fixed, numbers, columns, links, rates, matrix, active):
     yield_columns(P, load, beta, rates[1], gap_slopes)
     link_gradients(P, None, None, terms, fixed, gaps, None, metric, vx, vz, by)
     return factor_liner(
-        (P, None, None), (None, None), terms, fixed, gap_slopes, load, rates, beta, by, slopes, metric, active, number, factored
-    )  # fmt: skip
+        (P, None, None),
+        (None, None),
+        terms,
+        fixed,
+        gap_slopes,
+        load,
+        rates,
+        beta,
+        by,
+        slopes,
+        metric,
+        active,
+        number,
+        factored,
+    )
 
 
 @njit(cache=True)

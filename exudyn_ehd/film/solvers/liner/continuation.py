@@ -1,7 +1,7 @@
 """Where a film starts that can't go on from the last one; see `exudyn_ehd.film.solvers.nonlinear`.
 
-First Newton's method from a dry guess; if that fails, pseudo time: a storage of its own, added to every vertex, holds the film back and is
-taken away step by step.
+First Newton's method from a dry guess; if that fails, pseudo time: a storage of
+its own, added to every vertex, holds the film back and is taken away step by step.
 """
 
 from __future__ import annotations
@@ -39,7 +39,8 @@ def cold_start(film: LinerBalance) -> tuple[bool, int]:
 
 
 def _dry_guess(film: LinerBalance) -> None:
-    """Pressure that would keep a thin film open: half the gap's mean where the undeformed surfaces come closer than that."""
+    """Pressure that would keep a thin film open: half the gap's mean where the
+    undeformed surfaces come closer than that."""
     H0 = film.rigid[0]
     guess = np.zeros(H0.shape)
     if film.contact is None and H0.min() < THIN:
@@ -105,7 +106,8 @@ def _copy(film: LinerBalance) -> tuple[np.ndarray, ...]:
 
 
 def _stored(film: LinerBalance, start: tuple[np.ndarray, ...]) -> np.ndarray:
-    """What pseudo time counts of the settled elements under the state at hand: mass, or the deflection by what presses, cut off or not."""
+    """What pseudo time counts of the settled elements under the state at hand:
+    mass, or the deflection by what presses, cut off or not."""
     P, fill, _ = start
     if not film.fills:
         return film.beta * (film.load.p + (P - film.load.drive))

@@ -1,9 +1,11 @@
-"""Winkler elements of an elastic liner: what presses on them, how far they deflect, how the film answers; see `exudyn_ehd.film.solvers.nonlinear`.
+"""Winkler elements of an elastic liner: what presses on them, how far they
+deflect, how the film answers; see `exudyn_ehd.film.solvers.nonlinear`.
 
-Symbols, all scaled: P unknown of the film, p the pressure on the elements (P itself, or p(P) of an oil whose viscosity or density follows its
-pressure), pc cavity pressure in P, beta compliance; G true gap, H the gap that the film sees, HF that on the links i -> i+1, D deflection,
-E = H - (film gap of the undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to the undeformed gap. ``rigid``
-(3, n, m): gap, gap on links and rate of the undeformed surfaces.
+Symbols, all scaled: P unknown of the film, p the pressure on the elements (P itself, or p(P) of
+an oil whose viscosity or density follows its pressure), pc cavity pressure in P, beta compliance;
+G true gap, H the gap that the film sees, HF that on the links i -> i+1, D deflection, E = H -
+(film gap of the undeformed surfaces). ``_P``, ``_r``: derivatives to the unknown pressure and to
+the undeformed gap. ``rigid`` (3, n, m): gap, gap on links and rate of the undeformed surfaces.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class Gaps(NamedTuple):
-    """What the film sees, (n, m) each: gaps at vertices and links, deflection, what it adds to the film gap, dH/dt without storage."""
+    """What the film sees, (n, m) each: gaps at vertices and links, deflection,
+    what it adds to the film gap, dH/dt without storage."""
 
     H: np.ndarray
     HF: np.ndarray
@@ -54,7 +57,8 @@ class Load(NamedTuple):
     Attributes
     ----------
     drive : the unknown, where a film clips no less than pc
-    p, slope, bend : pressure there with its first two derivatives to the unknown; 1 and 0 for an oil of constant viscosity
+    p, slope, bend : pressure there with its first two derivatives to the unknown;
+        1 and 0 for an oil of constant viscosity
     """
 
     drive: np.ndarray
@@ -63,7 +67,8 @@ class Load(NamedTuple):
     bend: np.ndarray
 
 
-# Kernels that are called from Python take these as one array, (fields, n, m): a tuple of arrays takes as long to hand over as they to compute.
+# Kernels that are called from Python take these as one array, (fields, n, m): a
+# tuple of arrays takes as long to hand over as they to compute.
 
 
 @njit(cache=True)
@@ -85,7 +90,8 @@ def load_of(f):
 
 
 class Rates(NamedTuple):
-    """Rates of the storage, 1/s: of the mass, of the liner, of pseudo time; and whether the gap's own rate takes part (1 or 0)."""
+    """Rates of the storage, 1/s: of the mass, of the liner, of pseudo time; and
+    whether the gap's own rate takes part (1 or 0)."""
 
     mass: float
     liner: float
@@ -106,7 +112,8 @@ def drive_columns(P, fixed, pc, clips, load_fields):
 
 @njit(cache=True, fastmath=_FAST)
 def scale_load(load_fields, scale):
-    """Pressures (Pa) and their derivatives as an oil gives them, to the film's scale; returns the largest pressure, Pa."""
+    """Pressures (Pa) and their derivatives as an oil gives them, to the film's
+    scale; returns the largest pressure, Pa."""
     load = load_of(load_fields)
     p, bend = load.p.reshape(-1), load.bend.reshape(-1)
     largest = -np.inf
@@ -150,7 +157,8 @@ def _mean_gap(link, D_a, D_b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def move_columns(rigid, G, delta_old, inverse, gap_fields):
-    """Deflections, gaps and rate of the deformed surfaces before a limiter changes them; returns the smallest gap of a link."""
+    """Deflections, gaps and rate of the deformed surfaces before a limiter
+    changes them; returns the smallest gap of a link."""
     m = G.shape[1]
     gaps = gaps_of(gap_fields)
     g, gap, D, H, HF = G.reshape(-1), rigid[0].reshape(-1), gaps.D.reshape(-1), gaps.H.reshape(-1), gaps.HF.reshape(-1)
@@ -167,7 +175,8 @@ def move_columns(rigid, G, delta_old, inverse, gap_fields):
 
 @njit(cache=True)
 def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse, gap_fields):
-    """Elements that the film alone presses, with oil of constant viscosity; returns the smallest gaps of a vertex and of a link."""
+    """Elements that the film alone presses, with oil of constant viscosity;
+    returns the smallest gaps of a vertex and of a link."""
     drive_columns(P, fixed, pc, clips, load_fields)
     smallest = press_columns(rigid, load_fields, beta, G)
     return smallest, move_columns(rigid, G, delta_old, inverse, gap_fields)
@@ -201,7 +210,8 @@ def hold_columns(gaps, load, P, fills, known, rates, beta, film):
 def answer_columns(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
     """Derivatives of gaps and rate, for a slope of the film gap (``rate_t``) and of its links that are known already.
 
-    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the film gap's second derivative times the gap's rate.
+    ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the
+    film gap's second derivative times the gap's rate.
     """
     load, out = load_of(load_fields), slopes_of(slope_fields)
     size = P.size
@@ -223,7 +233,8 @@ def answer_columns(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
 
 @njit(cache=True, fastmath=_FAST)
 def yield_columns(P, load_fields, beta, inverse, slope_fields):
-    """`answer_columns` of elements that the film alone presses, with oil of constant viscosity: what does not stay the same."""
+    """`answer_columns` of elements that the film alone presses, with oil of
+    constant viscosity: what does not stay the same."""
     load, out = load_of(load_fields), slopes_of(slope_fields)
     x, drive, D_P, H_P, rate_P = (
         P.reshape(-1),
@@ -261,7 +272,8 @@ def _difference(a, b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _turn(turned, s, inverse, yields, own, out):
-    """What the rate answers to a change that deflects by ``yields``; ``own`` = 1: of the undeformed gap, which turns the film gap itself."""
+    """What the rate answers to a change that deflects by ``yields``;
+    ``own`` = 1: of the undeformed gap, which turns the film gap itself."""
     for c in range(out.size):
         out[c] = (turned[c] + s[c] * inverse) * yields[c] + own * turned[c]
 
@@ -270,7 +282,8 @@ def _turn(turned, s, inverse, yields, own, out):
 def bend_links(gaps, film):
     """Conductances of links with another deflection at either end: their mean over the linear course of the gap.
 
-    ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film, d half the difference of E; what multiplies a plain film's is taken at the mean gap.
+    ``H^3 + H d^2 = H^3 (1 + (d / H)^2)`` of a plain film, d half the difference
+    of E; what multiplies a plain film's is taken at the mean gap.
     """
     m = gaps.H.shape[1]
     H, HF, E = gaps.H.reshape(-1), gaps.HF.reshape(-1), gaps.E.reshape(-1)
@@ -299,9 +312,11 @@ def _plain(h_a, h_b, conducts, linked, v, k, f):
 
 @njit(cache=True)
 def plain_links(gap_fields, metric, vx, vz, terms):
-    """Conductances and Couette fluxes (rows 0 to 3 of ``terms``, see `balance.terms_of`) of a film without effects, unbent.
+    """Conductances and Couette fluxes (rows 0 to 3 of ``terms``, see
+    `balance.terms_of`) of a film without effects, unbent.
 
-    ``metric`` (4, n, m): of the conductances in theta and in z, and widths that Couette flows in theta and in z pass through.
+    ``metric`` (4, n, m): of the conductances in theta and in z, and widths that
+    Couette flows in theta and in z pass through.
     """
     H, HF = gap_fields[0].reshape(-1), gap_fields[1].reshape(-1)
     by, out = metric.reshape(4, -1), terms.reshape(terms.shape[0], -1)

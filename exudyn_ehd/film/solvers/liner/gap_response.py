@@ -1,7 +1,9 @@
-"""What flows over links answer to gaps that follow the pressure: Newton's matrix and the gradients of a film on an elastic liner.
+"""What flows over links answer to gaps that follow the pressure: Newton's
+matrix and the gradients of a film on an elastic liner.
 
-Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap and d half the difference of E, up its upstream fill times its mean
-density. A link's flow is ``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
+Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap and d half the
+difference of E, up its upstream fill times its mean density. A link's flow is
+``up f - k (P_b - P_a)``, with a Couette flux f(h) and ``k = g(h) (1 + (d / h)^2)`` with its metric.
 """
 
 from __future__ import annotations
@@ -17,7 +19,8 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 @njit(cache=True)
 def of_axis(links, axis):
-    """Conductance, its slope and that of the carrier of the links in theta (0) or z (1), flat; None for a plain film."""
+    """Conductance, its slope and that of the carrier of the links in theta (0)
+    or z (1), flat; None for a plain film."""
     if links is None:
         return None, None, None
     if axis == 0:
@@ -27,7 +30,8 @@ def of_axis(links, axis):
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
-    """What the pressure flow over links with the gaps ``mean`` and half differences ``lean`` of E answers to h and d."""
+    """What the pressure flow over links with the gaps ``mean`` and half
+    differences ``lean`` of E answers to h and d."""
     for c in range(by_d.size):
         slant = lean[c] / mean[c]
         by_d[c] = -k[c] * (P_b[c] - P_a[c]) * 2.0 * slant / ((1.0 + slant * slant) * mean[c])
@@ -87,9 +91,16 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
             part(g_h, start, stop), by[0, start:stop], by[1, start:stop],
         )  # fmt: skip
         _add_carriers(
-            fx[start:stop], vx, wide[start:stop], part(c_h, start, stop), part(fill, start, stop), part(fill, there, end),
-            part(rho, start, stop), part(rho, there, end), by[0, start:stop],
-        )  # fmt: skip
+            fx[start:stop],
+            vx,
+            wide[start:stop],
+            part(c_h, start, stop),
+            part(fill, start, stop),
+            part(fill, there, end),
+            part(rho, start, stop),
+            part(rho, there, end),
+            by[0, start:stop],
+        )
     _half_difference(E[:e], E[1:], lean[:e])
     _half_sum(H[:e], H[1:], mean[:e])
     g, g_h, c_h = of_axis(links, 1)
@@ -97,15 +108,23 @@ def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz
         p[:e], p[1:], kz[:e], mean[:e], lean[:e], part(g, 0, e), part(g_h, 0, e), by[2, :e], by[3, :e]
     )
     _add_carriers(
-        fz[:e], vz, deep[:e], part(c_h, 0, e), part(fill, 0, e), part(fill, 1, size), part(rho, 0, e), part(rho, 1, size),
+        fz[:e],
+        vz,
+        deep[:e],
+        part(c_h, 0, e),
+        part(fill, 0, e),
+        part(fill, 1, size),
+        part(rho, 0, e),
+        part(rho, 1, size),
         by[2, :e],
-    )  # fmt: skip
+    )
     by[2:, e] = 0.0
 
 
 @njit(cache=True, fastmath=_FAST)
 def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
-    """by (3, n, m): derivatives of the flows over links in theta to vx, and in z to vx and to vz; the rest as for `link_gradients`."""
+    """by (3, n, m): derivatives of the flows over links in theta to vx, and in
+    z to vx and to vz; the rest as for `link_gradients`."""
     n, m = P.shape
     film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
     for i in range(n):
@@ -138,7 +157,8 @@ def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_end(by_h, by_d, side, steep, lean, full, out):
-    """Add what a link's flow answers to the unknown at one of its ends, which bends it (side 1: b) or its other end (-1: a)."""
+    """Add what a link's flow answers to the unknown at one of its ends, which
+    bends it (side 1: b) or its other end (-1: a)."""
     for c in range(out.size):
         slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
         if full is not None:
@@ -175,7 +195,8 @@ def _add_pseudo(area, P, drive, slope, factor, out):
 
 @njit(cache=True)
 def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slopes):
-    """Add what the flows and the storage answer through the gap to ``slopes`` of `balance.film_slopes`; ``by`` of `link_gradients`."""
+    """Add what the flows and the storage answer through the gap to ``slopes``
+    of `balance.film_slopes`; ``by`` of `link_gradients`."""
     n, m = P.shape
     size = n * m
     last, e = size - m, size - 1
@@ -207,8 +228,8 @@ def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slop
 def gap_gradient(lam, by, by_v, slope_fields, gain_r, gain_t, cos_x, sin_x, cos_f, sin_f, z, gradient):
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) to (scaled pose, scaled rates, vx, vz).
 
-    ``by`` (4, n, m) of `link_gradients`; ``by_v`` (3, n, m): of the flows over links in theta to vx, in z to vx and to vz; ``gain_r``,
-    ``gain_t`` (n, m): of the storage to the undeformed gap and rate.
+    ``by`` (4, n, m) of `link_gradients`; ``by_v`` (3, n, m): of the flows over links in theta to vx,
+    in z to vx and to vz; ``gain_r``, ``gain_t`` (n, m): of the storage to the undeformed gap and rate.
     """
     count, n, m = lam.shape
     answer = slopes_of(slope_fields)

@@ -1,7 +1,8 @@
-"""Kernels of a film on a liner: its balance, Newton's matrix, steps and sets; see `exudyn_ehd.film.solvers.liner.balance`.
+"""Kernels of a film on a liner: its balance, Newton's matrix, steps and sets;
+see `exudyn_ehd.film.solvers.liner.balance`.
 
-What is handed over together travels in plain tuples, ``u`` and ``trial`` as (P, fill, full), ``factored`` as (order, x, lower, upper, 1 / diagonal):
-a tuple with names takes numba longer to look at than these kernels take to run.
+What is handed over together travels in plain tuples, ``u`` and ``trial`` as (P, fill, full), ``factored`` as (order,
+x, lower, upper, 1 / diagonal): a tuple with names takes numba longer to look at than these kernels take to run.
 """
 
 from __future__ import annotations
@@ -29,14 +30,15 @@ from exudyn_ehd.film.solvers.newton import solve_step
 
 # Share of the smallest gap: a peak pressure that deflects the liner by less counts as one that does by so much.
 LEAST_DEFLECTION = 1e-10
-# Share of the scaled speed, the pressure of a clearance (1) that is driven by it and closed after a radian: smaller peaks are those of a
-# journal that is centred to rounding, and count as so large.
+# Share of the scaled speed, the pressure of a clearance (1) that is driven by it and closed after a
+# radian: smaller peaks are those of a journal that is centred to rounding, and count as so large.
 LEAST_PRESSURE = 1e-6
 # Of a sum of four flows, each a product of three numbers: a film that carries nothing is balanced to it, and no better.
 ROUNDING = 1e-15
 # Of the flows that drive a film: balances that may be left where suction is cut off.
 BALANCED = 1e-7
-# Pressures over the peak, and over the least that counts as one, by which vertices may lie below the cavity's before they rupture.
+# Pressures over the peak, and over the least that counts as one, by which
+# vertices may lie below the cavity's before they rupture.
 SUCTION, ROUNDED = 1e-12, 1e-8
 # Largest growth of an oil's viscosity in one step, as a logarithm.
 LARGEST_THICKENING = 4.0
@@ -139,10 +141,12 @@ def take_over(trial, r, fixed, pc, active, P_out):
 
 @njit(cache=True)
 def liner_step(residual, u, load_fields, H, H_P, factored, count, width, kinds, levels, trial):
-    """Newton's step of the numbered unknowns with the factor at hand; returns the entries of `newton.Step`, and as `take_step`.
+    """Newton's step of the numbered unknowns with the factor at hand; returns
+    the entries of `newton.Step`, and as `take_step`.
 
-    All in pressures on the elements, the cavity's among them, the peak at least the least one. What a film that clips cuts off may lie far
-    below pc and drops over the bent gaps, so that its steps are small by what presses and by ``opening``, the pressure that opens the smallest
+    All in pressures on the elements, the cavity's among them, the peak at least the least one.
+    What a film that clips cuts off may lie far below pc and drops over the bent gaps, so that
+    its steps are small by what presses and by ``opening``, the pressure that opens the smallest
     gap. Infinite for steps that are not finite. The share uses up at most `CLOSING` of any gap.
 
     Parameters
@@ -190,7 +194,8 @@ def liner_step(residual, u, load_fields, H, H_P, factored, count, width, kinds, 
 def _moved(P, x, drive, slope, bend):
     """P + x; above ``drive`` no further than the pressure p(P) would go along its tangent.
 
-    p grows exponentially with P: there, with ``bend`` = p'' the rate k = p'' / p' of growth, x becomes (1 - exp(-k x)) / k.
+    p grows exponentially with P: there, with ``bend`` = p'' the rate
+    k = p'' / p' of growth, x becomes (1 - exp(-k x)) / k.
     """
     target = P + x
     rise = target - drive
@@ -202,7 +207,8 @@ def _moved(P, x, drive, slope, bend):
 
 @njit(cache=True)
 def take_step(u, load_fields, factored, count, share, pc, kinds, tolerance, trial):
-    """Trial state after ``share`` of the step, projected on what a closure allows; returns how many vertices rupture or fill up.
+    """Trial state after ``share`` of the step, projected on what a closure
+    allows; returns how many vertices rupture or fill up.
 
     ``kinds``: (complementary, fills).
     """
