@@ -14,6 +14,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from tests.descriptions import LAWS, options_of
 
 C = 25e-6
 MOTION = np.array([11e-6, 5e-6, 1e-4, -1.5e-4, 3e-3, -2e-3, 0.05, 0.02, 250.0, 0.3])
@@ -136,6 +137,17 @@ SHARED = {
 }
 
 
+FILM = pathlib.Path(ehd.__file__).parent / "film"
+FOUND = {".".join(path.relative_to(FILM).with_suffix("").parts) for path in FILM.rglob("[!_]*.py")}
+NAMED = {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
+# A module with a public option of its own need not be named above.
+EFFECTS |= {
+    f"{name} of {module}": ((f"film.{module}",), {name: option} if name not in LAWS else oil(**{name: option}))
+    for module in sorted(FOUND - SHARED - NAMED)
+    for name, option in options_of(f"film.{module}")
+}
+
+
 def bearing(**options):
     values = oil() | {
         "journal_radius": 0.025,
@@ -193,9 +205,8 @@ def use(made):
 
 
 def test_every_module_of_the_film_is_asked_about():
-    film = pathlib.Path(ehd.__file__).parent / "film"
-    found = {".".join(path.relative_to(film).with_suffix("").parts) for path in film.rglob("[!_]*.py")}
-    assert found == SHARED | {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
+    named = {name[5:] for names, _ in EFFECTS.values() for name in names if name.startswith("film.")}
+    assert SHARED | named == FOUND
 
 
 @pytest.mark.parametrize("closure", CLOSURES)

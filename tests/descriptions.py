@@ -1,0 +1,45 @@
+"""Public descriptions found by themselves, so that contracts hold for a new one without naming it."""
+
+from __future__ import annotations
+
+import dataclasses
+import inspect
+
+import exudyn_ehd as ehd
+from exudyn_ehd.bearing import _OPTIONS
+from exudyn_ehd.film.lubricant import lubricant
+
+LAWS = {name: getattr(lubricant, f"{name.upper()}S") for name in ("pressure_law", "shear_law", "density_law")}
+
+CAVITATION = _OPTIONS["cavitation"]
+
+
+def specs():
+    """Classes of all public descriptions that check what they are given."""
+    public = [getattr(ehd, name) for name in ehd.__all__]
+    return [
+        c
+        for c in public
+        if inspect.isclass(c)
+        and dataclasses.is_dataclass(c)
+        and c.__dataclass_params__.frozen
+        and hasattr(c, "__post_init__")
+    ]
+
+
+def by_itself(spec):
+    """An example with 0.5 for everything that must be given; None if that is not enough."""
+    fields = dataclasses.fields(spec)
+    needed = [f.name for f in fields if f.default is f.default_factory is dataclasses.MISSING]
+    try:
+        return spec(**dict.fromkeys(needed, 0.5))
+    except (ehd.InputError, TypeError):
+        return None
+
+
+def options_of(module):
+    """Options of a bearing (those of its lubricant under their own names) that a module defines, each by itself."""
+    for option in (by_itself(spec) for spec in specs() if spec.__module__ == f"exudyn_ehd.{module}"):
+        for name, types in (_OPTIONS | LAWS).items():
+            if isinstance(option, types):
+                yield name, option
