@@ -62,6 +62,7 @@ EFFECTS = {
     "liner": (
         (
             "film.solvers.nonlinear",
+            "film.solvers.liner.film",
             "film.solvers.liner.balance",
             "film.solvers.liner.elements",
             "film.solvers.liner.gap_response",

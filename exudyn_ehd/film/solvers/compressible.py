@@ -87,23 +87,14 @@ class CompressibleFilmSolver(FilmSolver):
         # without a history, what full films store grows with the gap
         grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
         self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
-        lower, upper = w.lower, w.upper
+        known, (rho_P, residual) = np.full((6, self.area.size), np.nan), np.zeros((2, *shape))
         self.buffers = Buffers(
-            w.order,
-            w.number,
-            lower,
-            upper,
-            w.inv_diag,
-            w.unknowns,
-            np.full((6, self.area.size), np.nan),
-            np.ones(shape),
-            np.zeros(shape),
-            np.zeros(shape),
+            w.order, w.number, w.lower, w.upper, w.inv_diag, w.unknowns, known, np.ones(shape), rho_P, residual
         )
         self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
         self.sigma_known = False
         self.exact = False
-        self.held = False
+        self.reusable = False
         if closure.conserves_mass:
             self.kind = FILLED
         elif closure.clips:
@@ -147,7 +138,7 @@ class CompressibleFilmSolver(FilmSolver):
             ok, steps = self._newton(1.0)
             if ok:
                 return self._finish(steps)
-        w.warm = self.held = False
+        w.warm = self.reusable = False
         status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
         steps += count
         w.warm = False
@@ -199,7 +190,7 @@ class CompressibleFilmSolver(FilmSolver):
 
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` on to the coarser grids."""
-        self.held = False
+        self.reusable = False
         super().refresh_fixed()
 
     def _newton(self, share: float) -> tuple[bool, int]:
@@ -211,7 +202,7 @@ class CompressibleFilmSolver(FilmSolver):
             self.kind,
             self.law.kernel_table,
             share,
-            self.held,
+            self.reusable,
             w.count,
             w.width,
             w.active,
@@ -219,7 +210,7 @@ class CompressibleFilmSolver(FilmSolver):
             s.linear_pressure,
             self._fill,
         )
-        self.held = ok
+        self.reusable = ok
         return ok, steps
 
     def _switch_on(self) -> tuple[bool, int]:
@@ -272,19 +263,8 @@ class CompressibleFilmSolver(FilmSolver):
 
         False where that has no pressure.
         """
-        s, b = self.system, self.buffers
-        if viscosity_at(
-            s.pressure,
-            self.pressure_scale,
-            self._floor,
-            self.law.kernel_table,
-            b.known,
-            b.rho,
-            p_out,
-            ratio_out,
-            ratio_P_out,
-            p_P_out,
-        ):
+        s, b, out = self.system, self.buffers, (p_out, ratio_out, ratio_P_out, p_P_out)
+        if viscosity_at(s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, b.known, b.rho, *out):
             return True
         if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
             return False
@@ -360,22 +340,10 @@ class CompressibleFilmSolver(FilmSolver):
 
     def link_derivatives(self) -> LinkDerivatives:
         """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
-        f = self.flux
+        f, P, mesh, out = self.flux, self.system.linear_pressure, self.grid.mesh, self.link_fields
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
-        link_derivatives(
-            self.system.linear_pressure,
-            self.H,
-            self.HF,
-            slopes,
-            by_speed,
-            self._sigma(),
-            self.vx,
-            self.vz,
-            self.flow_x,
-            self.grid.mesh,
-            self.link_fields,
-        )
-        return self.link_fields
+        link_derivatives(P, self.H, self.HF, slopes, by_speed, self._sigma(), self.vx, self.vz, self.flow_x, mesh, out)
+        return out
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""

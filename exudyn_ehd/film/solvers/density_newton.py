@@ -19,10 +19,10 @@ from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
 from exudyn_ehd.film.solvers.balance import film_balance, film_slopes
 
 MAX_NEWTON_STEPS = 60
-# Shares of the peak pressure: where a vertex changes sides, and the error at which the solution stands.
+# Shares of the peak pressure: where a vertex changes sides, and the error at which the solution has converged.
 SET_TOLERANCE = 1e-12
 ERROR_TOLERANCE = 1e-14
-# Pa: a film at rest has no pressures but rounding, and no share of those would ever stand.
+# Pa: a film at rest has no pressures but rounding, and no share of those would ever be small.
 SMALLEST_PEAK = 1e-6
 # A step so small leaves an error of its square; a factor from so near, or one
 # with which steps shrink so fast, counts as exact.
@@ -205,12 +205,12 @@ def _balance(P, fill, film, kind, b):
 
 
 @njit(cache=True)
-def solve_compressible(film, scale, pc, kind, law, share, held, count, width, full, b, P, fill):
+def solve_compressible(film, scale, pc, kind, law, share, reused, count, width, full, b, P, fill):
     """Newton from P, fill and the sets in ``full``; returns (ok, steps, exact, count, width).
 
-    A factor serves further steps as long as the sets stay and each step is five times smaller
+    A factor is reused as long as the sets stay and each step is five times smaller
     than the last; the first step takes that of the last film (``count``, ``width``) if there is
-    one (``held``). A film that presses against the end of the law's range for `MAX_CUT_STEPS`
+    one (``reused``). A film that presses against the end of the law's range for `MAX_CUT_STEPS`
     has no pressure there. ``exact`` says that the last factor is that of the solution.
     """
     floor = -np.inf if kind == FULL else pc
@@ -218,7 +218,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
     density_at(P, scale, floor, law, share, b.known, b.rho)
     _balance(P, fill, film, kind, b)
     last = moved = 0.0
-    fresh = not held
+    fresh = not reused
     end = law.highest / scale
     least, slack, piled = SMALLEST_PEAK / scale, 0.0, 0.0
     cut_steps = 0
@@ -242,7 +242,7 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
         if not size < 1e300:
             return False, step + 1, False, count, width
         if size <= ERROR_TOLERANCE:
-            return True, step + 1, not (held and step == 0) and moved <= LAST_STEP, count, width
+            return True, step + 1, not (reused and step == 0) and moved <= LAST_STEP, count, width
         moved += size
         density_at(P, scale, floor, law, share, b.known, b.rho)
         _balance(P, fill, film, kind, b)
@@ -259,15 +259,15 @@ def solve_compressible(film, scale, pc, kind, law, share, held, count, width, fu
         if changes > 0 or cuts > 0:
             fresh = True
             continue
-        borrowed = held and step == 0
+        from_last = reused and step == 0
         ratio = size / last if not fresh and last > 0.0 else size
-        standing = size <= ERROR_TOLERANCE
-        if standing or (
-            not borrowed and ((fresh and size <= LAST_STEP) or (not fresh and ratio * size <= ERROR_TOLERANCE))
+        converged = size <= ERROR_TOLERANCE
+        if converged or (
+            not from_last and ((fresh and size <= LAST_STEP) or (not fresh and ratio * size <= ERROR_TOLERANCE))
         ):
-            exact = not borrowed and (moved <= LAST_STEP or (not fresh and ratio <= EXACT_RATIO))
+            exact = not from_last and (moved <= LAST_STEP or (not fresh and ratio <= EXACT_RATIO))
             return True, step + 1, exact, count, width
-        fresh = not fresh and not borrowed and ratio > 0.2
+        fresh = not fresh and not from_last and ratio > 0.2
         last = size
     return False, MAX_NEWTON_STEPS, False, count, width
 

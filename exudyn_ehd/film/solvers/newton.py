@@ -1,6 +1,6 @@
 """Newton's method for a film whose gap or density answers to its pressure, together with its sets.
 
-The chord method: a factor serves further steps while the sets stay and the steps contract, and the
+The chord method: a factor is reused while the sets stay and the steps contract, and the
 contraction also says what is left after a step (E. Hairer, G. Wanner, Solving Ordinary
 Differential Equations II, 1996, section IV.8). Steps are halved while the balances do not improve.
 """
@@ -97,7 +97,7 @@ class Balance(Protocol):
         """The trial state becomes the present one; returns how many vertices change sides."""
 
     def undo(self) -> None:
-        """Sets at the present state once more, after a trial in vain."""
+        """Sets at the present state once more, after a trial that is not taken."""
 
     def nothing_left(self, norm: float) -> bool:
         """Whether the balances hold to the rounding of the flows."""
@@ -133,13 +133,13 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
         step = film.step(gap)
         if not step.size < 1e300:
             return False, count
-        borrowed = reused and count == 1
+        from_last = reused and count == 1
         converged = step.size <= rule.converged
-        if not (fresh or borrowed or converged) and step.size > rule.contraction * last:
+        if not (fresh or from_last or converged) and step.size > rule.contraction * last:
             ready = False
             continue
-        share, trial_norm, trial_gap = _search(film, step, norm, 1 if borrowed else rule.most_halvings, rule)
-        if borrowed and not (trial_gap > 0.0 and (trial_norm < norm or converged)):
+        share, trial_norm, trial_gap = _search(film, step, norm, 1 if from_last else rule.most_halvings, rule)
+        if from_last and not (trial_gap > 0.0 and (trial_norm < norm or converged)):
             norm, gap = film.balance(film.u)
             film.undo()
             ready = False
@@ -155,14 +155,14 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and film.settled(norm)
-            if converged or (not borrowed and _left(step.left, last_left, fresh, rule) <= 1.0):
+            if converged or (not from_last and _left(step.left, last_left, fresh, rule) <= 1.0):
                 if not converged:
                     film.correct(gap)
-                film.exact = not borrowed and moved <= rule.exact
+                film.exact = not from_last and moved <= rule.exact
                 film.reusable = True
                 return film.sound(), count
         # a factor that leaves much of a step is of no use after it
-        ready = ready and (fresh or borrowed or step.size <= rule.reusable * last)
+        ready = ready and (fresh or from_last or step.size <= rule.reusable * last)
         last, last_left = step.size, step.left
     return False, rule.most_steps
 

@@ -58,11 +58,12 @@ from exudyn_ehd.film.reynolds.link_derivatives import link_factors
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
 from exudyn_ehd.film.solvers.balance import film_balance
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
-from exudyn_ehd.film.solvers.liner.balance import CLIPPED, FULL, LinerBalance
+from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
+from exudyn_ehd.film.solvers.liner.film import CLIPPED, FULL
 from exudyn_ehd.film.solvers.liner.gap_response import gap_gradient
-from exudyn_ehd.film.solvers.liner.parts import ColumnContact, ColumnLimiter, ColumnOil
+from exudyn_ehd.film.solvers.liner.parts import ElementContact, ElementLimiter, ElementOil, LinerParts
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
@@ -82,7 +83,7 @@ class NonlinearFilmSolver(FilmSolver):
     grid, closure, squeeze, flux_effects
         As for `FilmSolver`.
     contact, limiter, oil, density
-        As for `LinerBalance`.
+        As for `LinerParts`.
 
     Attributes
     ----------
@@ -102,16 +103,16 @@ class NonlinearFilmSolver(FilmSolver):
         closure: Closure,
         *,
         squeeze: bool = True,
-        contact: ColumnContact | None = None,
-        limiter: ColumnLimiter | None = None,
+        contact: ElementContact | None = None,
+        limiter: ElementLimiter | None = None,
         flux_effects: tuple[FluxEffect, ...] = (),
-        oil: ColumnOil | None = None,
+        oil: ElementOil | None = None,
         density: CompressibleLaw | None = None,
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         self.coarse = None
         self.law = density
-        self.elements = e = LinerBalance(self, self._set_links, contact, limiter, oil, density)
+        self.elements = e = LinerBalance(self, self._set_links, LinerParts(contact, limiter, oil, density))
         # the balance's own arrays, which its kernels take as one
         self.H, self.HF, self.H_t = e.gaps.H, e.gaps.HF, e.gaps.rate
         self.system.H, self.system.H_t = self.H, self.H_t
@@ -261,7 +262,7 @@ class NonlinearFilmSolver(FilmSolver):
         self.system.inverse_step = mass
 
     def refresh_fixed(self) -> None:
-        """Another set of prescribed vertices: the last factor serves no more."""
+        """Another set of prescribed vertices: the last factor is of no use."""
         self.elements.reusable = False
 
     def _finish(self) -> None:

@@ -186,7 +186,7 @@ def contact_weights(motion, friction, transition, R, out):
 def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out):
     """Link and storage derivatives from the film's gap to the true gap, all (n, m); DX in place.
 
-    ``slope``, ``bend`` and ``face_slope`` are what a gap limiter returns (`joint.effects`).
+    ``slope``, ``bend`` and ``face_slope`` are what a gap limiter returns (`joint.seams`).
     """
     dx, faces = DX.reshape(-1), face_slope.reshape(-1)
     for k in range(dx.size):

@@ -41,7 +41,7 @@ class ElasticLiner:
         if nu > 0.49:
             raise InputError(
                 f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does "
-                "not give way in columns, take a bush with a mesh."
+                "not deflect point by point, take a bush with a mesh."
             )
 
     @property

@@ -71,14 +71,14 @@ class WallContact:
     def settle(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
-        """Gap G (n, m) on columns of liner, with contact pressure and slope there; as `joint.effects.Contact`."""
+        """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `joint.seams.Contact`."""
         settle_wall(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
 
     def limit(
         self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
         slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
     ) -> None:  # fmt: skip
-        """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.effects.GapLimiter`."""
+        """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.seams.GapLimiter`."""
         limit_gap(H, HF, H_t, self.onset, self.residual, slope_out, bend_out, face_slope_out)
 
 
@@ -99,7 +99,7 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
 
 @njit(cache=True)
 def settle_wall(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
-    """Gap on a column of liner that the wall presses: ``G = X + q (1 - G / onset)^2``,
+    """Gap on a Winkler element that the wall presses: ``G = X + q (1 - G / onset)^2``,
     q = compliance times pressure, by its larger root.
 
     With the pressure there, and its derivative to G over ``scale``.

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.solvers.liner.elements import yield_columns
+from exudyn_ehd.film.solvers.liner.elements import plain_slopes
 from exudyn_ehd.film.solvers.liner.gap_response import link_gradients
 from exudyn_ehd.film.solvers.liner.kernels import (
     BALANCED,
@@ -26,13 +26,13 @@ from exudyn_ehd.film.solvers.newton import RULE
 
 
 @njit(cache=True)
-def _factor(P, fixed, numbers, columns, links, rates, matrix, active):
+def _factor(P, fixed, numbers, elements, links, rates, matrix, active):
     """Newton's matrix at P, factored; returns (ok, count, width)."""
     _, vx, vz, beta = numbers
-    load, _, _, _, gaps, gap_slopes = columns
+    load, _, _, _, gaps, gap_slopes = elements
     metric, terms, _ = links
     by, slopes, number, factored = matrix
-    yield_columns(P, load, beta, rates[1], gap_slopes)
+    plain_slopes(P, load, beta, rates[1], gap_slopes)
     link_gradients(P, None, None, terms, fixed, gaps, None, metric, vx, vz, by)
     return factor_liner(
         (P, None, None),
@@ -53,21 +53,21 @@ def _factor(P, fixed, numbers, columns, links, rates, matrix, active):
 
 
 @njit(cache=True)
-def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, residual, active, start):
+def solve_plain(u, trial, fixed, numbers, kinds, elements, links, rates, matrix, residual, active, start):
     """Newton from ``u``, in place; returns (found, steps, exact, count, width).
 
     Parameters
     ----------
     u, trial : (P, fill, full)
     numbers, kinds : as for `plain_residual`
-    columns : (load, rigid, G, old deflection, gaps, gap slopes), as fields
+    elements : (load, rigid, G, old deflection, gaps, gap slopes), as fields
     links : (metric, terms, known), as fields
     matrix : (by, slopes, number, factored) of `factor_liner`
     start : (whether a factor is there, whether the sets are, count, width)
     """
     pc, vx, vz, beta = numbers
     clips, complementary = kinds
-    load, rigid, G, delta_old, gaps, gap_slopes = columns
+    load, rigid, G, delta_old, gaps, gap_slopes = elements
     metric, terms, known = links
     factored = matrix[3]
     ready, warm, count, width = start
@@ -87,7 +87,7 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
     for step in range(1, RULE.most_steps + 1):
         fresh = not ready
         if fresh:
-            ok, count, width = _factor(P, fixed, numbers, columns, links, rates, matrix, active)
+            ok, count, width = _factor(P, fixed, numbers, elements, links, rates, matrix, active)
             if not ok:
                 return False, step, False, count, width
             moved = 0.0
@@ -110,13 +110,13 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
         )
         if not size < 1e300:
             return False, step, False, count, width
-        borrowed = reused and step == 1
+        from_last = reused and step == 1
         converged = size <= RULE.converged
-        if not (fresh or borrowed or converged) and size > RULE.contraction * last:
+        if not (fresh or from_last or converged) and size > RULE.contraction * last:
             ready = False
             continue
         before = norm
-        for k in range(1 if borrowed else RULE.most_halvings):
+        for k in range(1 if from_last else RULE.most_halvings):
             if k > 0:
                 share *= 0.5
                 take_step(u, load, factored, count, share, pc, (complementary, False), 0.0, trial)
@@ -125,7 +125,7 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
             )
             if gap > 0.0 and (norm < before or size <= RULE.silent):
                 break
-        if borrowed and not (gap > 0.0 and (norm < before or converged)):
+        if from_last and not (gap > 0.0 and (norm < before or converged)):
             norm, gap = plain_residual(
                 P, fixed, numbers, kinds, load, rigid, G, delta_old, gaps, metric, terms, known, rates, residual
             )
@@ -145,12 +145,12 @@ def solve_plain(u, trial, fixed, numbers, kinds, columns, links, rates, matrix, 
         if ready:
             converged = converged and (not clips or norm <= BALANCED / ROUNDING * noise)
             rest = left * left / (RULE.square if fresh else RULE.converged * min(max(last_left, 1e-300), 1.0))
-            if converged or (not borrowed and rest <= 1.0):
-                return True, step, not borrowed and moved <= RULE.exact, count, width
-        ready = ready and (fresh or borrowed or size <= RULE.reusable * last)
+            if converged or (not from_last and rest <= 1.0):
+                return True, step, not from_last and moved <= RULE.exact, count, width
+        ready = ready and (fresh or from_last or size <= RULE.reusable * last)
         last, last_left = size, left
     if norm <= noise:
-        # a film that carries nothing: its balances hold to rounding, and its steps never stand still
-        ok, count, width = _factor(P, fixed, numbers, columns, links, rates, matrix, active)
+        # a film that carries nothing: its balances hold to rounding, and its steps never become small
+        ok, count, width = _factor(P, fixed, numbers, elements, links, rates, matrix, active)
         return ok, RULE.most_steps, ok, count, width
     return False, RULE.most_steps, False, count, width

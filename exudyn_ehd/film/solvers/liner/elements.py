@@ -100,12 +100,12 @@ class Rates(NamedTuple):
 
 
 @njit(cache=True, fastmath=_FAST)
-def drive_columns(P, fixed, pc, clips, load_fields):
+def drive_elements(P, fixed, pc, clips, load_fields):
     """What drives the elements, as it is for an oil of constant viscosity."""
     load = load_of(load_fields)
-    x, held, drive, p = P.reshape(-1), fixed.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
+    x, prescribed, drive, p = P.reshape(-1), fixed.reshape(-1), load.drive.reshape(-1), load.p.reshape(-1)
     for c in range(x.size):
-        cut = clips & (not held[c]) & (x[c] < pc)
+        cut = clips & (not prescribed[c]) & (x[c] < pc)
         drive[c] = pc if cut else x[c]
         p[c] = drive[c]
 
@@ -135,7 +135,7 @@ def _smallest(x):
 
 
 @njit(cache=True, fastmath=_FAST)
-def press_columns(rigid, load_fields, beta, G_out):
+def press_elements(rigid, load_fields, beta, G_out):
     """Gap under the film's pressure alone; returns the smallest."""
     gap, p, out = rigid[0].reshape(-1), load_of(load_fields).p.reshape(-1), G_out.reshape(-1)
     for c in range(out.size):
@@ -156,7 +156,7 @@ def _mean_gap(link, D_a, D_b, out):
 
 
 @njit(cache=True, fastmath=_FAST)
-def move_columns(rigid, G, delta_old, inverse, gap_fields):
+def move_elements(rigid, G, delta_old, inverse, gap_fields):
     """Deflections, gaps and rate of the deformed surfaces before a limiter
     changes them; returns the smallest gap of a link."""
     m = G.shape[1]
@@ -177,13 +177,13 @@ def move_columns(rigid, G, delta_old, inverse, gap_fields):
 def deflect(P, fixed, pc, clips, load_fields, rigid, beta, G, delta_old, inverse, gap_fields):
     """Elements that the film alone presses, with oil of constant viscosity;
     returns the smallest gaps of a vertex and of a link."""
-    drive_columns(P, fixed, pc, clips, load_fields)
-    smallest = press_columns(rigid, load_fields, beta, G)
-    return smallest, move_columns(rigid, G, delta_old, inverse, gap_fields)
+    drive_elements(P, fixed, pc, clips, load_fields)
+    smallest = press_elements(rigid, load_fields, beta, G)
+    return smallest, move_elements(rigid, G, delta_old, inverse, gap_fields)
 
 
 @njit(cache=True, fastmath=_FAST)
-def hold_columns(gaps, load, P, fills, known, rates, beta, film):
+def set_storage(gaps, load, P, fills, known, rates, beta, film):
     """E of the elements, and what vertices store: ``grow`` and ``kept`` of `balance.FilmTerms`.
 
     ``known`` (3, n, m): film gap of the undeformed surfaces, old mass, and what pseudo time holds on to.
@@ -207,7 +207,7 @@ def hold_columns(gaps, load, P, fills, known, rates, beta, film):
 
 
 @njit(cache=True, fastmath=_FAST)
-def answer_columns(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
+def element_slopes(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, slope_fields):
     """Derivatives of gaps and rate, for a slope of the film gap (``rate_t``) and of its links that are known already.
 
     ``contact_G`` is d(contact pressure)/dG over the film's scale, ``bend`` the
@@ -232,8 +232,8 @@ def answer_columns(P, load_fields, rigid_slope, contact_G, bend, beta, inverse, 
 
 
 @njit(cache=True, fastmath=_FAST)
-def yield_columns(P, load_fields, beta, inverse, slope_fields):
-    """`answer_columns` of elements that the film alone presses, with oil of
+def plain_slopes(P, load_fields, beta, inverse, slope_fields):
+    """`element_slopes` of elements that the film alone presses, with oil of
     constant viscosity: what does not stay the same."""
     load, out = load_of(load_fields), slopes_of(slope_fields)
     x, drive, D_P, H_P, rate_P = (

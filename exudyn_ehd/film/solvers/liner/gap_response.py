@@ -73,7 +73,7 @@ def _half_sum(a, b, out):
 def link_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, vx, vz, by):
     """by (4, n m): derivatives of the flows over links to h and d, in theta, then in z.
 
-    ``links``: `LinkFlux`, or None for a plain film; ``metric`` as in `columns.plain_links`.
+    ``links``: `LinkFlux`, or None for a plain film; ``metric`` as in `elements.plain_links`.
     """
     n, m = P.shape
     film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)

@@ -20,9 +20,9 @@ from exudyn_ehd.film.solvers.liner.elements import (
     bend_links,
     deflect,
     gaps_of,
-    hold_columns,
     load_of,
     plain_links,
+    set_storage,
     slopes_of,
 )
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
@@ -64,7 +64,7 @@ def liner_residual(
 ):  # fmt: skip
     """Balance of every vertex for settled elements and unbent links; returns the norm of those that do not hold."""
     film, gaps = terms_of(terms, fixed), gaps_of(gap_fields)
-    hold_columns(gaps, load_of(load_fields), P, fill is not None, known, Rates(*rates), beta, film)
+    set_storage(gaps, load_of(load_fields), P, fill is not None, known, Rates(*rates), beta, film)
     bend_links(gaps, film)
     film_balance(P, fill, rho, film, out)
     return violation(out, P, fixed, pc, complementary)

@@ -1,14 +1,16 @@
-"""What a film on columns of liner may be made of beside its closure; see `exudyn_ehd.film.solvers.nonlinear`."""
+"""What a film on a liner may be made of besides its closure; see `exudyn_ehd.film.solvers.nonlinear`."""
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 
-class ColumnContact(Protocol):
-    """What presses on a column beside the film; as `exudyn_ehd.joint.seams.Contact`."""
+
+class ElementContact(Protocol):
+    """What presses on a Winkler element besides the film; as `exudyn_ehd.joint.seams.Contact`."""
 
     @property
     def presses_below(self) -> float: ...
@@ -18,7 +20,7 @@ class ColumnContact(Protocol):
     ) -> None: ...
 
 
-class ColumnLimiter(Protocol):
+class ElementLimiter(Protocol):
     """The gap that the film sees between touching surfaces; as `exudyn_ehd.joint.seams.GapLimiter`."""
 
     @property
@@ -30,7 +32,7 @@ class ColumnLimiter(Protocol):
     ) -> None: ...  # fmt: skip
 
 
-class ColumnOil(Protocol):
+class ElementOil(Protocol):
     """How pressure follows from the film's unknown; as `exudyn_ehd.joint.seams.PressureLaw`."""
 
     @property
@@ -39,3 +41,24 @@ class ColumnOil(Protocol):
     def transform(self, p: np.ndarray) -> np.ndarray: ...
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
+
+
+class LinerParts(NamedTuple):
+    """What takes part, None: absent.
+
+    Attributes
+    ----------
+    contact : ElementContact or None
+        What presses on the liner besides the film.
+    limiter : ElementLimiter or None
+        Of the gap that the film sees; goes with the contact or with flow factors.
+    oil : ElementOil or None
+        Of a viscosity that follows the pressure.
+    density : CompressibleLaw or None
+        Of a density that does; then it is the ``oil`` as well.
+    """
+
+    contact: ElementContact | None
+    limiter: ElementLimiter | None
+    oil: ElementOil | None
+    density: CompressibleLaw | None

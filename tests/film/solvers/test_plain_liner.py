@@ -6,7 +6,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner.balance import CLIPPED, COMPLEMENTARY, FULL
+from exudyn_ehd.film.solvers.liner.film import CLIPPED, COMPLEMENTARY, FULL
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
@@ -108,7 +108,7 @@ def test_stiff_liner_approaches_the_rigid_bore_at_first_order(closure):
 
 @every_closure
 def test_the_start_changes_no_result(closure):
-    """Cold, warm from afar and warm from nearby: 1e-12 of the peak, the error at which the iteration stands."""
+    """Cold, warm from afar and warm from nearby: 1e-12 of the peak, the error at which the iteration ends."""
     cold = solve(closure, 0.003).pressure.copy()
     for eps in (0.1, 0.85, 0.6):
         warm = solve(closure, 0.003, eps=eps)
@@ -125,7 +125,7 @@ def test_heavy_and_soft_films_converge():
 
 
 def test_a_bore_that_touches_at_its_ends_has_no_film():
-    """Where the pressure is prescribed a column can't give way."""
+    """Where the pressure is prescribed an element can't deflect."""
     solver = NonlinearFilmSolver(GRID, ehd.SwiftStieber())
     solver.beta = 0.01
     solver.H[:], solver.HF[:], solver.H_t[:] = gaps(1.01)
@@ -147,7 +147,7 @@ def test_rate_of_the_liner_is_backward_euler():
 
 
 def test_pressure_at_an_instant_is_that_of_the_deflection():
-    """A liner that has no time to give way keeps its pressure; 1e-6 s against a period of 0.1 s: below 1e-3."""
+    """A liner that has no time to deflect keeps its pressure; 1e-6 s against a period of 0.1 s: below 1e-3."""
     s = solve(ehd.SwiftStieber(), 0.01)
     before = s.pressure.copy()
     after = solve(ehd.SwiftStieber(), 0.01, eps=0.5, delta_old=s.deflection.copy(), solver=s).pressure
@@ -233,7 +233,7 @@ def bearing_on_liner(closure, modulus, length, n_theta, n_z):
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
     """Aligned, a hair from the bore: the flows balance to rounding at no
-    pressure, and no step of Newton's would ever stand still."""
+    pressure, and no step of Newton's would ever be small."""
     model = bearing_on_liner(closure, 1e8, 0.005, 64, 16)
     evaluation = model.evaluate(np.array([1.9e-5, 4.4e-6, 0, 0, 0, 0, 0, 0, 0, -0.57]))
     assert evaluation.status is ehd.Status.CONVERGED

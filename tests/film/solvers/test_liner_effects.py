@@ -1,5 +1,5 @@
 """Liner with contact, mass-conserving cavitation, laws of the oil or flow
-factors: columns, a readable twin solved by scipy, limits, balances."""
+factors: Winkler elements, a readable twin solved by scipy, limits, balances."""
 
 import itertools
 import math
@@ -158,7 +158,7 @@ def link_twin(effect, vx):
 
 
 def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_old, closure, effect="none"):
-    """Balance of every vertex, link by link, the columns by bracketing; P the true pressures but where a film clips."""
+    """Balance of every vertex, link by link, elements by bracketing; P the true pressures but where a film clips."""
     n, m = P.shape
     press, seen = contact_twin(contact)
     links = link_twin(effect, vx)
@@ -199,7 +199,7 @@ def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_o
 
 
 @touching
-def test_columns_settle(contact):
+def test_elements_settle(contact):
     """``G = X + q p(G)`` to rounding for any X, compliance and start, and the slopes by central differences."""
     made = CONTACTS[contact]()
     X = np.linspace(-3.0, 1.5, 240).reshape(-1, 3)
@@ -317,7 +317,7 @@ def test_scipy_finds_the_same_film(closure, contact, effect, motion):
     """The twin's equations on 16 x 4, solved by MINPACK from the rigid film; deep contact where there is one.
 
     One unknown u per vertex: the pressure above, and (minus) slack or missing oil below the
-    cavity pressure. 1e-7 of the peak: MINPACK's tolerance and the bracketing of the columns;
+    cavity pressure. 1e-7 of the peak: MINPACK's tolerance and the bracketing of the elements;
     with asperities the tabulated contact pressure, good to 1e-6, and the tabulated flow factors.
     """
     g, beta = SMALL, 0.01
@@ -431,7 +431,7 @@ def test_surfaces_that_overlap_have_a_film(closure, contact):
 @every_contact
 @every_closure
 def test_the_start_changes_no_result(closure, contact):
-    """Cold, and warm from afar: 1e-12 of the peak, the error at which the iteration stands."""
+    """Cold, and warm from afar: 1e-12 of the peak, the error at which the iteration ends."""
     deep = 0.0 if contact == "none" else 0.35
     s = solver_of(closure, contact)
     cold = solve(s, 0.003, 0.7 + deep).pressure.copy()
@@ -463,7 +463,7 @@ def test_oil_is_kept_over_a_transient(contact):
 
 
 def test_a_film_at_an_instant_keeps_deflection_and_content():
-    """No time to give way or to flow: content and deflection of the history, another gap's rate another pressure."""
+    """No time to deflect or to flow: content and deflection of the history, another gap's rate another pressure."""
     s = solve(solver_of(ehd.ElrodAdams(), "none"), 0.01, 0.5)
     mass, delta, before = s.content, s.deflection, s.pressure.copy()
     after = solve(s, 0.01, 0.5, cold=False, mass_old=mass, delta_old=delta)
