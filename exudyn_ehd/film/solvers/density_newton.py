@@ -27,16 +27,16 @@ SMALLEST_PEAK = 1e-6
 # A step so small leaves an error of its square; a factor from so near, or one
 # with which steps shrink so fast, counts as exact.
 LAST_STEP = 1e-7
-# Steps without a limit; then the share of the way to the end of the law's range
-# that one may cover, and steps in a row that may want more.
+# First steps, taken whole; share of the way to the end of the law's range that a
+# later one covers at most; steps in a row cut like that after which there is no film.
 WHOLE_STEPS = 16
 TO_THE_END = 0.9
+MAX_CUT_STEPS = 16
 # Share of the pressure that a wedge as deep as the gap makes: below it a film without a solution
-# so far is that of a journal in the centre but for rounding, whose pressures are rounding too.
+# so far is that of a journal in the centre to rounding, whose pressures are rounding too.
 ROUNDING_SHARE = 1e-6
 # Rounding of a vertex's balance, share of the largest flow, and of that wedge's pressure: no reason to change sides.
 ROUNDING = 1e-14
-MAX_CUT_STEPS = 16
 EXACT_RATIO = 1e-8
 FULL, CLIPPED, COMPLEMENTARY, FILLED = 0, 1, 2, 3
 _FAST = {"reassoc", "contract", "nsz", "arcp"}

@@ -232,7 +232,7 @@ def test_oil_beyond_the_law_has_no_pressure():
 
 
 @pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)
-def test_journal_in_the_centre_but_for_rounding(closure):
+def test_journal_in_the_centre_to_rounding(closure):
     """The pressures are rounding themselves: no step becomes a small share of
     them, and vertices change sides for nothing."""
     bearing = ehd.JournalBearing(

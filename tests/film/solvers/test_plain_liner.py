@@ -168,7 +168,7 @@ def test_refused_values(option, value):
 
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_film_at_rest_carries_nothing(closure):
-    """A soft liner, all but touched, without speed or rate: no pressure beside
+    """A soft liner, nearly touched, without speed or rate: no pressure beside
     the one that would open it to its clearance, 1 / beta."""
     solver = NonlinearFilmSolver(GRID, closure)
     solver.beta = 0.1
