@@ -240,7 +240,6 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
             "LongBearing",
         ),
         ({"film": ehd.ImpedanceMap()}, "ImpedanceMap"),
-        ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e10)}, "density_law"),
     ],
     ids=lambda o: o if isinstance(o, str) else "",
 )

@@ -130,10 +130,10 @@ def test_power_into_a_liner_by_contact(contact):
         after[0] += after[4] * step
         history = model.initial_history(before)
         law = model.effects.contacts[0]
-        gaps = [model.solver.true_gap.copy()]
+        gaps = [model.solver.elements.true_gap.copy()]
         loss = model.evaluate(after, history, step).quantities()["power_loss"]
         stored = model.solver.stored_power() * model.scales.pressure * model.parts.flow_scale
-        gaps.append(model.solver.true_gap.copy())
+        gaps.append(model.solver.elements.true_gap.copy())
         p, slope = np.empty_like(gaps[0]), np.empty_like(gaps[0])
         energy = np.zeros_like(p)
         for weight, share in ((1, 0.0), (4, 0.5), (1, 1.0)):

@@ -400,10 +400,6 @@ def test_damping_on_a_liner_follows_slow_motions(cavitation, laws):
         ({"asperity": ASPERITY, "contact": ehd.RegularisedWall(onset=1e-6)}, "exclude each other"),
         ({"asperity": ASPERITY, "roughness": ehd.PatirCheng(composite_roughness=1e-6)}, "must equal"),
         ({"roughness": ehd.PatirCheng(composite_roughness=6e-6)}, "quarter of the radial clearance"),
-        (
-            {"bush": LINER, "lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
-            "can't be combined",
-        ),
         ({"bush": LINER, "film": ehd.ShortBearing()}, "ShortBearing"),
         ({"profile": ehd.Crown(drop=-25e-6)}, "closes the gap"),
     ],
