@@ -105,7 +105,10 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     assert np.allclose(load, expected, rtol=0, atol=3e-4 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.Gumbel()], ids=["swift", "gumbel"])
+@pytest.mark.parametrize(
+    "cavitation",
+    [pytest.param(ehd.SwiftStieber(), id="swift"), pytest.param(ehd.Gumbel(), id="gumbel", marks=pytest.mark.slow)],
+)
 @pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
 @pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.0, 1e-4)], ids=["aligned", "tilted"])
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
