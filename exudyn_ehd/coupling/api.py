@@ -176,7 +176,7 @@ class LubricatedJoint(JointResults):
         Returns
         -------
         Audit
-            Print it for a table; ``neglected`` and ``in_vain`` hold what to change.
+            Print it for a table; ``neglected`` and ``unneeded`` hold what to change.
 
         Raises
         ------
