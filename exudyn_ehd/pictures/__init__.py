@@ -2,8 +2,8 @@
 
 Module map
 ----------
-protocols  what pictures look at: a film, the film of a joint, a history
-mixins     ``plot_...`` methods of what carries a film or a history; draws nothing itself
+records    what pictures look at: a film, the film of a joint, a history
+mixins     ``plot_...`` methods of what is or has a film or a history; draws nothing itself
 style      sizes, colours, fonts; opening and writing a figure
 units      in which unit a quantity is shown, and its label
 maps       unrolled maps of pressure, gap, fill and temperature

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
-from exudyn_ehd.pictures.protocols import History, Target
+from exudyn_ehd.pictures.records import History, Target
 from exudyn_ehd.pictures.style import (
     BLUE,
     COLUMN,

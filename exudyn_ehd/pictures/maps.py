@@ -11,7 +11,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
-from exudyn_ehd.pictures.protocols import Film, Target
+from exudyn_ehd.pictures.records import Film, Target
 from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import Unit, label, unit_for
 from exudyn_ehd.status import InputError

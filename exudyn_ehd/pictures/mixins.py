@@ -1,11 +1,11 @@
-"""The ``plot_...`` methods of what carries a film or a history. Matplotlib is imported when something is drawn."""
+"""The ``plot_...`` methods of what is or has a film or a history. Matplotlib is imported when something is drawn."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, cast
 
-from exudyn_ehd.pictures.protocols import Film, History, Target
+from exudyn_ehd.pictures.records import Film, History, Target
 
 if TYPE_CHECKING:
     from enum import Enum
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class FilmPictures:
-    """Pictures of a film at one instant; mixed into what has the attributes of `pictures.protocols.Film`.
+    """Pictures of a film at one instant; mixed into a `pictures.records.Film`, or into what has one by `_film`.
 
     Every method draws into ``ax`` if given (a matplotlib Axes, so that pictures can be combined) or into a figure of
     its own, writes it to ``path`` if given, and returns the figure.
@@ -52,28 +52,35 @@ class FilmPictures:
         """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees."""
         from exudyn_ehd.pictures.bearing3d import plot_bearing
 
-        return plot_bearing(cast(Film, self), camera=camera, ax=ax, path=path)
+        return plot_bearing(self._film(), camera=camera, ax=ax, path=path)
+
+    def _film(self) -> Film:
+        """What is drawn."""
+        return cast(Film, self)
 
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
         from exudyn_ehd.pictures import maps
 
-        return maps.plot_map(cast(Film, self), getattr(maps, field), ax=ax, path=path)
+        return maps.plot_map(self._film(), getattr(maps, field), ax=ax, path=path)
 
 
 class HistoryPictures:
-    """Pictures of a history; mixed into what has the attributes of `pictures.protocols.History`. See `FilmPictures`."""
+    """Pictures of a history; mixed into a `pictures.records.History`, or into what has one by `_history`.
+
+    See `FilmPictures`.
+    """
 
     def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
         """Orbit of the journal in the clearance circle, with ``ends`` also at both ends; ``text`` is for a legend."""
         from exudyn_ehd.pictures.histories import plot_orbit
 
-        return plot_orbit(cast(History, self), ends=ends, text=text, ax=ax, path=path)
+        return plot_orbit(self._history(), ends=ends, text=text, ax=ax, path=path)
 
     def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """Polar diagram of the load of the journal on the bush, in the housing's joint frame."""
         from exudyn_ehd.pictures.histories import plot_load
 
-        return plot_load(cast(History, self), text=text, ax=ax, path=path)
+        return plot_load(self._history(), text=text, ax=ax, path=path)
 
     def plot_traces(
         self, quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
@@ -81,4 +88,8 @@ class HistoryPictures:
         """Quantities over time, or over an ``angle``; options as in `pictures.histories.plot_traces`."""
         from exudyn_ehd.pictures.histories import plot_traces
 
-        return plot_traces(cast(History, self), quantities, **options)
+        return plot_traces(self._history(), quantities, **options)
+
+    def _history(self) -> History:
+        """What is drawn."""
+        return cast(History, self)

@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from exudyn_ehd.pictures.protocols import JointFilm
+from exudyn_ehd.pictures.records import JointFilm
 from exudyn_ehd.status import InputError, require_number
 from exudyn_ehd.storage import replacing
 

@@ -15,6 +15,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Geometry
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.pictures.mixins import HistoryPictures
+from exudyn_ehd.pictures.records import History
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 from exudyn_ehd.tables import write_csv
@@ -84,7 +85,7 @@ _COLUMNS: dict[str, int | slice] = {
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
-class JointHistory(HistoryPictures):
+class JointHistory(History, HistoryPictures):
     """Accepted steps of one joint, first the initial state, last the state now.
 
     All vectors are in the joint frame (fixed in the housing, z = axis), force and moment act on the journal, moment
@@ -116,12 +117,8 @@ class JointHistory(HistoryPictures):
         Of the bearing [m].
     """
 
-    time: np.ndarray
-    motion: np.ndarray
-    eccentricity: np.ndarray
     eccentricity_ratio: np.ndarray
     largest_eccentricity_ratio: np.ndarray
-    force: np.ndarray
     moment: np.ndarray
     minimum_gap: np.ndarray
     peak_pressure: np.ndarray
@@ -137,9 +134,7 @@ class JointHistory(HistoryPictures):
     minimum_gap_z: np.ndarray
     peak_angle: np.ndarray
     bore_displacement: np.ndarray
-    radial_clearance: float
     journal_radius: float
-    length: float
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
         """The steps with ``start <= time <= end`` (s), to rounding: a billionth of the record's length."""

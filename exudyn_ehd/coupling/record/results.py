@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import pathlib
-from collections.abc import Sequence
-from enum import Enum
-from typing import TYPE_CHECKING, Any
 
 import exudyn as exu
 
@@ -18,20 +15,14 @@ from exudyn_ehd.film.models import FiniteLength
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
-from exudyn_ehd.pictures.protocols import Target
+from exudyn_ehd.pictures.mixins import FilmPictures, HistoryPictures
 from exudyn_ehd.status import FilmError, InputError, Status
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
 
-
-class JointResults:
+class JointResults(FilmPictures, HistoryPictures):
     """Results of a joint; mixed into `LubricatedJoint`.
 
-    The ``plot_...`` methods take ``ax`` (a matplotlib Axes to draw into; by default a figure of its own is made) and
-    ``path`` (where to write it), and return the figure.
+    The ``plot_...`` methods draw the film at the last accepted state, or the history over all accepted steps.
     """
 
     name: str
@@ -163,46 +154,8 @@ class JointResults:
         """Table of the whole revolutions up to now; see `JointHistory.revolutions`."""
         return self.history.revolutions(period=period)
 
-    def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the pressure at the last accepted state; see `FilmPictures.plot_pressure`."""
-        return self.film().plot_pressure(ax=ax, path=path)
+    def _film(self) -> FilmFields:
+        return self.film()
 
-    def plot_gap(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the gap at the last accepted state."""
-        return self.film().plot_gap(ax=ax, path=path)
-
-    def plot_fill(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the film fraction at the last accepted state, for `ElrodAdams`."""
-        return self.film().plot_fill(ax=ax, path=path)
-
-    def plot_temperature(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the film's temperature at the last accepted state, with a thermal effect."""
-        return self.film().plot_temperature(ax=ax, path=path)
-
-    def plot_contact_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of the pressure of asperities or wall at the last accepted state."""
-        return self.film().plot_contact_pressure(ax=ax, path=path)
-
-    def plot_wear_depth(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Unrolled map of what was worn off the bore up to the last accepted state."""
-        return self.film().plot_wear_depth(ax=ax, path=path)
-
-    def plot_bearing(
-        self, *, camera: tuple[float, float] | None = None, ax: Axes | None = None, path: Target = None
-    ) -> Figure:
-        """The bearing in space at the last accepted state: pressure, journal, load on the bush."""
-        return self.film().plot_bearing(camera=camera, ax=ax, path=path)
-
-    def plot_orbit(self, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
-        """Orbit of the journal in the clearance circle, over all accepted steps; see `HistoryPictures.plot_orbit`."""
-        return self.history.plot_orbit(ends=ends, text=text, ax=ax, path=path)
-
-    def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
-        """Polar diagram of the load of the journal on the bush, over all accepted steps."""
-        return self.history.plot_load(text=text, ax=ax, path=path)
-
-    def plot_traces(
-        self, quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
-    ) -> Figure:
-        """Quantities over time, or over an ``angle``; see `HistoryPictures.plot_traces`."""
-        return self.history.plot_traces(quantities, **options)
+    def _history(self) -> JointHistory:
+        return self.history

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,19 +15,20 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.fields import grid_fields
+from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.joint.static.steady_temperature import settle
 from exudyn_ehd.pictures.mixins import FilmPictures
+from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
 
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 
 @dataclass(frozen=True, eq=False)
-class SteadyResult(FilmPictures):
+class SteadyResult(Film, FilmPictures):
     """One position of the journal.
 
     ``plot_pressure()`` and its like draw it. Frame and signs as in `exudyn_ehd.joint.solved_film`; SI units.
@@ -71,13 +72,6 @@ class SteadyResult(FilmPictures):
         rates.
     """
 
-    theta: np.ndarray
-    z: np.ndarray
-    pressure: np.ndarray
-    gap: np.ndarray
-    unbroken: np.ndarray
-    force: np.ndarray
-    moment: np.ndarray
     minimum_gap: float
     peak_pressure: float
     peak_angle: float
@@ -95,12 +89,7 @@ class SteadyResult(FilmPictures):
     attitude_angle: float
     status: Status
     iterations: int
-    fill: np.ndarray | None = None
-    temperature: float | np.ndarray | None = None
-    bore_displacement: np.ndarray | None = None
     bore_coordinates: np.ndarray | None = None
-    bearing: JournalBearing = field(repr=False, kw_only=True)
-    motion: np.ndarray = field(repr=False, kw_only=True)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects matter at this position, are left out, or take time without need; print it for a table.
@@ -218,7 +207,7 @@ def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Ev
 def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
     """The steady film at ``motion``; `FilmError` as by `evaluate_at`."""
     evaluation, film = evaluate_at(model, motion, where)
-    q, wrench, bore = evaluation.quantities(), evaluation.wrench, film.bore
+    q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])
     reference = model.bearing.reference_force(motion[8])
@@ -228,9 +217,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResu
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
     return SteadyResult(
-        **grid_fields(film),
-        force=wrench[:3].copy(),
-        moment=wrench[3:].copy(),
+        **vars(film_record(film)),
         minimum_gap=q["minimum_gap"],
         peak_pressure=peak,
         peak_angle=angle,
@@ -248,8 +235,5 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResu
         attitude_angle=attitude,
         status=evaluation.status,
         iterations=evaluation.iterations,
-        bore_displacement=None if bore is None else bore.displacement * model.bearing.radial_clearance,
-        bore_coordinates=None if bore is None else bore.coordinates.copy(),
-        bearing=model.bearing,
-        motion=evaluation.motion.copy(),
+        bore_coordinates=None if film.bore is None else film.bore.coordinates.copy(),
     )
