@@ -22,18 +22,19 @@ import numpy as np
 
 
 class Mesh(NamedTuple):
-    """Metric of a `FilmGrid` as kernels take it: arrays of the same names, and the control volumes ``area`` (n, m)."""
+    """Metric of a `FilmGrid`, as arrays of the same names.
+
+    Kernels are handed plain tuples, and give names to them: numba looks at one with names for as long as they compute.
+    """
 
     width_x: np.ndarray
     width_z: np.ndarray
     link_x: np.ndarray
     link_z: np.ndarray
-    fixed: np.ndarray
-    area: np.ndarray
 
 
 class Directions(NamedTuple):
-    """Normals of a ring as kernels take them: cosine and sine (n,) at vertices and at links i -> i+1; rows z (m,)."""
+    """Normals of a ring: cosine and sine (n,) at vertices and at links i -> i+1; rows z (m,)."""
 
     cos_x: np.ndarray
     sin_x: np.ndarray
@@ -83,15 +84,19 @@ class FilmGrid:
         return self.x.size, self.z.size
 
     @cached_property
-    def mesh(self) -> Mesh:
-        """The metric for kernels; ``fixed`` is this grid's own array."""
-        area = np.outer(self.width_x, self.width_z)
-        return Mesh(self.width_x, self.width_z, self.link_x, self.link_z, self.fixed, area)
+    def area(self) -> np.ndarray:
+        """Control volumes (n, m)."""
+        return np.outer(self.width_x, self.width_z)
 
     @cached_property
-    def directions(self) -> Directions:
-        """Normals of a bearing, whose x is the angle theta."""
-        return Directions(np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z)
+    def mesh(self) -> tuple[np.ndarray, ...]:
+        """The metric for kernels, as in `Mesh`."""
+        return self.width_x, self.width_z, self.link_x, self.link_z
+
+    @cached_property
+    def directions(self) -> tuple[np.ndarray, ...]:
+        """Normals of a bearing, whose x is the angle theta, for kernels, as in `Directions`."""
+        return np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z
 
     def coarser(self) -> FilmGrid | None:
         """Grid with every second vertex, or None if it can't be halved; only used to guess active sets."""

@@ -34,6 +34,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.grid import Directions
 from exudyn_ehd.film.reynolds.gap import contract_pose
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -272,7 +273,7 @@ def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) ->
 def drag_sums(P, cx, HF, cz, gap_z, mesh):
     """(E_x, E_z) of the pressures P (n, m)."""
     n, m = P.shape
-    width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
+    width_x, width_z, link_x, link_z = mesh
     along = 0.0
     across = 0.0
     for i in range(n):
@@ -290,7 +291,7 @@ def drag_sums(P, cx, HF, cz, gap_z, mesh):
 def drag_rhs(order, count, active, cx, HF, cz, gap_z, mesh, rows):
     """Add the unknown pressures' weights in E_x and E_z to rows (2, count); nothing where the pressure is clipped."""
     n, m = active.shape
-    width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
+    width_x, width_z, link_x, link_z = mesh
     along, across = np.empty((n, m)), np.empty((n, m))
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
@@ -316,7 +317,7 @@ def drag_rhs(order, count, active, cx, HF, cz, gap_z, mesh, rows):
 def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face_out, cell_out):
     """Gradients (n, m) at fixed pressure to the true gap: of E_x on the links i -> i+1, of E_z at the vertices."""
     n, m = P.shape
-    width_x, width_z, link_x, link_z = mesh.width_x, mesh.width_z, mesh.link_x, mesh.link_z
+    width_x, width_z, link_x, link_z = mesh
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         linked = 1.0 if link_x[i] != 0.0 else 0.0
@@ -337,6 +338,7 @@ def drag_pose_gradient(P, cx_h, cz_h, slope, face_slope, mesh, at, out):
     face, cell = np.empty((1, *P.shape)), np.empty((1, *P.shape))
     drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face[0], cell[0])
     along, across = np.zeros((1, 4)), np.zeros((1, 4))
+    at = Directions(*at)
     contract_pose(face, at.cos_f, at.sin_f, at.z, along)
     contract_pose(cell, at.cos_x, at.sin_x, at.z, across)
     for q in range(4):

@@ -14,7 +14,6 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Gumbel
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
@@ -135,10 +134,10 @@ class LongSolver(FilmSolver):
         """As `FilmSolver.solve`; vz is not used."""
         return super().solve(vx, 0.0, cavity_pressure, mass_old, step)
 
-    def link_derivatives(self) -> LinkDerivatives:
+    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
         """As `FilmSolver.link_derivatives`, with no flow by vz."""
-        out = super().link_derivatives()
-        out.SZ[:] = 0.0
+        out = super().link_derivatives(rho)
+        out[3] = 0.0
         return out
 
 

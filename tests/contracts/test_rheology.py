@@ -148,7 +148,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
 
     for module, names in (
         (links, ("plain_flux",)),
-        (solver, ("link_flux", "link_factors") if not cavitation.conserves_mass else ("link_flux",)),
+        (solver, ("link_flux",)),
         (viscosity, ("barus_inverse", "hermite_inverse")),
     ):
         for name in names:

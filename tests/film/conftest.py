@@ -43,7 +43,7 @@ def make_film() -> Callable[..., Film]:
         link_x, link_z = 1.0 + rng.random(n), 1.0 + rng.random(m - 1)
         if cut:
             link_x[-1] = 0.0
-        mesh = Mesh(width_x, width_z, link_x, link_z, np.zeros((n, m), dtype=bool), np.outer(width_x, width_z))
+        mesh = Mesh(width_x, width_z, link_x, link_z)
         vx, vz = rng.normal(size=2)
         kx, kz, fx, fz, b = (np.full((n, m), np.nan) for _ in range(5))
         reynolds.conductances(H, HF, None, flow_x, mesh, kx, kz)

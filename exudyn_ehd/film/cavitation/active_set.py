@@ -16,7 +16,7 @@ from numba import njit
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl
-from exudyn_ehd.film.grid import Mesh
+from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import Coefficients
 
 MAX_ACTIVE_SET_STEPS = 200
@@ -49,18 +49,18 @@ class FilmSystem:
         1 / time step since ``mass_old``, 1/s; 0: steady.
     """
 
-    def __init__(self, mesh: Mesh, clips: bool, fills: bool) -> None:
-        shape = mesh.fixed.shape
+    def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
+        shape = grid.shape
         self.kx = np.zeros(shape)
         self.kz = np.zeros(shape)
         self.b = np.zeros(shape)
-        self.fixed = mesh.fixed
+        self.fixed = grid.fixed
         self.cavity_pressure = 0.0
         self.pressure = np.zeros(shape)
         self.linear_pressure = np.zeros(shape) if clips else self.pressure
         self.fx, self.fz = np.zeros(shape), np.zeros(shape)
         self.H, self.H_t = np.ones(shape), np.zeros(shape)
-        self.area = mesh.area
+        self.area = grid.area
         self.inverse_step = 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()

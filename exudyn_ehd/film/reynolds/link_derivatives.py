@@ -21,7 +21,7 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 class LinkDerivatives(NamedTuple):
-    """(n, m) arrays, see the module's docstring."""
+    """(n, m) arrays, see the module's docstring; kernels are handed all of them in one (5, n, m)."""
 
     DX: np.ndarray
     DZ: np.ndarray
@@ -31,23 +31,40 @@ class LinkDerivatives(NamedTuple):
 
 
 @njit(cache=True)
-def link_factors(fill, rho, fx, fz, sigma_x_out, sigma_z_out):
-    """sigma on the links in theta and z (0 behind the last row)."""
-    n, m = rho.shape
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
-            sigma_x_out[i, j] = 0.5 * up * (rho[i, j] + rho[nxt, j])
-        for j in range(m - 1):
-            up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
-            sigma_z_out[i, j] = 0.5 * up * (rho[i, j] + rho[i, j + 1])
-        sigma_z_out[i, m - 1] = 0.0
+def derivatives_of(d):
+    """`LinkDerivatives` of their array (5, n, m)."""
+    return LinkDerivatives(d[0], d[1], d[2], d[3], d[4])
 
 
 @njit(cache=True, fastmath=_FAST)
-def link_derivatives(P, H, HF, slopes, by_speed, sigma, vx, vz, flow_x, mesh, out):
-    """Derivatives of all links' flows.
+def _carried(fill, rho, couette, axis, i, j, p, q):
+    """sigma of the link (i, j) -> (p, q) along ``axis``; arguments as for `link_derivatives`."""
+    sigma = 1.0
+    if rho is not None:
+        sigma = 0.5 * (rho[i, j] + rho[p, q])
+    if fill is not None:
+        sigma *= fill[i, j] if couette[axis][i, j] >= 0.0 else fill[p, q]
+    return sigma
+
+
+@njit(cache=True)
+def mass_flows(fill, rho, couette):
+    """Couette flows (2, n, m) of the links in theta and z with what they carry; arguments as for `link_derivatives`."""
+    n, m = rho.shape
+    fx, fz = couette
+    out = np.zeros((2, n, m))
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            out[0, i, j] = fx[i, j] * _carried(fill, rho, couette, 0, i, j, nxt, j)
+        for j in range(m - 1):
+            out[1, i, j] = fz[i, j] * _carried(fill, rho, couette, 1, i, j, i, j + 1)
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flow_x, mesh, out):
+    """Derivatives of all links' flows, in loops of one result.
 
     Parameters
     ----------
@@ -55,55 +72,58 @@ def link_derivatives(P, H, HF, slopes, by_speed, sigma, vx, vz, flow_x, mesh, ou
         Pressure, gaps at vertices and on the links i -> i+1.
     slopes, by_speed : tuples of (n, m) arrays or None
         `LinkFlux.slopes` and `LinkFlux.by_speed`; None: plain film, conductances that do not depend on the speed.
-    sigma : (sigma_x, sigma_z) or None
-        (n, m) arrays; None: a full film of density ratio 1.
+    fill, rho : (n, m) arrays or None
+        None: a full film, density ratio 1.
+    couette : (fx, fz) or None
+        Couette fluxes in theta and z; only read where there is a fill.
     vx, vz, flow_x : float
         Scaled mean speeds; 0 drops the circumferential pressure flow.
-    mesh : Mesh
-    out : LinkDerivatives
+    mesh : tuple of arrays
+        `Mesh`.
+    out : (5, n, m) array
+        `LinkDerivatives`.
     """
     n, m = H.shape
-    width_z = mesh.width_z
+    width_x, width_z, link_x, link_z = mesh
+    DX, DZ, SX, SZ, SZX = derivatives_of(out)
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
-        linked = 1.0 if mesh.link_x[i] != 0.0 else 0.0
-        lx = mesh.link_x[i] * flow_x
-        wx = mesh.width_x[i]
+        linked = 1.0 if link_x[i] != 0.0 else 0.0
+        lx = link_x[i] * flow_x
+        wx = width_x[i]
         for j in range(m):
-            v = linked * vx if sigma is None else linked * vx * sigma[0][i, j]
+            v = linked * vx * _carried(fill, rho, couette, 0, i, j, nxt, j)
             if slopes is None:
                 h = HF[i, j]
                 g_h = 3.0 * h * h
             else:
                 v *= slopes[4][i, j]
                 g_h = slopes[0][i, j]
-            out.DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
+            DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
         for j in range(m):
             carrier = HF[i, j] if slopes is None else slopes[2][i, j]
-            carried = linked * carrier if sigma is None else linked * carrier * sigma[0][i, j]
-            out.SX[i, j] = carried * width_z[j]
+            SX[i, j] = linked * carrier * _carried(fill, rho, couette, 0, i, j, nxt, j) * width_z[j]
         for j in range(m - 1):
-            v = vz if sigma is None else vz * sigma[1][i, j]
+            v = vz * _carried(fill, rho, couette, 1, i, j, i, j + 1)
             if slopes is None:
                 h = 0.5 * (H[i, j] + H[i, j + 1])
                 g_h = 3.0 * h * h
             else:
                 v *= slopes[5][i, j]
                 g_h = slopes[1][i, j]
-            out.DZ[i, j] = (v - g_h * (mesh.link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
+            DZ[i, j] = (v - g_h * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
         for j in range(m - 1):
             carrier = 0.5 * (H[i, j] + H[i, j + 1]) if slopes is None else slopes[3][i, j]
-            carried = carrier if sigma is None else carrier * sigma[1][i, j]
-            out.SZ[i, j] = carried * wx
+            SZ[i, j] = carrier * _carried(fill, rho, couette, 1, i, j, i, j + 1) * wx
         if by_speed is not None:
             for j in range(m):
-                out.SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
+                SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
             for j in range(m - 1):
-                out.SZX[i, j] = -by_speed[1][i, j] * (mesh.link_z[j] * (P[i, j + 1] - P[i, j])) * wx
+                SZX[i, j] = -by_speed[1][i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
 
 
-def contract_links(lam: np.ndarray, d: LinkDerivatives) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m).
+def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and `LinkDerivatives` d (5, n, m).
 
     Returns
     -------
@@ -112,11 +132,12 @@ def contract_links(lam: np.ndarray, d: LinkDerivatives) -> tuple[np.ndarray, np.
     speed : (k, 2) array
         To (vx, vz).
     """
+    DX, DZ, SX, SZ, SZX = d
     along, across = lam - np.roll(lam, -1, axis=1), lam[:, :, :-1] - lam[:, :, 1:]
-    half = -0.5 * across * d.DZ[:, :-1]
+    half = -0.5 * across * DZ[:, :-1]
     cell = np.zeros_like(lam)
     cell[:, :, :-1] += half
     cell[:, :, 1:] += half
-    turning = np.sum(along * d.SX, axis=(1, 2)) + np.sum(across * d.SZX[:, :-1], axis=(1, 2))
-    sliding = np.sum(across * d.SZ[:, :-1], axis=(1, 2))
-    return cell, -along * d.DX, -np.stack([turning, sliding], axis=1)
+    turning = np.sum(along * SX, axis=(1, 2)) + np.sum(across * SZX[:, :-1], axis=(1, 2))
+    sliding = np.sum(across * SZ[:, :-1], axis=(1, 2))
+    return cell, -along * DX, -np.stack([turning, sliding], axis=1)

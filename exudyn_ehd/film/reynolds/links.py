@@ -21,6 +21,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.grid import Mesh
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -164,6 +166,7 @@ def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
     ``flow``: `LinkFlux.flow`, or None for a plain film.
     """
     n, m = H.shape
+    mesh = Mesh(*mesh)
     for i in range(n):
         lx = mesh.link_x[i] * flow_x
         wx = mesh.width_x[i]
@@ -188,6 +191,7 @@ def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
 def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
     """Couette fluxes of the links; 0 where there is no link. ``flow`` as in `conductances`."""
     n, m = H.shape
+    mesh = Mesh(*mesh)
     for i in range(n):
         v = vx if mesh.link_x[i] != 0.0 else 0.0
         for j in range(m):
@@ -227,7 +231,7 @@ def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz
     couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out)
     right_hand_side(fx_out, fz_out, b_out)
     if H_t is not None:
-        add_squeeze(H_t, mesh.width_x, mesh.width_z, b_out)
+        add_squeeze(H_t, mesh[0], mesh[1], b_out)
 
 
 @njit(cache=True)

@@ -14,6 +14,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.grid import Directions
+from exudyn_ehd.film.reynolds.link_derivatives import derivatives_of
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -25,7 +28,7 @@ def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, pla
     ----------
     order, count
         Flat vertices of the unknowns.
-    d, slope, AR, AC : LinkDerivatives, (n, m) arrays
+    d, slope, AR, AC : (5, n, m) array, (n, m) arrays
         As `swept_derivatives` returns them.
     by_gap, by_rate : float
         Factors.
@@ -33,7 +36,7 @@ def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, pla
         Weight and flat vertex: itself, next and last in theta, next and last in z.
     """
     n, m = slope.shape
-    DX, DZ = d.DX, d.DZ
+    DX, DZ, _, _, _ = derivatives_of(d)
     for r in range(count):
         i = order[r] // m
         j = order[r] - i * m
@@ -129,7 +132,8 @@ def motion_columns(order, count, d, slope, AR, AC, at, out):
     `Directions`.
     """
     n, m = slope.shape
-    DX, DZ, SX, SZ, SZX = d.DX, d.DZ, d.SX, d.SZ, d.SZX
+    DX, DZ, SX, SZ, SZX = derivatives_of(d)
+    at = Directions(*at)
     z = at.z
     for r in range(count):
         i = order[r] // m

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from numba import njit
 
+from exudyn_ehd.film.grid import Directions
+from exudyn_ehd.film.reynolds.link_derivatives import derivatives_of
+
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
@@ -20,18 +23,20 @@ def pose_gradient(lam, d, slope, AR, AC, at, out):
     ----------
     lam : (k, n, m) array
         Adjoint solutions.
-    d : LinkDerivatives
-        DX already by the true gap.
+    d : (5, n, m) array
+        `LinkDerivatives`, DX already by the true gap.
     slope : (n, m) array
         d(film gap)/d(true gap) at the vertices; ones without a limiter.
     AR, AC : (n, m) arrays
         Derivative of a vertex's balance through its storage, with respect to the true gap's rate and to the true gap.
-    at : Directions
+    at : tuple of arrays
+        `Directions`.
     out : (k, 10) array
         Overwritten.
     """
     count, n, m = lam.shape
-    DX, DZ, SX, SZ, SZX = d.DX, d.DZ, d.SX, d.SZ, d.SZX
+    DX, DZ, SX, SZ, SZX = derivatives_of(d)
+    at = Directions(*at)
     z = at.z
     for k in range(count):
         for q in range(10):

@@ -32,7 +32,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, link_derivatives, link_factors
+from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance
 from exudyn_ehd.film.solvers.density_newton import (
@@ -91,8 +91,6 @@ class CompressibleFilmSolver(FilmSolver):
         self.buffers = Buffers(
             w.order, w.number, w.lower, w.upper, w.inv_diag, w.unknowns, known, np.ones(shape), rho_P, residual
         )
-        self.sigma_x, self.sigma_z = np.ones(shape), np.ones(shape)
-        self.sigma_known = False
         self.exact = False
         self.reusable = False
         if closure.conserves_mass:
@@ -246,16 +244,7 @@ class CompressibleFilmSolver(FilmSolver):
             raise_to(P, fixed, s.cavity_pressure)
             if self.kind == FILLED:
                 np.clip(s.fill, 0.0, 1.0, out=s.fill)
-        self.sigma_known = False
         return Status.CONVERGED, steps
-
-    def _sigma(self) -> tuple[np.ndarray, np.ndarray]:
-        """Fill times density on the links in theta and z (n, m)."""
-        if not self.sigma_known:
-            s = self.system
-            link_factors(self._fill, self.rho, s.fx, s.fz, self.sigma_x, self.sigma_z)
-            self.sigma_known = True
-        return self.sigma_x, self.sigma_z
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure and viscosity ratio of the last solution (n, m) with
@@ -285,8 +274,8 @@ class CompressibleFilmSolver(FilmSolver):
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette mass flows of the links in theta and z, and the rate at which
         a full film's mass grows with its gap."""
-        sigma_x, sigma_z = self._sigma()
-        return self.system.fx * sigma_x, self.system.fz * sigma_z, self.rho * self.H_t
+        flow_x, flow_z = mass_flows(self._fill, self.rho, (self.system.fx, self.system.fz))
+        return flow_x, flow_z, self.rho * self.H_t
 
     def flow_work(self, P: np.ndarray) -> np.ndarray:
         """Scaled integral of dp over the density ratio up to scaled true
@@ -338,12 +327,9 @@ class CompressibleFilmSolver(FilmSolver):
     def _unknown_pressure(self) -> np.ndarray:
         return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
 
-    def link_derivatives(self) -> LinkDerivatives:
-        """Derivatives of the links' mass flows with respect to their gaps and the speeds, at fixed pressure."""
-        f, P, mesh, out = self.flux, self.system.linear_pressure, self.grid.mesh, self.link_fields
-        slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
-        link_derivatives(P, self.H, self.HF, slopes, by_speed, self._sigma(), self.vx, self.vz, self.flow_x, mesh, out)
-        return out
+    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
+        """Derivatives (5, n, m) of the links' mass flows with respect to their gaps and the speeds."""
+        return super().link_derivatives(self.rho)
 
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""

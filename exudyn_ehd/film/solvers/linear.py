@@ -15,7 +15,7 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives, contract_links, link_derivatives, link_factors
+from exudyn_ehd.film.reynolds.link_derivatives import contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
     fill_balance,
@@ -116,8 +116,8 @@ class FilmSolver:
         self.closure = closure
         self.squeeze = squeeze
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
-        self.area = grid.mesh.area
-        self.system = FilmSystem(grid.mesh, clips=closure.clips, fills=closure.conserves_mass)
+        self.area = grid.area
+        self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
         self.work = Workspace(*shape)
@@ -125,8 +125,7 @@ class FilmSolver:
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
         self.ones = np.ones(shape)
         self.nothing = np.zeros(shape)
-        self.link_fields = LinkDerivatives(*np.zeros((5, *shape)))
-        self.sigma = np.ones(shape), np.ones(shape)
+        self.link_fields = np.zeros((5, *shape))
         self.vx = 0.0
         self.vz = 0.0
         self.instant = False
@@ -268,13 +267,14 @@ class FilmSolver:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
         return self.system.fx, self.system.fz, self.H_t
 
-    def link_derivatives(self) -> LinkDerivatives:
-        """Derivatives of the links' flows with respect to their gaps and the speeds, for the last solution."""
-        s, sigma = self.system, None
+    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
+        """Derivatives (5, n, m) of the links' flows with respect to their gaps and the speeds, for the last solution.
+
+        With a density ratio (n, m) those of the mass flows, at fixed pressure.
+        """
+        s, f, fill, couette = self.system, self.flux, None, None
         if self.closure.conserves_mass:
-            sigma = self.sigma
-            link_factors(s.fill, self.ones, s.fx, s.fz, *sigma)
-        f = self.flux
+            fill, couette = s.fill, (s.fx, s.fz)
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         link_derivatives(
             s.linear_pressure,
@@ -282,7 +282,9 @@ class FilmSolver:
             self.HF,
             slopes,
             by_speed,
-            sigma,
+            fill,
+            rho,
+            couette,
             self.vx,
             self.vz,
             self.flow_x,

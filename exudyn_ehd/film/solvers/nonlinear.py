@@ -54,7 +54,7 @@ from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-from exudyn_ehd.film.reynolds.link_derivatives import link_factors
+from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
 from exudyn_ehd.film.solvers.balance import film_balance
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
@@ -352,9 +352,8 @@ class NonlinearFilmSolver(FilmSolver):
         s, e = self.system, self.elements
         if e.rho is None:
             return super().couette_flows()
-        sigma_x, sigma_z = np.empty(self.grid.shape), np.empty(self.grid.shape)
-        link_factors(e.u.fill, e.rho, s.fx, s.fz, sigma_x, sigma_z)
-        return s.fx * sigma_x, s.fz * sigma_z, e.rho * self.H_t
+        flow_x, flow_z = mass_flows(e.u.fill, e.rho, (s.fx, s.fz))
+        return flow_x, flow_z, e.rho * self.H_t
 
     def inflow(self) -> np.ndarray:
         """Scaled volume (or mass) flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""

@@ -11,7 +11,6 @@ import numpy as np
 
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, pose_gradient, wrench_gradient
 from exudyn_ehd.film.solvers.linear import Sensitivities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
@@ -118,15 +117,15 @@ def swept_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> N
     pose_gradient(lam, d, slope, by_rate, by_gap, film.grid.directions, gradient)
 
 
-def swept_derivatives(film: SolvedFilm) -> tuple[LinkDerivatives, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives to the true gap: of the links, and slope, AR, AC (n, m) as `pose_gradient` takes them."""
+def swept_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `pose_gradient` takes them."""
     s = film.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()
     slope, f = s.ones, film.limited
     if f is not None:
         slope = f.slope
-        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d.DX, f.by_rate, f.by_gap)
+        chain_links(slope, f.bend, f.face_slope, by_rate, by_gap, d[0], f.by_rate, f.by_gap)
         by_rate, by_gap = f.by_rate, f.by_gap
     return d, slope, by_rate, by_gap
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from exudyn_ehd.film.reynolds.link_derivatives import LinkDerivatives
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     add_transposed,
     gap_slopes,
@@ -33,7 +32,7 @@ def test_stencil_is_the_derivative_of_the_balances():
     n, m = 9, 5
     DX, DZ, slope, AR, AC = rng.normal(size=(5, n, m))
     DZ[:, -1] = 0.0
-    d = LinkDerivatives(DX, DZ, DX, DX, DX)
+    d = np.stack((DX, DZ, DX, DX, DX))
     H, H_t = rng.normal(size=(2, n, m))
     balance = AC * H + AR * H_t * 0.7
     link = DX * 0.5 * (H + np.roll(H, -1, axis=0))
