@@ -64,8 +64,8 @@ def _films_of_all_kernels():
     modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
     nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
     return (
-        [conserving, conserving | thin, conserving | liner, liner | touching, rough, energy],
-        [{}, dense, modal, modal | conserving, nodal, thin, touching],
+        [conserving, conserving | thin, conserving | liner, liner | touching, rough, energy, liner | energy],
+        [{}, dense, modal, modal | conserving, nodal, thin, touching, liner, liner | dense],
     )
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import dataclasses
+import functools
 import importlib
 import inspect
 import io
@@ -26,10 +27,10 @@ def _sources():
 
 
 def test_only_coupling_and_studies_import_exudyn():
-    for path in _sources():
+    for path, _, tree, _ in _parsed():
         if path.is_relative_to(PACKAGE / "coupling") or path.is_relative_to(PACKAGE / "studies"):
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
+        for node in ast.walk(tree):
             names = []
             if isinstance(node, ast.Import):
                 names = [a.name for a in node.names]
@@ -105,11 +106,11 @@ def _docstring_lines(tree):
     return lines
 
 
+@functools.cache
 def _parsed():
-    for path in _sources():
-        text = path.read_text()
-        tree = ast.parse(text)
-        yield path, text, tree, _docstring_lines(tree)
+    """(path, text, syntax tree, lines of docstrings) of every file."""
+    texts = [(path, path.read_text(encoding="utf-8")) for path in _sources()]
+    return [(path, text, tree := ast.parse(text), _docstring_lines(tree)) for path, text in texts]
 
 
 def _module(path):

@@ -263,7 +263,7 @@ def coarse_crank():
     return coarse, fine
 
 
-@hard_case("ten thousand steps")
+@hard_case("ten thousand steps", slow=True)
 def no_drift():
     """A swinging load over 50 periods: what is the same in every period must be the same in the last."""
     made = bearing(film=ehd.ShortBearing(n_theta=64), length=0.01)

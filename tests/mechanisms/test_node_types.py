@@ -6,6 +6,7 @@ import pytest
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 CLEARANCE = 50e-6
 SPEED = 200.0
@@ -59,7 +60,7 @@ def test_node_types(reference, node):
     assert np.allclose(got.force, reference.force, atol=1e-4 * np.abs(reference.force).max())
 
 
-@pytest.mark.parametrize("node", [exu.NodeType.RotationRxyz, exu.NodeType.RotationRotationVector])
+@pytest.mark.parametrize("node", sample([exu.NodeType.RotationRxyz, exu.NodeType.RotationRotationVector], 1))
 def test_explicit_and_implicit_solvers(node):
     implicit = _history(node, steps=400)
     explicit = _history(node, steps=2000, solver=exu.DynamicSolverType.RK44)

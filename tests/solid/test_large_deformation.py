@@ -18,6 +18,7 @@ from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.static_equilibrium import EquilibriumError, equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from tests.sampling import sample
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
 MESH = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=4, radial=2, circumferential=40).mesh()
@@ -51,7 +52,7 @@ def along(line):
 
 
 @pytest.mark.parametrize("load", PINNED)
-@pytest.mark.parametrize(("rule", "tolerance"), [(GAUSS27, 1e-6), (IRONS14, 2e-4), (GAUSS8, 0.01)])
+@pytest.mark.parametrize(("rule", "tolerance"), sample([(GAUSS27, 1e-6), (IRONS14, 2e-4), (GAUSS8, 0.01)], 1))
 def test_displacements_agree_with_the_other_code(load, rule, tolerance):
     """Target 0.5 %: 27 points agree to the printed digits; 14 points to 7e-5; 8 points stand 0.5 to 0.6 % softer."""
     solid = TotalLagrange(mesh=MESH, material=MATERIAL, quadrature=rule)

@@ -137,6 +137,7 @@ def test_force_is_the_derivative_of_the_energy():
     assert (4 * slope - curved) / 3 == pytest.approx(float(np.sum(solid.force(u) * direction)), rel=1e-10)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 def test_serial_and_parallel_kernels_agree_bit_for_bit(rule):
     u, v = np.random.default_rng(10).standard_normal((2, *SMALL.nodes.shape)) * 0.01

@@ -43,9 +43,9 @@ def slow(*case):
         # resolve
         ("rigid", False, 80, 3.0),
         ("rigid", True, 80, 3.0),
-        ("modal", False, 40, 3.0),
+        slow("modal", False, 40, 3.0),
         ("modal", True, 40, 3.0),
-        ("dynamic", False, 40, 3.0),
+        slow("dynamic", False, 40, 3.0),
         slow("dynamic", True, 40, 3.0),
         ("nodal", False, 40, 3.0),
         slow("nodal", True, 40, 3.0),

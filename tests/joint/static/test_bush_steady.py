@@ -12,6 +12,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.static_modes import bore_modes
+from tests.sampling import sample
 
 SPEED = 3000 * 2 * np.pi / 60
 C = 30e-6
@@ -109,7 +110,7 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     "cavitation",
     [pytest.param(ehd.SwiftStieber(), id="swift"), pytest.param(ehd.Gumbel(), id="gumbel", marks=pytest.mark.slow)],
 )
-@pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
+@pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9], 2), ids=["steel", "aluminium", "polymer"])
 @pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.0, 1e-4)], ids=["aligned", "tilted"])
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
@@ -119,7 +120,7 @@ def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavit
     assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=0.01)
 
 
-@pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
+@pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9], 0), ids=["steel", "aluminium", "polymer"])
 def test_default_modes_suit_the_default_film(modulus):
     """Within half a per cent of a converged film on fine modes, where finer modes on the same film are not."""
     default = ehd.FiniteLength()
@@ -133,7 +134,9 @@ def test_default_modes_suit_the_default_film(modulus):
     assert abs(finer.minimum_gap - truth.minimum_gap) > abs(got.minimum_gap - truth.minimum_gap)
 
 
-@pytest.mark.parametrize(("modulus", "tilt"), [(2.1e10, 0.0), (2.1e11, 1e-4)], ids=["soft, aligned", "steel, tilted"])
+@pytest.mark.parametrize(
+    ("modulus", "tilt"), sample([(2.1e10, 0.0), (2.1e11, 1e-4)], 1), ids=["soft, aligned", "steel, tilted"]
+)
 def test_many_modes_are_within_a_thousandth_of_the_nodes(modulus, tilt):
     bushes = modal(modulus, FINE, tolerance=5e-3, tilted=tilt > 0.0), nodal(modulus, FINE)
     reduced, full = (solve(b, film=FINE_FILM, tilt=(0.0, tilt)) for b in bushes)
