@@ -192,7 +192,8 @@ class JournalBearing:
     def _check_supply(self) -> None:
         if not self.supply:
             return
-        check_supply(self.supply, self.journal_radius, self.length, self.film)
+        film = self.film
+        check_supply(self.supply, self.journal_radius, self.length, film.n_theta, film.n_z, film.stretch)
         if isinstance(self.inlet, MaximumGap):
             raise InputError(
                 "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "

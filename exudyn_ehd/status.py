@@ -5,6 +5,7 @@ from __future__ import annotations
 import enum
 import math
 from collections.abc import Sequence
+from operator import ge, gt, le, lt
 
 import numpy as np
 
@@ -68,6 +69,8 @@ def require_number(
     *,
     above: float | None = None,
     at_least: float | None = None,
+    below: float | None = None,
+    at_most: float | None = None,
     hint: str = "",
 ) -> float:
     """Return ``value`` as a finite float, or raise `InputError` naming argument, received and expected value.
@@ -80,31 +83,36 @@ def require_number(
         What the user gave.
     unit : str
         SI unit for the message.
-    above, at_least : float, optional
-        Exclusive and inclusive lower bounds.
+    above, at_least, below, at_most : float, optional
+        Exclusive and inclusive bounds.
     hint : str
         Next step, appended to the message.
     """
-    expected = "finite"
-    if above is not None:
-        expected = f"> {above:g}"
-    elif at_least is not None:
-        expected = f">= {at_least:g}"
-    if unit:
-        expected += f" {unit}"
+    known = ((">", above, gt), (">=", at_least, ge), ("below", below, lt), ("at most", at_most, le))
+    bounds = [(f"{sign} {bound:g}", bound, holds) for sign, bound, holds in known if bound is not None]
+    # a lower bound is named by itself, an upper one as the end of a range
+    if len(bounds) == 2:
+        bounds[1] = (f"within {bounds[0][1]:g} and {bounds[1][1]:g}", *bounds[1][1:])
+    expected = bounds[0][0] if bounds else "finite"
+    unit = f" {unit}" if unit else ""
     tail = f"; {hint}" if hint else "."
     if isinstance(value, bool) or not isinstance(value, (int, float, np.integer, np.floating)):
-        raise InputError(f"{where} must be a number {expected}, got {value!r}{tail}")
+        raise InputError(f"{where} must be a number {expected}{unit}, got {value!r}{tail}")
     try:
         number = float(value)
     except OverflowError:
         number = math.inf
-    bad = not math.isfinite(number)
-    bad = bad or (above is not None and not number > above)
-    bad = bad or (at_least is not None and not number >= at_least)
-    if bad:
-        raise InputError(f"{where} must be {expected}, got {value!r}{tail}")
+    broken = [text for text, bound, holds in bounds if not holds(number, bound)]
+    if broken or not math.isfinite(number):
+        raise InputError(f"{where} must be {broken[0] if broken else expected}{unit}, got {value!r}{tail}")
     return number
+
+
+def require_numbers(item: object, *, above: float | None = None, at_least: float | None = None, **units: str) -> None:
+    """As `require_number` for attributes of an object, by name with their units."""
+    for name, unit in units.items():
+        where = f"{type(item).__name__}.{name}"
+        require_number(where, getattr(item, name), unit, above=above, at_least=at_least)
 
 
 def require_integer(where: str, value: int, *, at_least: int, hint: str = "") -> int:

@@ -90,8 +90,7 @@ def _check_grid(film: FiniteLength | ShortBearing) -> None:
     name = type(film).__name__
     require_integer(f"{name}.n_theta", film.n_theta, at_least=16, hint="96 is a good start.")
     require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
-    if require_number(f"{name}.stretch", film.stretch, at_least=0.0) > 0.95:
-        raise InputError(f"{name}.stretch must be within 0 and 0.95, got {film.stretch!r}; 0.75 suits most bearings.")
+    require_number(f"{name}.stretch", film.stretch, at_least=0.0, at_most=0.95, hint="0.75 suits most bearings.")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -56,7 +55,7 @@ class AxialGroove:
     rotating: bool = False
 
     def __post_init__(self) -> None:
-        _check_area(self, angle="rad", width_angle="rad", pressure="Pa")
+        _check_area(self, angle="rad")
         _check_width(self)
         if self.length is not None:
             require_number("AxialGroove.length", self.length, "m", above=0.0)
@@ -88,7 +87,7 @@ class CircumferentialGroove:
     rotating = False
 
     def __post_init__(self) -> None:
-        _check_area(self, z="m", pressure="Pa")
+        _check_area(self, z="m")
         require_number("CircumferentialGroove.width", self.width, "m", above=0.0)
 
     def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
@@ -121,7 +120,7 @@ class Hole:
     rotating: bool = False
 
     def __post_init__(self) -> None:
-        _check_area(self, angle="rad", z="m", pressure="Pa")
+        _check_area(self, angle="rad", z="m")
         require_number("Hole.diameter", self.diameter, "m", above=0.0)
 
     def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
@@ -158,7 +157,7 @@ class Pocket:
     rotating: bool = False
 
     def __post_init__(self) -> None:
-        _check_area(self, angle="rad", z="m", width_angle="rad", pressure="Pa")
+        _check_area(self, angle="rad", z="m")
         _check_width(self)
         require_number("Pocket.length", self.length, "m", above=0.0)
 
@@ -171,23 +170,19 @@ SupplyArea = AxialGroove | CircumferentialGroove | Hole | Pocket
 
 
 def _check_area(area: SupplyArea, **units: str) -> None:
-    name = type(area).__name__
-    for argument, unit in units.items():
-        require_number(f"{name}.{argument}", getattr(area, argument), unit)
+    for argument, unit in {"pressure": "Pa", **units}.items():
+        require_number(f"{type(area).__name__}.{argument}", getattr(area, argument), unit)
     if not isinstance(area.rotating, bool):
         raise InputError(
-            f"{name}.rotating must be True (in the journal) or False (in the housing), got {area.rotating!r}."
+            f"{type(area).__name__}.rotating must be True (in the journal) or False (in the housing), got "
+            f"{area.rotating!r}."
         )
 
 
 def _check_width(area: AxialGroove | Pocket) -> None:
-    name = type(area).__name__
-    width = require_number(f"{name}.width_angle", area.width_angle, "rad", above=0.0)
-    if width >= 2.0 * math.pi:
-        raise InputError(
-            f"{name}.width_angle must be below 2 pi rad, got {width:g}; if yours is in degrees, use math.radians; a "
-            f"groove all around is a CircumferentialGroove."
-        )
+    hint = "if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove."
+    where = f"{type(area).__name__}.width_angle"
+    require_number(where, area.width_angle, "rad", above=0.0, below=2.0 * math.pi, hint=hint)
 
 
 def _turn(angle: np.ndarray) -> np.ndarray:
@@ -203,17 +198,6 @@ def _rectangle(
     return np.outer(inside_theta, inside_z)
 
 
-class _FilmSize(Protocol):
-    @property
-    def n_theta(self) -> int: ...
-
-    @property
-    def n_z(self) -> int: ...
-
-    @property
-    def stretch(self) -> float: ...
-
-
 def require_areas(supply: object) -> None:
     """Raise `InputError` for anything but a tuple of supply areas."""
     if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
@@ -223,15 +207,17 @@ def require_areas(supply: object) -> None:
         )
 
 
-def check_supply(supply: Sequence[SupplyArea], radius: float, length: float, film: _FilmSize) -> None:
+def check_supply(
+    supply: Sequence[SupplyArea], radius: float, length: float, n_theta: int, n_z: int, stretch: float
+) -> None:
     """Raise `InputError` for areas without a vertex of the film grid, or that overlap at different pressures."""
     masks = []
     for k, area in enumerate(supply):
-        mask = _covered(area, radius, length, film.n_theta, film.n_z, film.stretch)
+        mask = _covered(area, radius, length, n_theta, n_z, stretch)
         if not mask.any():
             raise InputError(
-                f"JournalBearing.supply[{k}]: no vertex of the {film.n_theta} x {film.n_z} film grid lies inside "
-                f"{area!r}; {_grid_needed(area, radius, length, film)}"
+                f"JournalBearing.supply[{k}]: no vertex of the {n_theta} x {n_z} film grid lies inside {area!r}; "
+                f"{_grid_needed(area, radius, length, n_theta, n_z, stretch)}"
             )
         masks.append(mask)
     for k, area in enumerate(supply):
@@ -250,26 +236,17 @@ def _covered(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: 
     z = axial_vertices(n_z, 0.5 * length, stretch)[0]
     mask = area.covers(theta, z, radius)
     mask[:, 0] = mask[:, -1] = False
-    if isinstance(area, CircumferentialGroove) or not area.rotating:
+    if not area.rotating:
         return mask
-    return mask if _covered_when_turned(area, theta, z, radius, step) else np.zeros_like(mask)
+    turned = [area.covers(theta + s * step, z, radius)[:, 1:-1] for s in np.linspace(0.0, 1.0, 17)]
+    return mask if all(position.any() for position in turned) else np.zeros_like(mask)
 
 
-def _covered_when_turned(
-    area: AxialGroove | Hole | Pocket, theta: np.ndarray, z: np.ndarray, radius: float, step: float
-) -> bool:
-    return all(area.covers(theta + s * step, z, radius)[:, 1:-1].any() for s in np.linspace(0.0, 1.0, 17))
-
-
-def _grid_needed(area: SupplyArea, radius: float, length: float, film: _FilmSize) -> str:
+def _grid_needed(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: int, stretch: float) -> str:
     for k in range(2, LARGEST_REFINEMENT + 1):
-        for n_theta, n_z in (
-            (k * film.n_theta, film.n_z),
-            (film.n_theta, k * film.n_z),
-            (k * film.n_theta, k * film.n_z),
-        ):
-            if _covered(area, radius, length, n_theta, n_z, film.stretch).any():
-                return f"a grid of n_theta={n_theta}, n_z={n_z} would do; or make the area larger."
+        for around, along in ((k * n_theta, n_z), (n_theta, k * n_z), (k * n_theta, k * n_z)):
+            if _covered(area, radius, length, around, along, stretch).any():
+                return f"a grid of n_theta={around}, n_z={along} would do; or make the area larger."
     return "it lies outside the bearing or is far too small; check its position (m, rad) and size."
 
 

@@ -8,7 +8,7 @@ hex20               the element: nodes, shape functions, faces, quadratures
 hex20_kernels       compiled loops over elements: force and tangent
 total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
-static_equilibrium  equilibrium and eigenfrequencies of a solid on its own; its stiffness with the outer surface held
+static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held
 stress              Cauchy and von Mises stress at nodes and at any point
 static_modes        a bush reduced to static modes of its bore
 dynamic_modes       what these lack in motion: vibrations, responses to body forces

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_numbers
 
 # Of the error of a modal bush; below, the waves of its search do not suffice.
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
@@ -30,12 +30,40 @@ class Rayleigh:
     stiffness_time: float = 0.0
 
     def __post_init__(self) -> None:
-        require_number("Rayleigh.mass_rate", self.mass_rate, "1/s", at_least=0.0)
-        require_number("Rayleigh.stiffness_time", self.stiffness_time, "s", at_least=0.0)
+        require_numbers(self, at_least=0.0, mass_rate="1/s", stiffness_time="s")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ANCFBush:
+class _Solid:
+    """What both kinds of bush are made of; parameters as in `ANCFBush`."""
+
+    mesh: HollowCylinder | BushMesh
+    material: SaintVenantKirchhoff
+    quadrature: Quadrature = IRONS14
+
+    def __post_init__(self) -> None:
+        kind = type(self).__name__
+        if not isinstance(self.mesh, HollowCylinder | BushMesh):
+            raise InputError(
+                f"{kind}.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
+                "own mesh with mesh_from_fem or mesh_from_arrays."
+            )
+        if not isinstance(self.material, SaintVenantKirchhoff):
+            raise InputError(f"{kind}.material must be a SaintVenantKirchhoff(...), got {self.material!r}.")
+        if not isinstance(self.quadrature, Quadrature):
+            raise InputError(f"{kind}.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if isinstance(field.default, bool) and not isinstance(value, bool):
+                raise InputError(f"{kind}.{field.name} must be True or False, got {value!r}.")
+
+    def build_mesh(self) -> BushMesh:
+        """Return the mesh, bush frame."""
+        return self.mesh.mesh() if isinstance(self.mesh, HollowCylinder) else self.mesh
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ANCFBush(_Solid):
     """A bush of 20-node hexahedra in absolute nodal coordinates.
 
     Parameters
@@ -50,22 +78,13 @@ class ANCFBush:
         Loops over elements on numba's threads.
     """
 
-    mesh: HollowCylinder | BushMesh
-    material: SaintVenantKirchhoff
-    quadrature: Quadrature = IRONS14
     damping: Rayleigh | None = None
     parallel: bool = False
 
     def __post_init__(self) -> None:
-        _require_solid(self)
+        super().__post_init__()
         if not isinstance(self.damping, Rayleigh | None):
             raise InputError(f"ANCFBush.damping must be a Rayleigh(...) or None, got {self.damping!r}.")
-        if not isinstance(self.parallel, bool):
-            raise InputError(f"ANCFBush.parallel must be True or False, got {self.parallel!r}.")
-
-    def build_mesh(self) -> BushMesh:
-        """Return the mesh, bush frame."""
-        return self.mesh.mesh() if isinstance(self.mesh, HollowCylinder) else self.mesh
 
     def solid(self, mesh: BushMesh) -> TotalLagrange:
         """Return the solid on a mesh, which may have been moved to its place in the model."""
@@ -80,7 +99,7 @@ class ANCFBush:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ModalBush:
+class ModalBush(_Solid):
     """A linear elastic bush, reduced to modes of its bore; outer surface fixed to the housing.
 
     Parameters
@@ -117,43 +136,21 @@ class ModalBush:
         within 0.5 %; without them it is within 5 to 20 %, 30 % for thin walls. A joint on ground leaves them out.
     """
 
-    mesh: HollowCylinder | BushMesh
-    material: SaintVenantKirchhoff
     tolerance: float = 0.02
     tilted: bool = True
-    quadrature: Quadrature = IRONS14
     dynamics: bool = False
     body_forces: bool = True
 
     def __post_init__(self) -> None:
-        _require_solid(self)
-        tolerance = require_number("ModalBush.tolerance", self.tolerance, at_least=SMALLEST_TOLERANCE)
-        if tolerance > LARGEST_TOLERANCE:
-            raise InputError(
-                f"ModalBush.tolerance must be within {SMALLEST_TOLERANCE:g} and {LARGEST_TOLERANCE:g}, got "
-                f"{tolerance:g}; 0.02 is a good start."
-            )
-        for name in ("tilted", "dynamics", "body_forces"):
-            if not isinstance(getattr(self, name), bool):
-                raise InputError(f"ModalBush.{name} must be True or False, got {getattr(self, name)!r}.")
-
-    def build_mesh(self) -> BushMesh:
-        """Return the mesh, bush frame."""
-        return self.mesh.mesh() if isinstance(self.mesh, HollowCylinder) else self.mesh
+        super().__post_init__()
+        require_tolerance("ModalBush.tolerance", self.tolerance)
 
     def solid(self, mesh: BushMesh) -> TotalLagrange:
         """Return the solid on a mesh."""
         return TotalLagrange(mesh=mesh, material=self.material, quadrature=self.quadrature)
 
 
-def _require_solid(bush: ANCFBush | ModalBush) -> None:
-    kind = type(bush).__name__
-    if not isinstance(bush.mesh, HollowCylinder | BushMesh):
-        raise InputError(
-            f"{kind}.mesh must be a HollowCylinder or a BushMesh, got {type(bush.mesh).__name__}; import your "
-            "own mesh with mesh_from_fem or mesh_from_arrays."
-        )
-    if not isinstance(bush.material, SaintVenantKirchhoff):
-        raise InputError(f"{kind}.material must be a SaintVenantKirchhoff(...), got {bush.material!r}.")
-    if not isinstance(bush.quadrature, Quadrature):
-        raise InputError(f"{kind}.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {bush.quadrature!r}.")
+def require_tolerance(where: str, tolerance: float) -> float:
+    """Return the tolerance of a choice of modes, or raise `InputError`."""
+    hint = "0.02 is a good start."
+    return require_number(where, tolerance, at_least=SMALLEST_TOLERANCE, at_most=LARGEST_TOLERANCE, hint=hint)

@@ -23,8 +23,9 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
-from exudyn_ehd.solid.bush import LARGEST_TOLERANCE, SMALLEST_TOLERANCE
+from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
+from exudyn_ehd.solid.mesh import directed, frame_of
 from exudyn_ehd.solid.static_equilibrium import symmetric_factor
 from exudyn_ehd.solid.static_modes import (
     candidate_pressures,
@@ -239,9 +240,7 @@ def add_bore_modes(
     rotation = _any_frame(require_vector(f"{where} axis", axis, 3))
     radius = require_number(f"{where} radius", radius, "m", above=0.0)
     length = require_number(f"{where} length", length, "m", above=0.0)
-    tolerance = require_number(f"{where} tolerance", tolerance, at_least=SMALLEST_TOLERANCE)
-    if tolerance > LARGEST_TOLERANCE:
-        raise InputError(f"{where} tolerance must be at most {LARGEST_TOLERANCE:g}, got {tolerance:g}.")
+    tolerance = require_tolerance(f"{where} tolerance", tolerance)
     place = (np.asarray(fem.nodes["Position"], dtype=float) - point) @ rotation
     bore = find_bore(where, place, radius, length, radius_tolerance, nodes)
     fixed = np.unique(np.asarray(fixed_nodes, dtype=int))
@@ -284,10 +283,7 @@ def _any_frame(axis: np.ndarray) -> np.ndarray:
     if not size > 0.0:
         raise InputError("add_bore_modes axis must be a direction, got a zero vector.")
     z = axis / size
-    x = np.eye(3)[int(np.argmin(np.abs(z)))]
-    x = x - z * (z @ x)
-    x /= np.linalg.norm(x)
-    return np.column_stack([x, np.cross(z, x), z])
+    return frame_of(z, np.eye(3)[int(np.argmin(np.abs(z)))])
 
 
 def _radial_map(
@@ -295,12 +291,8 @@ def _radial_map(
 ) -> tuple[csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
     """Map H (p, 3 n) from the bore nodes' displacements, body's frame, to radial ones; weights, theta, zeta."""
     theta, z, weight = quadrature(length)
-    S = faces.interpolation(theta, z).tocoo()
     normal = np.stack([np.cos(theta), np.sin(theta), np.zeros_like(theta)], axis=1) @ rotation.T
-    values = S.data[:, None] * normal[S.row]
-    rows, columns = np.repeat(S.row, 3), (3 * S.col[:, None] + np.arange(3)).ravel()
-    H = csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
-    return H, weight, theta, 2.0 * z / length
+    return directed(faces.interpolation(theta, z), normal), weight, theta, 2.0 * z / length
 
 
 def _solve_held(K: csr_matrix, fixed: np.ndarray, loads: np.ndarray) -> np.ndarray:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -27,16 +26,6 @@ _EDGE_SHAPES = np.stack(
 _EDGE_SLOPES = np.stack([_EDGE_POINTS - 0.5, _EDGE_POINTS + 0.5, -2 * _EDGE_POINTS], axis=1)
 _FACE_POINTS, _FACE_WEIGHTS = face_gauss(3)
 _FACE_SHAPES, _FACE_SLOPES = face_shapes(_FACE_POINTS)
-
-
-class DeadLoad(Protocol):
-    """A load whose nodal forces don't depend on the motion."""
-
-    history: History | None
-
-    def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
-        """Return the nodal forces, shape (n, 3) [N], at history = 1; the mesh's nodes are the reference positions."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -107,7 +96,30 @@ class SurfaceLoad:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class DeadPressure:
+class _SurfacePressure:
+    """Pressure along the inward normal of a surface; parameters as in `DeadPressure`."""
+
+    surface: Surface
+    pressure: float
+    distribution: np.ndarray | None = None
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        name = type(self).__name__
+        require_number(f"{name}.pressure", self.pressure, "Pa")
+        _require_distribution(f"{name}.distribution", self.distribution, self.surface)
+        _require_history(f"{name}.history", self.history)
+
+    def forces(self, positions: np.ndarray) -> np.ndarray:
+        """Return -int N_a p n da at positions (n, 3) [m] and history = 1, shape (n, 3) [N]."""
+        normal = _area_vectors(positions[self.surface.faces])
+        pressure = self.pressure * _at_points(self.distribution, self.surface)
+        forces = np.zeros_like(positions)
+        np.add.at(forces, self.surface.faces, -np.einsum("fq,qa,fqi->fai", pressure, _FACE_SHAPES, normal))
+        return forces
+
+
+class DeadPressure(_SurfacePressure):
     """Pressure along the inward normal of the undeformed surface, on its undeformed area.
 
     Parameters
@@ -121,23 +133,12 @@ class DeadPressure:
         Factor on the pressure.
     """
 
-    surface: Surface
-    pressure: float
-    distribution: np.ndarray | None = None
-    history: History | None = None
-
-    def __post_init__(self) -> None:
-        require_number("DeadPressure.pressure", self.pressure, "Pa")
-        _require_distribution("DeadPressure.distribution", self.distribution, self.surface)
-        _require_history("DeadPressure.history", self.history)
-
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
         """Return -int N_a p n dA as nodal forces, shape (n, 3) [N]."""
-        return _pressure_forces(mesh.nodes, self.surface, self.pressure * _at_points(self.distribution, self.surface))
+        return self.forces(mesh.nodes)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FollowerPressure:
+class FollowerPressure(_SurfacePressure):
     """Pressure along the inward normal of the deformed surface, on its deformed area.
 
     Parameters
@@ -145,20 +146,6 @@ class FollowerPressure:
     surface, pressure, distribution, history
         As in `DeadPressure`.
     """
-
-    surface: Surface
-    pressure: float
-    distribution: np.ndarray | None = None
-    history: History | None = None
-
-    def __post_init__(self) -> None:
-        require_number("FollowerPressure.pressure", self.pressure, "Pa")
-        _require_distribution("FollowerPressure.distribution", self.distribution, self.surface)
-        _require_history("FollowerPressure.history", self.history)
-
-    def forces(self, positions: np.ndarray) -> np.ndarray:
-        """Return -int N_a p n da at current positions (n, 3) [m] and history = 1, shape (n, 3) [N]."""
-        return _pressure_forces(positions, self.surface, self.pressure * _at_points(self.distribution, self.surface))
 
     def stiffness(self, positions: np.ndarray) -> np.ndarray:
         """Return -d(forces)/d(positions) of every face, shape (f, 24, 24) [N/m], coordinates node by node.
@@ -220,13 +207,6 @@ def _area_vectors(corners: np.ndarray) -> np.ndarray:
     """x_,r × x_,s times quadrature weight, (f, q, 3), of faces (f, 8, 3)."""
     slope = np.einsum("qar,fai->fqri", _FACE_SLOPES, corners)
     return _FACE_WEIGHTS[:, None] * np.cross(slope[:, :, 0], slope[:, :, 1])
-
-
-def _pressure_forces(positions: np.ndarray, surface: Surface, pressure: np.ndarray) -> np.ndarray:
-    normal = _area_vectors(positions[surface.faces])
-    forces = np.zeros_like(positions)
-    np.add.at(forces, surface.faces, -np.einsum("fq,qa,fqi->fai", pressure, _FACE_SHAPES, normal))
-    return forces
 
 
 def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:

@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.hex20 import EDGES, GAUSS27, NODES, boundary_faces, face_shapes, shape_gradients
-from exudyn_ehd.status import InputError, require_integer, require_number, require_vector
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_vector
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -121,17 +121,24 @@ class Surface:
         The direction (cos theta, sin theta, 0) is that of the point. Loads are carried back by H.T @ (pressure * area).
         """
         theta = np.asarray(theta, dtype=float).ravel()
-        S = self.interpolation(theta, z).tocoo()
-        direction = np.stack([np.cos(theta), np.sin(theta)], axis=1)
-        values = S.data[:, None] * direction[S.row]
-        rows, columns = np.repeat(S.row, 2), (3 * S.col[:, None] + np.arange(2)).ravel()
-        return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
+        return directed(self.interpolation(theta, z), np.stack([np.cos(theta), np.sin(theta)], axis=1))
 
     def radial(self, displacements: np.ndarray) -> np.ndarray:
         """Radial part (m, k) on the surface's nodes of displacements (m, 3 n) of all nodes of the mesh."""
         direction = self.positions[:, :2] / np.linalg.norm(self.positions[:, :2], axis=1)[:, None]
         moved = displacements.reshape(len(displacements), -1, 3)[:, self.nodes, :2]
         return np.asarray(np.einsum("kai,ai->ka", moved, direction))
+
+
+def directed(interpolation: csr_matrix, direction: np.ndarray) -> csr_matrix:
+    """Map (p, 3 n) from vectors at nodes, node by node, to their parts along ``direction`` (p, d) at points (p,).
+
+    ``interpolation`` (p, n); d = 2 leaves z out.
+    """
+    S, size = interpolation.tocoo(), direction.shape[1]
+    values = S.data[:, None] * direction[S.row]
+    rows, columns = np.repeat(S.row, size), (3 * S.col[:, None] + np.arange(size)).ravel()
+    return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
 
 
 def near_faces(corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -278,8 +285,7 @@ class HollowCylinder:
     circumferential: int = 40
 
     def __post_init__(self) -> None:
-        for name in ("inner_radius", "thickness", "length"):
-            require_number(f"HollowCylinder.{name}", getattr(self, name), "m", above=0.0)
+        require_numbers(self, above=0.0, inner_radius="m", thickness="m", length="m")
         require_integer("HollowCylinder.axial", self.axial, at_least=1)
         require_integer("HollowCylinder.radial", self.radial, at_least=1)
         require_integer("HollowCylinder.circumferential", self.circumferential, at_least=3)
@@ -413,10 +419,14 @@ def _frame(axis: np.ndarray) -> np.ndarray:
     if length == 0:
         raise InputError("mesh_from_arrays axis must be a direction, got a zero vector; use (0, 0, 1) for z.")
     z = axis / length
-    x = np.array([1.0, 0.0, 0.0]) if abs(z[0]) < 1 - 1e-9 else np.array([0.0, 1.0, 0.0])
-    x = x - z * (z @ x)
+    return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1 - 1e-9 else 1]).T
+
+
+def frame_of(z: np.ndarray, towards: np.ndarray) -> np.ndarray:
+    """Columns x, y and z, a unit vector; x is ``towards`` projected normal to z."""
+    x = towards - z * (z @ towards)
     x /= np.linalg.norm(x)
-    return np.stack([x, np.cross(z, x), z])
+    return np.column_stack([x, np.cross(z, x), z])
 
 
 def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:

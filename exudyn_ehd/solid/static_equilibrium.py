@@ -1,4 +1,4 @@
-"""Equilibrium and eigenfrequencies of a solid on its own, without a multibody model."""
+"""Equilibrium of a solid on its own, without a multibody model."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, spmatrix
-from scipy.sparse.linalg import SuperLU, eigsh, splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from exudyn_ehd.solid.loads import FollowerPressure, Load
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
-from exudyn_ehd.status import EHDError, InputError, require_integer
+from exudyn_ehd.status import EHDError, require_integer
 
 
 class EquilibriumError(EHDError, RuntimeError):
@@ -105,48 +105,6 @@ def equilibrium(
         else:
             raise _failure(step, steps, float(error / scale))
     return Equilibrium(displacements=u, iterations=count, reactions=np.where(held, residual, 0.0))
-
-
-def eigenfrequencies(
-    solid: TotalLagrange, *, held: np.ndarray | None = None, count: int = 12, u: np.ndarray | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the lowest angular eigenfrequencies and modes of K phi = omega^2 M phi.
-
-    Parameters
-    ----------
-    solid : TotalLagrange
-    held : ndarray of bool, shape (n, 3), optional
-        Supported coordinates; none by default: the six rigid modes then come first, with omega near zero.
-    count : int
-        Number of modes.
-    u : ndarray, shape (n, 3), optional
-        Displacement to linearise at.
-
-    Returns
-    -------
-    omega : ndarray, shape (count,)
-        Ascending [rad/s].
-    modes : ndarray, shape (count, n, 3)
-        M-orthonormal.
-    """
-    shape = solid.mesh.nodes.shape
-    held = np.zeros(shape, dtype=bool) if held is None else np.asarray(held, dtype=bool)
-    if held.shape != shape:
-        raise InputError(
-            f"eigenfrequencies held must have shape {shape}, one flag per coordinate, got {held.shape}; start from "
-            "np.zeros(mesh.nodes.shape, dtype=bool)."
-        )
-    free = np.flatnonzero(~held.ravel())
-    K = solid.tangent(np.zeros(shape) if u is None else u)[free][:, free].tocsc()
-    M = solid.mass[free][:, free].tocsc()
-    # a negative shift keeps K - sigma M positive definite with rigid modes present
-    shift = -1e-6 * float(K.diagonal().mean() / M.diagonal().mean())
-    start = np.random.default_rng(0).standard_normal(len(free))
-    square, vectors = eigsh(K, k=count, M=M, sigma=shift, v0=start)
-    order = np.argsort(square)
-    modes = np.zeros((count, held.size))
-    modes[:, free] = vectors[:, order].T
-    return np.sqrt(np.maximum(square[order], 0.0)), modes.reshape(count, *shape)
 
 
 def symmetric_factor(K: spmatrix) -> SuperLU:

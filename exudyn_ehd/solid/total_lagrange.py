@@ -19,7 +19,7 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid import hex20_kernels as kernels
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature, shape_functions, shape_gradients
 from exudyn_ehd.solid.mesh import BushMesh
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,14 +41,10 @@ class SaintVenantKirchhoff:
     density: float
 
     def __post_init__(self) -> None:
-        require_number("SaintVenantKirchhoff.youngs_modulus", self.youngs_modulus, "Pa", above=0.0)
-        require_number("SaintVenantKirchhoff.density", self.density, "kg/m^3", above=0.0)
-        nu = require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, above=-1.0)
-        if nu >= 0.5:
-            raise InputError(
-                f"SaintVenantKirchhoff.poisson_ratio must be below 0.5, got {nu:g}; an incompressible bush needs "
-                "another element, 0.49 is the sensible limit of this one."
-            )
+        require_numbers(self, above=0.0, youngs_modulus="Pa", density="kg/m^3")
+        require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, above=-1.0)
+        hint = "an incompressible bush needs another element, 0.49 is the sensible limit of this one."
+        require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, below=0.5, hint=hint)
 
     @property
     def lame(self) -> tuple[float, float]:

@@ -125,8 +125,7 @@ def recommend(
     InputError
         For arguments that can't be meant.
     """
-    if not 0.0 < require_number("recommend: error", error) < 1.0:
-        raise InputError(f"recommend: error must be within 0 and 1 (relative), got {error!r}.")
+    require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative.")
     if not isinstance(bearing, JournalBearing):
         raise InputError(f"recommend: expected a JournalBearing, got {bearing!r}.")
     if eccentricity_ratio is None:

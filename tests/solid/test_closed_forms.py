@@ -9,9 +9,10 @@ import pytest
 from exudyn_ehd.solid.hex20 import GAUSS8, GAUSS27, IRONS14
 from exudyn_ehd.solid.loads import DeadPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_equilibrium import eigenfrequencies, equilibrium
+from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from tests.solid_vibrations import eigenfrequencies
 
 DATA = Path(__file__).parent / "data"
 RULES = [GAUSS27, IRONS14, GAUSS8]

@@ -13,10 +13,11 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.hex20 import GAUSS27, shape_functions
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_equilibrium import eigenfrequencies, held_stiffness
+from exudyn_ehd.solid.static_equilibrium import held_stiffness
 from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, reference_gradients
 from exudyn_ehd.status import InputError
+from tests.solid_vibrations import eigenfrequencies
 
 STEEL = SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 CYLINDER = HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=2, radial=2, circumferential=16)

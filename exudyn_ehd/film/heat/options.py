@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from exudyn_ehd.status import require_number
+from exudyn_ehd.status import require_number, require_numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,8 +49,7 @@ class LumpedThermal:
 
     def __post_init__(self) -> None:
         _check_temperatures(self, "supply_temperature", "housing_temperature", "initial_temperature")
-        require_number("LumpedThermal.housing_conductance", self.housing_conductance, "W/K", at_least=0.0)
-        require_number("LumpedThermal.capacity", self.capacity, "J/K", at_least=0.0)
+        require_numbers(self, at_least=0.0, housing_conductance="W/K", capacity="J/K")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,8 +100,7 @@ class FilmEnergy:
         _check_temperatures(
             self, "supply_temperature", "bush_temperature", "journal_temperature", "initial_temperature"
         )
-        require_number("FilmEnergy.bush_coefficient", self.bush_coefficient, "W/(m2 K)", at_least=0.0)
-        require_number("FilmEnergy.journal_coefficient", self.journal_coefficient, "W/(m2 K)", at_least=0.0)
+        require_numbers(self, at_least=0.0, bush_coefficient="W/(m2 K)", journal_coefficient="W/(m2 K)")
         if self.conductivity is not None:
             require_number("FilmEnergy.conductivity", self.conductivity, "W/(m K)", above=0.0)
 

@@ -23,7 +23,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import (
     HermiteTable,
     hermite_inverse,
 )
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import require_number
 
 LARGEST_COEFFICIENT = 1e-6
 # Stands for an exponent k = 0, for which q = p: far below what rounding could show.
@@ -65,8 +65,7 @@ class DowsonHigginson:
     def __post_init__(self) -> None:
         for name, value in (("coefficient", self.coefficient), ("saturation", self.saturation)):
             where, hint = f"DowsonHigginson.{name}", "mineral oils have 0.6e-9 (coefficient) and 1.7e-9 (saturation)."
-            if require_number(where, value, "1/Pa", above=0.0, hint=hint) > LARGEST_COEFFICIENT:
-                raise InputError(f"{where} must be at most {LARGEST_COEFFICIENT:g} 1/Pa, got {value!r}; {hint}")
+            require_number(where, value, "1/Pa", above=0.0, at_most=LARGEST_COEFFICIENT, hint=hint)
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """rho / rho_0 at gauge pressures p, Pa."""

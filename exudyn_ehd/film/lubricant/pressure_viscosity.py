@@ -61,8 +61,7 @@ LARGEST_COEFFICIENT = 1e-4
 
 def _check_coefficient(where: str, value: float) -> None:
     hint = "mineral oils have 1e-8 to 2.5e-8 1/Pa."
-    if require_number(where, value, "1/Pa", above=0.0, hint=hint) > LARGEST_COEFFICIENT:
-        raise InputError(f"{where} must be at most {LARGEST_COEFFICIENT:g} 1/Pa, got {value!r}; {hint}")
+    require_number(where, value, "1/Pa", above=0.0, at_most=LARGEST_COEFFICIENT, hint=hint)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 
@@ -18,13 +17,6 @@ from exudyn_ehd.status import InputError, require_number, require_vector
 # Walther's constant for viscosities above 2 mm2/s, ASTM D341.
 WALTHER_SHIFT = 0.7
 CELSIUS_15 = 288.15
-
-
-class TemperatureLaw(Protocol):
-    """What a lubricant's temperature law offers."""
-
-    def viscosity(self, temperature: float | np.ndarray, density: float) -> np.ndarray:
-        """Dynamic viscosity, Pa s, at temperatures in K (any shape), for a density in kg/m3."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,11 +110,8 @@ class WaltherTemperature:
                 f"WaltherTemperature takes kinematic viscosities in m2/s (46 mm2/s is 46e-6), got {self.first[1]!r} "
                 f"and {self.second[1]!r}."
             )
-        if require_number("WaltherTemperature.expansion", self.expansion, "1/K", at_least=0.0) > 0.01:
-            raise InputError(
-                f"WaltherTemperature.expansion must be below 0.01 1/K, got {self.expansion!r}; oils have 7e-4 1/K, "
-                f"0.6278 / density."
-            )
+        hint = "oils have 7e-4 1/K, 0.6278 / density."
+        require_number("WaltherTemperature.expansion", self.expansion, "1/K", at_least=0.0, at_most=0.01, hint=hint)
 
     @cached_property
     def constants(self) -> tuple[float, float]:

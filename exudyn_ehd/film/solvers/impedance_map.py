@@ -34,7 +34,7 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
-from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
+from exudyn_ehd.status import FilmError, Status, require_integer, require_number
 from exudyn_ehd.storage import Shapes, cached_arrays
 
 FORMAT = 2
@@ -77,18 +77,15 @@ class ImpedanceMap:
         require_integer("ImpedanceMap.n_z", self.n_z, at_least=4, hint="10 is a good start.")
         require_integer("ImpedanceMap.n_eccentricity", self.n_eccentricity, at_least=8, hint="41 is a good start.")
         require_integer("ImpedanceMap.n_direction", self.n_direction, at_least=8, hint="81 is a good start.")
-        if require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0) > 0.95:
-            raise InputError(
-                f"ImpedanceMap.stretch must be within 0 and 0.95, got {self.stretch!r}; 0.75 suits most bearings."
-            )
-        largest = require_number(
-            "ImpedanceMap.largest_eccentricity_ratio", self.largest_eccentricity_ratio, at_least=0.5
+        hint = "0.75 suits most bearings."
+        require_number("ImpedanceMap.stretch", self.stretch, at_least=0.0, at_most=0.95, hint=hint)
+        require_number(
+            "ImpedanceMap.largest_eccentricity_ratio",
+            self.largest_eccentricity_ratio,
+            at_least=0.5,
+            at_most=0.995,
+            hint="closer to the wall use film=FiniteLength(...) with a contact.",
         )
-        if largest > 0.995:
-            raise InputError(
-                f"ImpedanceMap.largest_eccentricity_ratio must be within 0.5 and 0.995, got {largest:g}; closer to "
-                f"the wall use film=FiniteLength(...) with a contact."
-            )
 
 
 @dataclass(frozen=True, eq=False)

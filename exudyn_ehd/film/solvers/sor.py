@@ -36,7 +36,7 @@ from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import PAD
 from exudyn_ehd.film.cavitation.active_set import clip_pressure
 from exudyn_ehd.film.solvers.linear import FilmSolver, Sensitivities
-from exudyn_ehd.status import InputError, Status, require_integer, require_number
+from exudyn_ehd.status import Status, require_integer, require_number
 
 LARGEST_SWEEPS = 20_000
 # Beyond this sum of |P| (1/s) the sweeps have diverged.
@@ -79,10 +79,9 @@ class ClassicSOR:
         require_integer("ClassicSOR.n_theta", self.n_theta, at_least=16, hint="96 is a good start.")
         require_integer("ClassicSOR.n_z", self.n_z, at_least=4, hint="24 is a good start.")
         require_number("ClassicSOR.tolerance", self.tolerance, above=0.0)
-        if self.relaxation is not None and require_number("ClassicSOR.relaxation", self.relaxation, above=0.0) >= 2.0:
-            raise InputError(
-                f"ClassicSOR.relaxation must be within 0 and 2, got {self.relaxation!r}; None chooses one."
-            )
+        if self.relaxation is not None:
+            hint = "None chooses one."
+            require_number("ClassicSOR.relaxation", self.relaxation, above=0.0, below=2.0, hint=hint)
 
 
 def best_relaxation(n_z: int, step_x: float, step_z: float) -> float:

@@ -24,7 +24,7 @@ from numba import njit
 from scipy.special import gamma, pbdv
 
 from exudyn_ehd.film.surfaces.average_gap import AverageGap
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import require_number, require_numbers
 
 REACH = 8.0
 STEPS_PER_SIGMA = 64
@@ -74,14 +74,16 @@ class GreenwoodTripp:
             hint="it is the standard deviation of both surfaces' heights together; leave smooth surfaces out with "
             "asperity=None.",
         )
-        require_number("GreenwoodTripp.composite_modulus", self.composite_modulus, "Pa", above=0.0)
-        require_number("GreenwoodTripp.density_radius_roughness", self.density_radius_roughness, above=0.0)
-        require_number("GreenwoodTripp.roughness_radius_ratio", self.roughness_radius_ratio, above=0.0)
+        require_numbers(
+            self,
+            above=0.0,
+            composite_modulus="Pa",
+            density_radius_roughness="",
+            roughness_radius_ratio="",
+            transition_speed="m/s",
+        )
         require_number("GreenwoodTripp.friction_coefficient", self.friction_coefficient, at_least=0.0)
-        require_number("GreenwoodTripp.transition_speed", self.transition_speed, "m/s", above=0.0)
-        require_number("GreenwoodTripp.residual_film", self.residual_film, at_least=0.001)
-        if self.residual_film > 0.2:
-            raise InputError(f"GreenwoodTripp.residual_film must be within 0.001 and 0.2, got {self.residual_film!r}.")
+        require_number("GreenwoodTripp.residual_film", self.residual_film, at_least=0.001, at_most=0.2)
 
     @property
     def pressure_scale(self) -> float:
@@ -103,8 +105,7 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
     compliance = 0.0
     for E, nu in zip(youngs_moduli, poisson_ratios, strict=True):
         require_number("composite_modulus: youngs_moduli", E, "Pa", above=0.0)
-        if not -1.0 < require_number("composite_modulus: poisson_ratios", nu) <= 0.5:
-            raise InputError(f"composite_modulus: poisson_ratios must be within -1 and 0.5, got {nu!r}.")
+        require_number("composite_modulus: poisson_ratios", nu, above=-1.0, at_most=0.5)
         compliance += (1.0 - nu**2) / E
     return 1.0 / compliance
 

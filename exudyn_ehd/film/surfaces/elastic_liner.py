@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import require_number, require_numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +35,9 @@ class ElasticLiner:
     poisson_ratio: float = 0.3
 
     def __post_init__(self) -> None:
-        require_number("ElasticLiner.thickness", self.thickness, "m", above=0.0)
-        require_number("ElasticLiner.youngs_modulus", self.youngs_modulus, "Pa", above=0.0)
-        nu = require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0)
-        if nu > 0.49:
-            raise InputError(
-                f"ElasticLiner.poisson_ratio must be within 0 and 0.49, got {nu!r}; a nearly incompressible liner does "
-                "not deflect point by point, take a bush with a mesh."
-            )
+        require_numbers(self, above=0.0, thickness="m", youngs_modulus="Pa")
+        hint = "a nearly incompressible liner does not deflect point by point, take a bush with a mesh."
+        require_number("ElasticLiner.poisson_ratio", self.poisson_ratio, at_least=0.0, at_most=0.49, hint=hint)
 
     @property
     def compliance(self) -> float:

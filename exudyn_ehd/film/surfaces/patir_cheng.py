@@ -117,10 +117,8 @@ class PatirCheng:
                 f"PatirCheng.pattern must be one of 1/9, 1/6, 1/3, 1, 3, 6, 9 (the computed patterns), got "
                 f"{self.pattern!r}; take the nearest one."
             )
-        if require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0) > 1.0:
-            raise InputError(
-                f"PatirCheng.journal_share must be within 0 and 1, got {self.journal_share!r}; it is a share."
-            )
+        hint = "it is a share."
+        require_number("PatirCheng.journal_share", self.journal_share, at_least=0.0, at_most=1.0, hint=hint)
 
 
 def pressure_flow_factor(H: np.ndarray, pattern: float) -> np.ndarray:
@@ -144,15 +142,6 @@ def shear_stress_factor(H: np.ndarray, pattern: float) -> np.ndarray:
     power = a4 - a5 * end + 2.0 * a6 * end**2
     near = np.minimum(H, end)
     return A3 * near**a4 * np.exp(-a5 * near + a6 * near**2) * (np.maximum(H, end) / end) ** power
-
-
-def friction_factor(H: np.ndarray) -> np.ndarray:
-    """``h E[1 / local gap]`` over the open film with local gaps above sigma / 100, in sigma units.
-
-    The sum runs in ln(gap).
-    """
-    H = np.atleast_1d(np.asarray(H, dtype=float))
-    return H * mean_inverse_gap(H)
 
 
 def mean_inverse_gap(H: np.ndarray) -> np.ndarray:

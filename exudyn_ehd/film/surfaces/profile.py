@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
-from exudyn_ehd.status import InputError, require_integer, require_number
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
 # Of given points (m or rad), far beyond any machine's: where slopes between them overflow.
 LARGEST_SIZE, SMALLEST_STEP = 1e6, 1e-12
@@ -43,8 +43,7 @@ class OutOfRound:
 
     def __post_init__(self) -> None:
         require_integer("OutOfRound.order", self.order, at_least=2, hint="order 1 is a shift of the whole bore.")
-        require_number("OutOfRound.amplitude", self.amplitude, "m")
-        require_number("OutOfRound.phase", self.phase, "rad")
+        require_numbers(self, amplitude="m", phase="rad")
 
     def depth(self, theta: np.ndarray, z: np.ndarray, length: float) -> np.ndarray:
         """Addition to the gap (n, m) in m at the angles theta (n,) and the positions z (m,).

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import require_number, require_numbers
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,11 +39,8 @@ class RegularisedWall:
     residual: float = 0.2
 
     def __post_init__(self) -> None:
-        require_number("RegularisedWall.onset", self.onset, "m", above=0.0)
-        require_number("RegularisedWall.pressure", self.pressure, "Pa", above=0.0)
-        require_number("RegularisedWall.residual", self.residual, at_least=0.01)
-        if self.residual > 0.9:
-            raise InputError(f"RegularisedWall.residual must be within 0.01 and 0.9, got {self.residual!r}.")
+        require_numbers(self, above=0.0, onset="m", pressure="Pa")
+        require_number("RegularisedWall.residual", self.residual, at_least=0.01, at_most=0.9)
 
 
 class WallContact:

@@ -19,10 +19,11 @@ from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
 from exudyn_ehd.solid.bush import ANCFBush, Rayleigh
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder, mesh_from_fem
-from exudyn_ehd.solid.static_equilibrium import eigenfrequencies, equilibrium
+from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
+from tests.solid_vibrations import eigenfrequencies
 
 SOFT = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
 CYLINDER = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=1, radial=1, circumferential=8)
