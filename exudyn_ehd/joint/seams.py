@@ -27,6 +27,7 @@ __all__ = [
     "ShearProduct",
     "ThermalEffect",
     "Wear",
+    "shear_product",
 ]
 
 
@@ -168,6 +169,13 @@ class ShearProduct:
         ratio_v_out *= other
         ratio_v_out += ratio_out * other_v
         ratio_out *= other
+
+
+def shear_product(first: ShearFactor | None, second: ShearFactor | None) -> ShearFactor | None:
+    """Both shear factors, or the one that is there."""
+    if first is None or second is None:
+        return second if first is None else first
+    return ShearProduct(first, second)
 
 
 @dataclass(frozen=True)

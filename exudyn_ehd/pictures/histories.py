@@ -66,13 +66,8 @@ def plot_orbit(
                 at = unit(e + sign * half * history.motion[:, 2:4])
                 ax.plot(at[:, 0], at[:, 1], lw=0.8, color=colour, label=f"at z = {'+' if sign > 0 else '-'}L/2")
         (line,) = ax.plot(*unit(e).T, color=BLUE if own else None, label=text or "mid-plane")
-        if len(e):
-            _mark_ends(ax, unit(e), line.get_color(), own)
         ax.set(xlabel=label("x", unit), ylabel=label("y", unit), aspect="equal")
-        if own:
-            figure.legend(loc="outside lower center", ncols=3)
-        elif text:
-            ax.legend()
+        _mark_ends(ax, unit(e), line.get_color(), None if own else text)
         return finish(figure, path)
 
 
@@ -118,24 +113,28 @@ def plot_load(history: History, *, text: str = "", ax: PolarAxes | None = None, 
         figure, ax = open_axes(ax, LOAD, projection="polar")
         angle = np.arctan2(load[:, 1], load[:, 0])
         (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
-        if size.size:
-            _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), own)
         ax.set_rlim(bottom=0.0)
         ax.yaxis.set_major_locator(MaxNLocator(4))
         ax.set_rlabel_position(_freest(angle))
         ax.set_title(f"load of the journal on the bush [{unit.symbol}]")
         ax.grid(True, lw=0.4, color="#D0D0D0")
-        if own:
-            figure.legend(loc="outside lower center", ncols=3)
-        elif text:
-            ax.legend()
+        _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), None if own else text)
         return finish(figure, path)
 
 
-def _mark_ends(ax: Axes, points: np.ndarray, colour: str, own: bool) -> None:
-    """Mark start and end of a curve of points (n, 2); in the legend of a picture of its own."""
-    ax.plot(*points[:1].T, "o", mfc="white", mec=colour, label="start" if own else "_start")
-    ax.plot(*points[-1:].T, "o", color=colour, label="end" if own else "_end")
+def _mark_ends(ax: Axes, points: np.ndarray, colour: str, text: str | None) -> None:
+    """Mark start and end of a curve of points (n, 2), and make the legend.
+
+    ``text`` is its name in others' axes; None: the picture is its own, and the ends are in the legend.
+    """
+    hidden = "" if text is None else "_"
+    if len(points):
+        ax.plot(*points[:1].T, "o", mfc="white", mec=colour, label=f"{hidden}start")
+        ax.plot(*points[-1:].T, "o", color=colour, label=f"{hidden}end")
+    if text is None:
+        ax.figure.legend(loc="outside lower center", ncols=3)
+    elif text:
+        ax.legend()
 
 
 def _freest(angle: np.ndarray) -> float:

@@ -97,11 +97,12 @@ class BushEquations:
             return K
         qc = q[self._count :]
         B = self.carrier.jacobian()
-        coupling = self._coupling_block.matrix(values) @ B
-        coupling[self._held] = 0.0
+        coupling, transposed, slaved = (block.matrix(values) for block in self._carrier_blocks)
+        along, across = coupling @ B, (transposed.T @ B).T
+        along[self._held] = across[:, self._held] = 0.0
         turn = self.carrier.force_derivative(qc, q_t[self._count :], self._nodal_forces(t, u, v)[self.slaved])
-        own = B.T @ (self._slaved_block.matrix(values) @ B) - position_factor * turn
-        return bmat([[K, coupling], [self._transposed_coupling(values, B), own]], format="csr")
+        own = B.T @ (slaved @ B) - position_factor * turn
+        return bmat([[K, along], [across, own]], format="csr")
 
     def mass(self, q: np.ndarray | None) -> csr_matrix:
         """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
@@ -131,11 +132,6 @@ class BushEquations:
         for pressure, places in zip(self._followers, self._follower_places, strict=True):
             block = pressure.stiffness(self.solid.mesh.nodes + u)
             np.add.at(values, places, scale * factor(pressure, t) * block.ravel())
-
-    def _transposed_coupling(self, values: np.ndarray, B: np.ndarray) -> np.ndarray:
-        rows = (self._coupling_rows_block.matrix(values).T @ B).T
-        rows[:, self._held] = 0.0
-        return rows
 
     @cached_property
     def _moving(self) -> np.ndarray:
@@ -178,8 +174,7 @@ class BushEquations:
     def _mass_values(self) -> np.ndarray:
         """The mass on the pattern of the moving block."""
         block = self._moving_block
-        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
-        return np.asarray(self._moving_mass[rows, block.indices]).ravel()
+        return np.asarray(self._moving_mass[block.rows, block.indices]).ravel()
 
     @cached_property
     def _highest_frequency_squared(self) -> float:
@@ -209,16 +204,10 @@ class BushEquations:
         return Block.of(self.solid, self._moving_rows, self._moving_rows)
 
     @cached_property
-    def _coupling_block(self) -> Block:
-        return Block.of(self.solid, self._moving_rows, self._slaved_rows)
-
-    @cached_property
-    def _coupling_rows_block(self) -> Block:
-        return Block.of(self.solid, self._slaved_rows, self._moving_rows)
-
-    @cached_property
-    def _slaved_block(self) -> Block:
-        return Block.of(self.solid, self._slaved_rows, self._slaved_rows)
+    def _carrier_blocks(self) -> tuple[Block, ...]:
+        """Moving rows and slaved columns, slaved rows and moving columns, slaved rows and columns."""
+        moving, slaved = self._moving_rows, self._slaved_rows
+        return tuple(Block.of(self.solid, *places) for places in ((moving, slaved), (slaved, moving), (slaved, slaved)))
 
     @cached_property
     def _cut(self) -> np.ndarray:
@@ -226,14 +215,12 @@ class BushEquations:
         held = np.zeros(self._count, dtype=bool)
         held[self._held] = True
         block = self._moving_block
-        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
-        return np.flatnonzero(held[rows] | held[block.indices])
+        return np.flatnonzero(held[block.rows] | held[block.indices])
 
     @cached_property
     def _cut_diagonal(self) -> np.ndarray:
         block = self._moving_block
-        rows = np.repeat(np.arange(self._count), np.diff(block.indptr))
-        return self._cut[rows[self._cut] == block.indices[self._cut]]
+        return self._cut[block.rows[self._cut] == block.indices[self._cut]]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -263,6 +250,11 @@ class Block:
         part = numbered[rows][:, columns].tocsr()
         part.sort_indices()
         return cls(entries=part.data, indptr=part.indptr, indices=part.indices, columns=len(columns))
+
+    @cached_property
+    def rows(self) -> np.ndarray:
+        """Row of every entry."""
+        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr))
 
     def matrix(self, values: np.ndarray) -> csr_matrix:
         """Return the block with the given values of the whole pattern."""

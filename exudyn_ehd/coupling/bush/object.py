@@ -356,7 +356,7 @@ def _add_object(
         container.SetWithSparseMatrix(equations.mass(None), useDenseMatrix=False)
         arguments["massMatrix"] = container
     else:
-        nodes += carrier.nodes
+        nodes += carrier.side.nodes
         arguments["massMatrixUserFunction"] = mass
     picture = items.VObjectGenericODE2(
         show=show, color=list(color), triangleMesh=_triangles(mesh, numbers), showNodes=False

@@ -46,11 +46,6 @@ class Carrier:
         self.local = local
         self._bound = False
 
-    @property
-    def nodes(self) -> list[Index]:
-        """Nodes of the side."""
-        return self.side.nodes
-
     def move(self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = _CURRENT) -> None:
         """Bring frame and Jacobians to the coordinates ``q`` and rates ``q_t`` (n,) of a ``configuration``."""
         if not self._bound:

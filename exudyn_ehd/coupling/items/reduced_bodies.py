@@ -75,17 +75,13 @@ def hold_fe_bore(
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
+        assert housing.node_kind is not None
         frame = NodeSide(
-            _kind(housing), housing.node, housing.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
+            housing.node_kind, housing.node, housing.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
         )
         return FloatingBoreSide(frame, housing.nodes[1], origin, local, reduced.rigid)
 
     return dataclasses.replace(bearing, bush=reduced), dataclasses.replace(housing, build=build)
-
-
-def _kind(housing: Item) -> int:
-    assert housing.node_kind is not None
-    return housing.node_kind
 
 
 class FloatingBoreSide:

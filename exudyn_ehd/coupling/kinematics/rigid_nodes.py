@@ -87,9 +87,7 @@ def _rotation_vector(v):
     angle = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
     half = 0.5 * angle
     # sin(half) / angle stays accurate for small angles, 1 - cos(angle) would not
-    sinc = 0.5 if half < 1e-4 else np.sin(half) / angle
-    if half < 1e-4:
-        sinc = 0.5 * (1.0 - half * half / 6.0)
+    sinc = 0.5 * (1.0 - half * half / 6.0) if half < 1e-4 else np.sin(half) / angle
     e = np.empty(4)
     e[0] = np.cos(half)
     for i in range(3):
@@ -194,9 +192,7 @@ def _torque_variation(kind, theta, jr, torque):
                 d = cross(jr[:, j], jr[:, i])
                 h[i, j] = d[0] * torque[0] + d[1] * torque[1] + d[2] * torque[2]
     elif kind == ROTATION_VECTOR:
-        local = np.empty(3)
-        for i in range(3):
-            local[i] = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
+        local = transposed_times(jr, torque)
         h[0, 1], h[0, 2] = -local[2], local[1]
         h[1, 0], h[1, 2] = local[2], -local[0]
         h[2, 0], h[2, 1] = -local[1], local[0]

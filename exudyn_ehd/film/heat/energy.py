@@ -197,16 +197,6 @@ def _cavity_work(H_t, area, cavity):
 
 
 @njit(cache=True)
-def end_section(P, H, width_x):
-    """``sum P H ds`` along the end z > 0 less that along the other."""
-    total = 0.0
-    e = P.shape[1] - 1
-    for i in range(width_x.size):
-        total += width_x[i] * (P[i, e] * H[i, e] - P[i, 0] * H[i, 0])
-    return total
-
-
-@njit(cache=True)
 def assemble_energy(qx, qz, diagonal, number, width, lower, upper):
     """Band of the upwind system: ``diagonal`` (n, m) holds everything but the inflows from neighbours."""
     n, m = qx.shape

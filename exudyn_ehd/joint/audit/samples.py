@@ -207,7 +207,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         tension=float(np.sum(weight[pressure < TENSION])),
         tilt_loss=tilt_loss(b, w.motion),
         squeeze_share=squeeze_share(b, w.motion),
-        deflection=_deflection(film),
+        deflection=q.get("bore_displacement", 0.0),
         shape=_shape(film),
         columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
         rows=intervals_at_half(pressure[i], int(j)),
@@ -286,14 +286,6 @@ def intervals_at_half(values: np.ndarray, peak: int) -> float:
         k = int(below[0])
         width += k - float((half - side[k]) / (side[k - 1] - side[k]))
     return width
-
-
-def _deflection(film: SolvedFilm) -> float:
-    """Largest deflection of a liner or of a flexible bore, m."""
-    liner, bore, c = film.parts.liner, film.bore, film.parts.bearing.radial_clearance
-    if liner is not None:
-        return float(np.abs(liner.deflection).max()) * c
-    return 0.0 if bore is None else float(np.abs(bore.displacement).max()) * c
 
 
 def _shape(film: SolvedFilm) -> float:

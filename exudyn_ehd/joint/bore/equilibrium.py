@@ -24,48 +24,29 @@ SETTLING_TOLERANCE = 1e-11
 SMALLEST_PART = 1e-3
 
 
-class Elasticity(Protocol):
-    """What resists the bore's coordinates in a steady state."""
+class Elasticity:
+    """What resists the bore's coordinates in a steady state: a constant stiffness matrix.
 
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """Generalised force (k,) that holds the bore at q, N."""
-
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
-
-
-class ModalElasticity:
-    """Diagonal stiffness of modes (k,), N/m."""
-
-    def __init__(self, stiffness: np.ndarray) -> None:
-        self.stiffness = stiffness
-
-    def force(self, q: np.ndarray) -> np.ndarray:
-        """K q (k,)."""
-        return self.stiffness * q
-
-    def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs``."""
-        return np.linalg.solve(np.diag(self.stiffness) - softening, rhs)
-
-
-class DenseElasticity:
-    """Constant stiffness matrix (k, k), N/m, made when first needed."""
+    Parameters
+    ----------
+    make : function
+        Returns the matrix (k, k), N/m; called when it is first needed.
+    """
 
     def __init__(self, make: Callable[[], np.ndarray]) -> None:
         self._make = make
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        """K (k, k)."""
+        """K (k, k), N/m."""
         return self._make()
 
     def force(self, q: np.ndarray) -> np.ndarray:
-        """K q (k,)."""
+        """Generalised force (k,) that holds the bore at q, N."""
         return self.stiffness @ q
 
     def solve(self, q: np.ndarray, softening: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``(K - softening) x = rhs``."""
+        """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
         return np.linalg.solve(self.stiffness - softening, rhs)
 
 

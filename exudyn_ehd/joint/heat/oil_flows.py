@@ -11,7 +11,6 @@ import numpy as np
 
 from exudyn_ehd.film.heat.energy import (
     content_rate,
-    end_section,
     exchange_sums,
     exchange_sums_fill,
     film_flows,
@@ -122,8 +121,8 @@ def _end_work(film: SolvedFilm) -> float:
     """Work of the pressure on the ends' cross section, scaled."""
     if film.journal.axial_speed == 0.0:
         return 0.0
-    g = film.grid
-    return film.journal.axial_speed / g.reference_length * end_section(film.oil.P, film.solver.H, g.width_x)
+    g, section = film.grid, film.oil.P * film.solver.H
+    return film.journal.axial_speed / g.reference_length * float(g.width_x @ (section[:, -1] - section[:, 0]))
 
 
 def _compressible_work(film: SolvedFilm, oil: CompressibleFilmSolver | NonlinearFilmSolver) -> tuple[float, float]:

@@ -27,21 +27,26 @@ STAGNANT = 1e-14
 NO_FLOW = 1e-11
 
 
-def reference_viscosity(lubricant: Lubricant) -> float:
-    """Of the lubricant's temperature law at the lubricant's own temperature, Pa s."""
-    law = lubricant.temperature_law
-    assert law is not None
-    return float(law.viscosity(float(lubricant.temperature), lubricant.density))
+class _Temperature:
+    """What the temperatures of both kinds have in common."""
+
+    def __init__(self, spec: LumpedThermal | FilmEnergy, lubricant: Lubricant) -> None:
+        assert lubricant.temperature_law is not None
+        self.law, self.density = lubricant.temperature_law, lubricant.density
+        self.reference = float(self.law.viscosity(float(lubricant.temperature), self.density))
+        self.supply = spec.supply_temperature
+        self.initial = self._or_supply(spec.initial_temperature)
+        self.flow_capacity = lubricant.density * lubricant.specific_heat
+
+    def _or_supply(self, temperature: float | None) -> float:
+        return self.supply if temperature is None else temperature
+
+    def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
+        """mu(T) / mu at the lubricant's own temperature."""
+        return self.law.viscosity(temperature, self.density) / self.reference
 
 
-def viscosity_ratio(lubricant: Lubricant, temperature: np.ndarray | float, reference: float) -> np.ndarray:
-    """mu(T) / mu at the lubricant's own temperature, ``reference`` of the law there."""
-    law = lubricant.temperature_law
-    assert law is not None
-    return law.viscosity(temperature, lubricant.density) / reference
-
-
-class LumpedTemperature:
+class LumpedTemperature(_Temperature):
     """`LumpedThermal` of one bearing model.
 
     Parameters
@@ -51,13 +56,9 @@ class LumpedTemperature:
     """
 
     def __init__(self, spec: LumpedThermal, bearing: JournalBearing) -> None:
+        super().__init__(spec, bearing.lubricant)
         self.spec = spec
-        self.lubricant = oil = bearing.lubricant
-        self.reference = reference_viscosity(oil)
-        supply = spec.supply_temperature
-        self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
-        self.housing = supply if spec.housing_temperature is None else spec.housing_temperature
-        self.flow_capacity = oil.density * oil.specific_heat
+        self.housing = self._or_supply(spec.housing_temperature)
         volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
@@ -69,7 +70,7 @@ class LumpedTemperature:
     def set_viscosity(self, temperature: float | np.ndarray) -> float:
         """Viscosity over the reference at a temperature, K, that the whole film shares."""
         if self._last[0] != temperature:
-            ratio = float(viscosity_ratio(self.lubricant, float(temperature), self.reference))
+            ratio = float(self.viscosity_ratio(float(temperature)))
             self._last = float(temperature), ratio
         return self._last[1]
 
@@ -85,7 +86,7 @@ class LumpedTemperature:
             return T
         heat, flow = self._rates(film)
         store, G = self.capacity / film.step, self.spec.housing_conductance
-        rise = heat + flow * self.spec.supply_temperature + G * self.housing + store * T
+        rise = heat + flow * self.supply + G * self.housing + store * T
         return rise / (store + flow + G)
 
     def steady_temperature(self, film: SolvedFilm) -> float:
@@ -94,7 +95,7 @@ class LumpedTemperature:
         G = self.spec.housing_conductance
         if flow + G <= 0.0:
             return math.inf if heat > 0.0 else _number(film)
-        return (heat + flow * self.spec.supply_temperature + G * self.housing) / (flow + G)
+        return (heat + flow * self.supply + G * self.housing) / (flow + G)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, carried out, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
@@ -102,7 +103,7 @@ class LumpedTemperature:
         stored = self.capacity * (temperature - _number(film)) / film.step if film.step > 0.0 else 0.0
         return {
             "heat_in": heat,
-            "carried_out": flow * (temperature - self.spec.supply_temperature),
+            "carried_out": flow * (temperature - self.supply),
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
         }
@@ -153,7 +154,7 @@ class ViscosityField(FluxEffect):
         ratio_v_out[:] = 0.0
 
 
-class FilmTemperature:
+class FilmTemperature(_Temperature):
     """`FilmEnergy` of one bearing model.
 
     Parameters
@@ -167,13 +168,8 @@ class FilmTemperature:
     def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField) -> None:
         self.spec = spec
         self.field = field
-        self.lubricant = oil = bearing.lubricant
-        self.reference = reference_viscosity(oil)
-        supply = spec.supply_temperature
-        self.initial = supply if spec.initial_temperature is None else spec.initial_temperature
-        bush = supply if spec.bush_temperature is None else spec.bush_temperature
-        journal = supply if spec.journal_temperature is None else spec.journal_temperature
-        self.flow_capacity = oil.density * oil.specific_heat
+        super().__init__(spec, bearing.lubricant)
+        bush, journal = self._or_supply(spec.bush_temperature), self._or_supply(spec.journal_temperature)
         self.transfer = spec.bush_coefficient + spec.journal_coefficient
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self._start: np.ndarray | None = None
@@ -190,7 +186,7 @@ class FilmTemperature:
         """Bring the viscosity field to a temperature field, K; the film shares no other factor than 1."""
         if temperature is not self._last:
             self._last = np.asarray(temperature)
-            self.field.set(viscosity_ratio(self.lubricant, self._last, self.reference))
+            self.field.set(self.viscosity_ratio(self._last))
         return 1.0
 
     def advance(self, film: SolvedFilm) -> np.ndarray:
@@ -254,7 +250,7 @@ class FilmTemperature:
     ) -> tuple[np.ndarray, dict[str, float]]:
         """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
         area, shape = film.solver.area, film.grid.shape
-        supply, old = self.spec.supply_temperature, _field(film)
+        supply, old = self.supply, _field(film)
         scale = self.flow_capacity * film.parts.flow_scale
         heat, flows = self._heat(film), OilFlows(film)
         leaving = np.maximum(-flows.outside, 0.0)
@@ -291,7 +287,7 @@ class FilmTemperature:
 
     def _thinning(self, T: np.ndarray) -> np.ndarray:
         """-d ln(mu) / dT at temperatures T, 1/K (n, m)."""
-        thicker, thinner = (viscosity_ratio(self.lubricant, T + d, self.reference) for d in (-0.05, 0.05))
+        thicker, thinner = (self.viscosity_ratio(T + d) for d in (-0.05, 0.05))
         return np.log(thicker / thinner) / 0.1
 
     def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.bore.equilibrium import DenseElasticity, ModalElasticity
-from exudyn_ehd.joint.bore.shapes import ModalBore, NodalBore
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.joint.bore.equilibrium import Elasticity
+from exudyn_ehd.joint.bore.shapes import Bore, ModalBore, NodalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
@@ -20,39 +23,28 @@ from exudyn_ehd.status import InputError
 def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
     """Model of a bearing whose ``bush`` is not None."""
     bush = bearing.bush
-    if isinstance(bush, ModalBush):
-        modes = bore_modes(bush)
-        return ElasticBearingModel(
-            bearing,
-            lambda grid: ModalBore(modes, grid),
-            elasticity=ModalElasticity(modes.stiffness),
-            start_angle=start_angle,
-            effects=effects,
-        )
-    if isinstance(bush, ReducedBore):
-        reduced = bush
-        return ElasticBearingModel(
-            bearing,
-            lambda grid: ModalBore(reduced, grid),
-            elasticity=DenseElasticity(lambda: reduced.stiffness_matrix),
-            start_angle=start_angle,
-            effects=effects,
-        )
     if isinstance(bush, FEBore):
         raise InputError(
             "JournalBearing.bush=FEBore(...) takes its modes from the body that is the joint's housing: give "
             "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
             "itself, take a ModalBush(...)."
         )
+    bore, stiffness = _bore_and_stiffness(bush)
+    return ElasticBearingModel(
+        bearing, bore, elasticity=Elasticity(stiffness), start_angle=start_angle, effects=effects
+    )
+
+
+def _bore_and_stiffness(bush: object) -> tuple[Callable[[FilmGrid], Bore], Callable[[], np.ndarray]]:
+    """Functions that make the bore on a film's grid, and the stiffness of its coordinates."""
+    if isinstance(bush, ModalBush):
+        modes = bore_modes(bush)
+        return lambda grid: ModalBore(modes, grid), lambda: np.diag(modes.stiffness)
+    if isinstance(bush, ReducedBore):
+        return lambda grid: ModalBore(bush, grid), lambda: bush.stiffness_matrix
     assert isinstance(bush, ANCFBush)
     mesh = bush.build_mesh()
-    return ElasticBearingModel(
-        bearing,
-        lambda grid: NodalBore(mesh.bore, grid),
-        elasticity=DenseElasticity(lambda: bore_stiffness(bush)),
-        start_angle=start_angle,
-        effects=effects,
-    )
+    return lambda grid: NodalBore(mesh.bore, grid), lambda: bore_stiffness(bush)
 
 
 def bore_stiffness(bush: ANCFBush) -> np.ndarray:

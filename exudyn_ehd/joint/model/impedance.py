@@ -6,6 +6,7 @@ The same interface as `exudyn_ehd.joint.model.rigid`, for aligned plain bearings
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,20 +21,16 @@ _TILTED = 4
 _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)
 
 
+@dataclass(eq=False, slots=True)
 class ImpedanceEvaluation:
     """One evaluation; see `exudyn_ehd.joint.model.rigid.Evaluation`."""
 
-    __slots__ = ("_model", "_tangent", "iterations", "motion", "status", "wrench")
-
-    def __init__(
-        self, model: ImpedanceModel, status: Status, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray
-    ) -> None:
-        self._model = model
-        self._tangent = tangent
-        self.status = status
-        self.motion = motion
-        self.wrench = wrench
-        self.iterations = 0
+    bearing: JournalBearing
+    status: Status
+    motion: np.ndarray
+    wrench: np.ndarray
+    _tangent: np.ndarray
+    iterations: int = 0
 
     def tangent(self) -> np.ndarray:
         """d wrench / d motion (6, 10), exact; columns and rows of the tilt are zero; nan without a film."""
@@ -41,7 +38,26 @@ class ImpedanceEvaluation:
 
     def quantities(self) -> dict[str, float]:
         """Gap and its place, eccentricity ratio, friction, power loss and no contact load, by name, SI units."""
-        return self._model.quantities(self)
+        x, y, _, _, x_t, y_t, _, _, omega, w = self.motion.tolist()
+        eps = math.hypot(x, y) / self.bearing.radial_clearance
+        out = {
+            "minimum_gap": self.bearing.radial_clearance * (1.0 - eps),
+            "minimum_gap_angle": math.atan2(y, x) % (2.0 * math.pi),
+            "minimum_gap_z": 0.0,
+            "eccentricity_ratio": eps,
+            "largest_eccentricity_ratio": eps,
+        }
+        if self.status is not Status.CONVERGED:
+            return out
+        fx, fy, fz, _, _, torque = self.wrench.tolist()
+        friction = torque - (x * fy - y * fx)
+        power = fx * x_t + fy * y_t + friction * omega + fz * w
+        return out | {
+            "friction_torque": friction,
+            "friction_torque_bush": -torque,
+            "power_loss": -power,
+            "contact_load": 0.0,
+        }
 
     def history(self) -> None:
         """The map has no memory."""
@@ -71,8 +87,6 @@ class ImpedanceModel:
         ratio = bearing.length / bearing.journal_radius
         self.table: ImpedanceTable = impedance_table(bearing.film, bearing.cavitation, ratio)
         R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
-        self.force_scale = 2.0 * R * bearing.length * mu * (R / c) ** 2
-        self.shear_scale = mu * R**2 / c
         t = self.table
         self.parameters = np.array(
             [
@@ -82,8 +96,8 @@ class ImpedanceModel:
                 c,
                 R,
                 0.5 * bearing.length,
-                self.force_scale,
-                self.shear_scale * 2.0 * math.pi * ratio,
+                2.0 * R * bearing.length * mu * (R / c) ** 2,
+                2.0 * math.pi * ratio * mu * R**2 / c,
                 NEGLIGIBLE_TILT,
             ]
         )
@@ -110,7 +124,7 @@ class ImpedanceModel:
         code = impedance_wrench(self.table.nodes, self.parameters, motion, wrench, tangent)
         if code == _TILTED:
             self._refuse_tilt(motion)
-        return ImpedanceEvaluation(self, _OUTCOMES[code], motion, wrench, tangent)
+        return ImpedanceEvaluation(self.bearing, _OUTCOMES[code], motion, wrench, tangent)
 
     def _refuse_tilt(self, motion: np.ndarray) -> None:
         b = self.bearing
@@ -122,26 +136,3 @@ class ImpedanceModel:
             "gap): guide the journal's axis, or "
             "use film=FiniteLength(...)."
         )
-
-    def quantities(self, evaluation: ImpedanceEvaluation) -> dict[str, float]:
-        """Scalars of an evaluation; see `ImpedanceEvaluation.quantities`."""
-        x, y, _, _, x_t, y_t, _, _, omega, w = evaluation.motion.tolist()
-        eps = math.hypot(x, y) / self.bearing.radial_clearance
-        out = {
-            "minimum_gap": self.bearing.radial_clearance * (1.0 - eps),
-            "minimum_gap_angle": math.atan2(y, x) % (2.0 * math.pi),
-            "minimum_gap_z": 0.0,
-            "eccentricity_ratio": eps,
-            "largest_eccentricity_ratio": eps,
-        }
-        if evaluation.status is not Status.CONVERGED:
-            return out
-        fx, fy, fz, _, _, torque = evaluation.wrench.tolist()
-        friction = torque - (x * fy - y * fx)
-        power = fx * x_t + fy * y_t + friction * omega + fz * w
-        return out | {
-            "friction_torque": friction,
-            "friction_torque_bush": -torque,
-            "power_loss": -power,
-            "contact_load": 0.0,
-        }

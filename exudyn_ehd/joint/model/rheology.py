@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,32 +11,11 @@ from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
-from exudyn_ehd.joint.seams import FluxEffect, PressureLaw, ShearFactor, ShearProduct, ThermalEffect
+from exudyn_ehd.joint.seams import Effects, PressureLaw, shear_product
 from exudyn_ehd.status import InputError
 
 
-@dataclass(frozen=True)
-class Rheology:
-    """What the lubricant and the thermal effect contribute to a model; absent laws leave None.
-
-    Attributes
-    ----------
-    flux : tuple of FluxEffect
-    pressure_law : PressureLaw or None
-    shear_factor : ShearFactor or None
-    thermal : ThermalEffect or None
-    density : CompressibleLaw or None
-        Of a compressible film; the same object as ``pressure_law``.
-    """
-
-    flux: tuple[FluxEffect, ...] = ()
-    pressure_law: PressureLaw | None = None
-    shear_factor: ShearFactor | None = None
-    thermal: ThermalEffect | None = None
-    density: CompressibleLaw | None = None
-
-
-def collect_rheology(bearing: JournalBearing) -> Rheology:
+def collect_rheology(bearing: JournalBearing) -> Effects:
     """Laws of the lubricant and the thermal effect of a bearing.
 
     Raises
@@ -45,29 +24,28 @@ def collect_rheology(bearing: JournalBearing) -> Rheology:
         For a thermal effect whose lubricant has no temperature law.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
-    if oil.pressure_law is None and oil.shear_law is None and oil.density_law is None and thermal is None:
-        return Rheology()
-    law: PressureLaw | None = None if oil.pressure_law is None else oil.pressure_law.bound(oil.viscosity)
-    density = compressible_law(oil)
-    if density is not None:
-        law = density
-    flux: tuple[FluxEffect, ...] = ()
-    factor: ShearFactor | None = None
+    effects = Effects(pressure_law=_transform_law(oil))
+    if isinstance(effects.pressure_law, CompressibleLaw):
+        effects = replace(effects, density=effects.pressure_law)
     if oil.shear_law is not None:
         thinning = oil.shear_law.bound(bearing.journal_radius, bearing.radial_clearance)
-        flux, factor = (thinning,), thinning
+        effects = replace(effects, flux=(thinning,), shear_factor=thinning)
     if thermal is None:
-        return Rheology(flux, law, factor, None, density)
+        return effects
     if oil.temperature_law is None:
         raise InputError(
             f"JournalBearing.thermal={type(thermal).__name__}(...) needs a lubricant whose viscosity depends on "
             'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
         )
     if isinstance(thermal, LumpedThermal):
-        return Rheology(flux, law, factor, LumpedTemperature(thermal, bearing), density)
+        return replace(effects, thermal=LumpedTemperature(thermal, bearing))
     field = ViscosityField()
-    product = field if factor is None else ShearProduct(field, factor)
-    return Rheology((*flux, field), law, product, FilmTemperature(thermal, bearing, field), density)
+    return replace(
+        effects,
+        flux=(*effects.flux, field),
+        shear_factor=shear_product(field, effects.shear_factor),
+        thermal=FilmTemperature(thermal, bearing, field),
+    )
 
 
 def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
@@ -79,6 +57,7 @@ def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
 
 
 def _transform_law(lubricant: Lubricant) -> PressureLaw | None:
+    """The law of pressure, which for a compressible oil holds its density too."""
     density = compressible_law(lubricant)
     if density is not None or lubricant.pressure_law is None:
         return density

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,25 +14,12 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
-from exudyn_ehd.joint.seams import Contact, FluxEffect, GapLimiter, GapTerm, ShearFactor, Wear
+from exudyn_ehd.joint.seams import Effects, GapTerm
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import InputError
 
 
-@dataclass(frozen=True)
-class SurfaceEffects:
-    """What the surfaces of a bearing contribute to its model; empty for smooth ones."""
-
-    gap_terms: tuple[GapTerm, ...] = ()
-    wear: Wear | None = None
-    limiter: GapLimiter | None = None
-    contacts: tuple[Contact, ...] = ()
-    flux: tuple[FluxEffect, ...] = ()
-    shear_factor: ShearFactor | None = None
-    uneven_drag: bool = False
-
-
-def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffects:
+def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
     """Scaled effects of profile, wear, roughness and asperities, on the grid that starts at ``start_angle``.
 
     Raises
@@ -52,7 +39,7 @@ def surface_effects(bearing: JournalBearing, start_angle: float) -> SurfaceEffec
             wear = WearDepth(bearing.wear, grid.shape, c)
             gap_terms.append(WearTerm(wear))
     if bearing.asperity is None and bearing.roughness is None:
-        return SurfaceEffects(gap_terms=tuple(gap_terms))
+        return Effects(gap_terms=tuple(gap_terms))
     return replace(_rough_effects(bearing), gap_terms=tuple(gap_terms), wear=wear)
 
 
@@ -67,14 +54,14 @@ class WearTerm:
         return self.wear.depth(None if history is None else history.wear)
 
 
-def _rough_effects(bearing: JournalBearing) -> SurfaceEffects:
+def _rough_effects(bearing: JournalBearing) -> Effects:
     _check(bearing)
     c = bearing.radial_clearance
     contact = None if bearing.asperity is None else AsperityContact(bearing.asperity, c)
     if bearing.roughness is None:
-        return SurfaceEffects(limiter=contact, contacts=() if contact is None else (contact,))
+        return Effects(limiter=contact, contacts=() if contact is None else (contact,))
     residual = 0.0 if contact is None else contact.residual
-    return SurfaceEffects(
+    return Effects(
         limiter=AverageGap(bearing.roughness.composite_roughness / c, residual) if contact is None else contact,
         contacts=() if contact is None else (contact,),
         flux=(RoughFlow(bearing.roughness, c, residual),),
