@@ -14,7 +14,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.grid import Directions
 from exudyn_ehd.film.reynolds.link_derivatives import derivatives_of
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -122,49 +121,6 @@ def balance_change(motion, by_place, place, by_rate, change, moved, speed, out):
         for c in range(10):
             total += motion[r, c] * change[c]
         out[r] = total
-
-
-@njit(cache=True, fastmath=_FAST)
-def motion_columns(order, count, d, slope, AR, AC, at, out):
-    """Derivatives of the balances at the unknowns to (scaled pose, scaled rates, vx, vz): out (count, 10).
-
-    The gap is ``-(x + z bx) cos - (y + z by) sin``, on links in theta with the true angle; ``at``:
-    `Directions`.
-    """
-    n, m = slope.shape
-    DX, DZ, SX, SZ, SZX = derivatives_of(d)
-    at = Directions(*at)
-    z = at.z
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        prv = i - 1 if i > 0 else n - 1
-        own = AC[i, j]
-        tilt = AC[i, j] * z[j]
-        vx = SX[i, j] - SX[prv, j]
-        vz = 0.0
-        if j + 1 < m:
-            own += 0.5 * DZ[i, j] * (slope[i, j] + slope[i, j + 1])
-            tilt += 0.5 * DZ[i, j] * (slope[i, j] * z[j] + slope[i, j + 1] * z[j + 1])
-            vx += SZX[i, j]
-            vz += SZ[i, j]
-        if j > 0:
-            own -= 0.5 * DZ[i, j - 1] * (slope[i, j] + slope[i, j - 1])
-            tilt -= 0.5 * DZ[i, j - 1] * (slope[i, j] * z[j] + slope[i, j - 1] * z[j - 1])
-            vx -= SZX[i, j - 1]
-            vz -= SZ[i, j - 1]
-        c = DX[i, j] * at.cos_f[i] - DX[prv, j] * at.cos_f[prv]
-        s = DX[i, j] * at.sin_f[i] - DX[prv, j] * at.sin_f[prv]
-        out[r, 0] = -(c + own * at.cos_x[i])
-        out[r, 1] = -(s + own * at.sin_x[i])
-        out[r, 2] = -(c * z[j] + tilt * at.cos_x[i])
-        out[r, 3] = -(s * z[j] + tilt * at.sin_x[i])
-        out[r, 4] = -AR[i, j] * at.cos_x[i]
-        out[r, 5] = -AR[i, j] * at.sin_x[i]
-        out[r, 6] = out[r, 4] * z[j]
-        out[r, 7] = out[r, 5] * z[j]
-        out[r, 8] = vx
-        out[r, 9] = vz
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -1,12 +1,12 @@
-"""From adjoint solutions to the motion of a rigid journal in one sweep, and from the load integrals to its wrench.
+"""From the balances to the motion of a rigid journal, and from the load integrals to its wrench.
 
-One pass over each adjoint contracts the derivatives of the links' flows with the pose. It gives the same as
-`exudyn_ehd.film.reynolds.link_derivatives.contract_links` and `exudyn_ehd.film.reynolds.gap.contract_pose` one after
-the other, without the fields, which elastic bores want.
+An adjoint functional has the gradient ``-lam . dr``: the same as `exudyn_ehd.film.reynolds.link_derivatives` and
+`exudyn_ehd.film.reynolds.gap.contract_pose` give one after the other, without the fields, which elastic bores want.
 """
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.grid import Directions
@@ -16,13 +16,15 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, fastmath=_FAST)
-def pose_gradient(lam, d, slope, AR, AC, at, out):
-    """Gradients of k adjoint functionals to (scaled pose, scaled rates, vx, vz).
+def motion_columns(order, count, d, slope, AR, AC, at, out):
+    """Derivatives of the balances at the unknowns to (scaled pose, scaled rates, vx, vz).
+
+    The gap is ``-(x + z bx) cos - (y + z by) sin``, on links in theta with the true angle.
 
     Parameters
     ----------
-    lam : (k, n, m) array
-        Adjoint solutions.
+    order, count
+        Flat vertices of the unknowns.
     d : (5, n, m) array
         `LinkDerivatives`, DX already by the true gap.
     slope : (n, m) array
@@ -31,58 +33,94 @@ def pose_gradient(lam, d, slope, AR, AC, at, out):
         Derivative of a vertex's balance through its storage, with respect to the true gap's rate and to the true gap.
     at : tuple of arrays
         `Directions`.
-    out : (k, 10) array
-        Overwritten.
+    out : (10, count) array
     """
-    count, n, m = lam.shape
-    DX, DZ, SX, SZ, SZX = derivatives_of(d)
+    n, m = slope.shape
+    DX, DZ, SX, SZ, SZX = derivatives_of(d.reshape(5, n * m))
+    low, high, s = np.empty(n * m), np.empty(n * m), slope.reshape(-1)
+    for c in range(low.size):
+        low[c] = 0.5 * DZ[c] * s[c]
+    for c in range(high.size - 1):
+        high[c] = 0.5 * DZ[c] * s[c + 1]
+    rate, gap = AR.reshape(-1), AC.reshape(-1)
+    columns_of_links(order, count, m, DX, None, (low, high), (SX, SZX, SZ), (rate, gap), at, out)
+
+
+@njit(cache=True, fastmath=_FAST)
+def columns_of_links(order, count, m, face, along, across, by_speed, storage, at, out):
+    """`motion_columns` for links of any kind; fields are flat (n m,).
+
+    Parameters
+    ----------
+    face : field
+        Derivative of the flow in theta to the gap on the link.
+    along : two fields or None
+        Of the flow in theta to the gaps at the link's ends; None: it does not know them.
+    across : two fields
+        Of the flow in z to the gaps at the link's ends.
+    by_speed : three fields
+        Of the flow in theta to vx, in z to vx and to vz.
+    storage : two fields
+        Of the storage to the gap's rate and to the gap.
+    """
     at = Directions(*at)
-    z = at.z
-    for k in range(count):
-        for q in range(10):
-            out[k, q] = 0.0
-        sx = 0.0
-        sz = 0.0
-        for i in range(n):
+    z, n, (rate, gap) = at.z, at.cos_x.size, storage
+    i = nxt = prv = 0
+    for r in range(count):
+        j = order[r] - i * m
+        if r == 0 or j < 0 or j >= m:  # rows of a column follow each other: one division per column
+            i = order[r] // m
+            j = order[r] - i * m
+            prv = i - 1 if i > 0 else n - 1
             nxt = i + 1 if i + 1 < n else 0
-            a = lam[k, i]
-            b = lam[k, nxt]
-            f0 = 0.0
-            f1 = 0.0
-            r0 = 0.0
-            r1 = 0.0
-            c0 = 0.0
-            c1 = 0.0
-            for j in range(m):
-                drop = a[j] - b[j]
-                g = drop * DX[i, j]
-                f0 += g
-                f1 += g * z[j]
-                sx -= drop * SX[i, j]
-                w = a[j] * AR[i, j]
-                r0 += w
-                r1 += w * z[j]
-                w = a[j] * AC[i, j]
-                c0 += w
-                c1 += w * z[j]
-            for j in range(m - 1):
-                drop = a[j] - a[j + 1]
-                g = 0.5 * drop * DZ[i, j]
-                c0 += g * (slope[i, j] + slope[i, j + 1])
-                c1 += g * (slope[i, j] * z[j] + slope[i, j + 1] * z[j + 1])
-                sz -= drop * SZ[i, j]
-                sx -= drop * SZX[i, j]
-            # dH/d(x, y, bx, by) = -(cos, sin, z cos, z sin); the functionals' gradients are -lam . dr
-            out[k, 0] += f0 * at.cos_f[i] + c0 * at.cos_x[i]
-            out[k, 1] += f0 * at.sin_f[i] + c0 * at.sin_x[i]
-            out[k, 2] += f1 * at.cos_f[i] + c1 * at.cos_x[i]
-            out[k, 3] += f1 * at.sin_f[i] + c1 * at.sin_x[i]
-            out[k, 4] += r0 * at.cos_x[i]
-            out[k, 5] += r0 * at.sin_x[i]
-            out[k, 6] += r1 * at.cos_x[i]
-            out[k, 7] += r1 * at.sin_x[i]
-        out[k, 8] = sx
-        out[k, 9] = sz
+        # flat unsigned indices need no check of their sign
+        c, back = np.uint64(order[r]), np.uint64(prv * m + j)
+        own = gap[c]
+        x = face[c] * at.cos_f[i] - face[back] * at.cos_f[prv]
+        y = face[c] * at.sin_f[i] - face[back] * at.sin_f[prv]
+        if along is not None:
+            own += along[0][c] - along[1][back]
+            x += along[1][c] * at.cos_x[nxt] - along[0][back] * at.cos_x[prv]
+            y += along[1][c] * at.sin_x[nxt] - along[0][back] * at.sin_x[prv]
+        tilt = own * z[j]
+        vx = by_speed[0][c] - by_speed[0][back]
+        vz = 0.0
+        if j + 1 < m:
+            here, there = across[0][c], across[1][c]
+            own += here + there
+            tilt += here * z[j] + there * z[j + 1]
+            vx += by_speed[1][c]
+            vz += by_speed[2][c]
+        if j > 0:
+            low = c - np.uint64(1)
+            there, here = across[0][low], across[1][low]
+            own -= here + there
+            tilt -= there * z[j - 1] + here * z[j]
+            vx -= by_speed[1][low]
+            vz -= by_speed[2][low]
+        cos, sin, v = at.cos_x[i], at.sin_x[i], rate[c]
+        out[0, r] = -(x + own * cos)
+        out[1, r] = -(y + own * sin)
+        out[2, r] = -(x * z[j] + tilt * cos)
+        out[3, r] = -(y * z[j] + tilt * sin)
+        out[4, r] = -v * cos
+        out[5, r] = -v * sin
+        out[6, r] = -v * cos * z[j]
+        out[7, r] = -v * sin * z[j]
+        out[8, r] = vx
+        out[9, r] = vz
+
+
+@njit(cache=True, fastmath=_FAST)
+def functional_gradients(lam, columns, out):
+    """Gradients ``-lam . dr`` (k, 10) of adjoint functionals lam (k, count), from `motion_columns` (10, count)."""
+    for k in range(lam.shape[0]):
+        own = lam[k]
+        for q in range(columns.shape[0]):
+            column, total = columns[q], 0.0
+            for r in range(own.size):
+                total -= own[r] * column[r]
+            out[k, q] = total
 
 
 @njit(cache=True)

@@ -29,7 +29,6 @@ from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
@@ -288,18 +287,14 @@ class CompressibleFilmSolver(FilmSolver):
         film_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
         return np.where(self.grid.fixed, balance, 0.0)
 
-    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k,
-        count) is overwritten, fields (k, n, m) come back."""
+    def solve_transposed(self, rhs: np.ndarray) -> None:
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
         w = self.work
         solve_exact_transposed(
             self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
             self.law.kernel_table, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs,
         )  # fmt: skip
         self.exact = True
-        fields = np.empty((rhs.shape[0], *self.grid.shape))
-        scatter(rhs, w.order, w.count, fields)
-        return fields
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""

@@ -243,10 +243,14 @@ class FilmSolver:
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
         w = self.work
-        self.closure.adjoint(self.system, w, rhs)
+        self.solve_transposed(rhs)
         fields = np.empty((rhs.shape[0], *self.grid.shape))
         scatter(rhs, w.order, w.count, fields)
         return fields
+
+    def solve_transposed(self, rhs: np.ndarray) -> None:
+        """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
+        self.closure.adjoint(self.system, self.work, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""

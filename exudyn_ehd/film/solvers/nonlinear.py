@@ -52,7 +52,6 @@ import numpy as np
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
@@ -62,7 +61,7 @@ from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
 from exudyn_ehd.film.solvers.liner.film import CLIPPED, FULL
-from exudyn_ehd.film.solvers.liner.gap_response import gap_gradient
+from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.parts import ElementContact, ElementLimiter, ElementOil, LinerParts
 from exudyn_ehd.status import Status
 
@@ -287,45 +286,22 @@ class NonlinearFilmSolver(FilmSolver):
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
 
-    def adjoint(self, rhs: np.ndarray) -> np.ndarray:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution; rhs (k,
-        count) is overwritten, fields (k, n, m) come back."""
+    def solve_transposed(self, rhs: np.ndarray) -> None:
+        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
         w, e = self.work, self.elements
         if not e.exact:
             e.factor()
             e.exact = True
         lower, upper = (dense_band(band, w.count, w.width) for band in e.factored[2:4])
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
-        fields = np.empty((rhs.shape[0], *self.grid.shape))
-        scatter(rhs, w.order, w.count, fields)
-        return fields
 
-    def pose_gradient(
-        self,
-        lam: np.ndarray,
-        cos_x: np.ndarray,
-        sin_x: np.ndarray,
-        cos_f: np.ndarray,
-        sin_f: np.ndarray,
-        gradient: np.ndarray,
-    ) -> None:
-        """`sensitivities` of the adjoint functionals lam (k, n, m), contracted with the pose: gradient (k, 10)."""
-        e = self.elements
+    def motion_columns(self, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
+        """Derivatives (10, count) of the balances at the unknowns to the motion of a rigid journal, as of
+        `exudyn_ehd.film.sensitivity.rigid.motion_columns`."""
+        w, e = self.work, self.elements
         by_gap, by_rate = e.storage_gradients()
-        gap_gradient(
-            lam,
-            e.by.reshape(4, *self.grid.shape),
-            e.flows_by_speed(),
-            e.slope_fields,
-            by_gap,
-            by_rate if self.squeeze else self.nothing,
-            cos_x,
-            sin_x,
-            cos_f,
-            sin_f,
-            self.grid.z,
-            gradient,
-        )
+        by_rate = by_rate if self.squeeze else self.nothing
+        gap_columns(w.order, w.count, e.by, e.flows_by_speed(), e.slope_fields, by_rate, by_gap, at, out)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""

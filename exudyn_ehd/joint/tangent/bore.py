@@ -26,11 +26,10 @@ from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     balance_change,
     gap_stencil,
-    motion_columns,
     shear_fields,
     spread_gradient,
 )
-from exudyn_ehd.film.sensitivity.rigid import integral_weights
+from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
@@ -92,7 +91,7 @@ class Balances:
     ----------
     places : (count,) array
         Flat vertices of the unknowns.
-    motion : (count, 10) array
+    motion : (10, count) array
         To (scaled pose, scaled rates, vx, vz).
     """
 
@@ -101,14 +100,14 @@ class Balances:
         self.clearance = p.bearing.radial_clearance
         self.places = work.order[: work.count]
         self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(film)
-        self.motion = np.empty((work.count, MOTION_SIZE))
+        self.motion = np.empty((MOTION_SIZE, work.count))
         motion_columns(
             self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
         )
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
-        return self.motion.T @ lam[:, : len(self.places)]
+        return self.motion @ lam[:, : len(self.places)]
 
     def stencil(self, by_place: float, by_rate: float) -> tuple[np.ndarray, np.ndarray]:
         """Weights and flat vertices (count, 5) of ``by_place d/d delta + by_rate d/d delta_t``, SI units."""
@@ -144,7 +143,7 @@ class TangentProduct:
         self.film, self.bore = film, bore
         balances = Balances(film)
         self.wrench, self.wrench_place, self.wrench_rate = _wrench_rows(film, bore, balances)
-        self.motion = balances.motion * film.parts.motion_scale
+        self.motion = np.multiply(balances.motion.T, film.parts.motion_scale, order="C")
         self.by_place, self.vertices = balances.stencil(1.0, 0.0)
         # the rate acts on a vertex's own storage alone
         self.by_rate = balances.stencil(0.0, 1.0)[0][:, 0]

@@ -11,7 +11,7 @@ import numpy as np
 
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
-from exudyn_ehd.film.sensitivity.rigid import integral_weights, pose_gradient, wrench_gradient
+from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
 from exudyn_ehd.film.solvers.linear import Sensitivities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
@@ -74,14 +74,12 @@ def film_gradient(film: SolvedFilm, slow_motion: bool, weights: np.ndarray | Non
     rows = adjoint_rows(film)
     if weights is not None:
         rows = weights @ rows
-    lam = s.adjoint(rows)
     gradient = np.zeros((rows.shape[0], MOTION_SIZE))
-    if p.liner is not None and not slow_motion:
-        p.liner.pose_gradient(lam, p.cos_x, p.sin_x, p.cos_f, p.sin_f, gradient)
-    elif s.plain_links and not slow_motion:
-        swept_gradient(film, lam, gradient)
+    if slow_motion or not (s.plain_links or p.liner is not None):
+        field_gradient(film, s.adjoint(rows), gradient, slow_motion)
     else:
-        field_gradient(film, lam, gradient, slow_motion)
+        s.solve_transposed(rows)
+        functional_gradients(rows, balance_gradients(film), gradient)
     return gradient
 
 
@@ -111,14 +109,22 @@ def _following_deflection(film: SolvedFilm, solver: NonlinearFilmSolver, by_rate
     return out
 
 
-def swept_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray) -> None:
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) in one sweep, for films on `FilmSolver`'s own links."""
-    d, slope, by_rate, by_gap = swept_derivatives(film)
-    pose_gradient(lam, d, slope, by_rate, by_gap, film.grid.directions, gradient)
+def balance_gradients(film: SolvedFilm) -> np.ndarray:
+    """Gradients (10, count) of the balances at the unknowns to (scaled pose and rates, vx, vz).
+
+    For films on `FilmSolver`'s own links, and on a liner.
+    """
+    w, at = film.solver.work, film.grid.directions
+    out = np.empty((MOTION_SIZE, w.count))
+    if film.parts.liner is not None:
+        film.parts.liner.motion_columns(at, out)
+    else:
+        motion_columns(w.order, w.count, *swept_derivatives(film), at, out)
+    return out
 
 
 def swept_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `pose_gradient` takes them."""
+    """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `motion_columns` takes them."""
     s = film.solver
     d = s.link_derivatives()
     by_rate, by_gap = s.storage_weights()

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.sensitivity.rigid import columns_of_links
 from exudyn_ehd.film.solvers.balance import part, terms_of
 from exudyn_ehd.film.solvers.liner.elements import gaps_of, slopes_of
 
@@ -225,63 +226,29 @@ def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slop
 
 
 @njit(cache=True, fastmath=_FAST)
-def gap_gradient(lam, by, by_v, slope_fields, gain_r, gain_t, cos_x, sin_x, cos_f, sin_f, z, gradient):
-    """Gradients (k, 10) of adjoint functionals lam (k, n, m) to (scaled pose, scaled rates, vx, vz).
+def _end_gain(by_h, by_d, side, yields, bends, out):
+    """What a link's flow answers to the undeformed gap at one of its ends, b (side 1) or a (-1)."""
+    for c in range(out.size):
+        out[c] = 0.5 * (by_h[c] * yields[c] + side * by_d[c] * bends[c])
 
-    ``by`` (4, n, m) of `link_gradients`; ``by_v`` (3, n, m): of the flows over links in theta to vx,
-    in z to vx and to vz; ``gain_r``, ``gain_t`` (n, m): of the storage to the undeformed gap and rate.
+
+@njit(cache=True, fastmath=_FAST)
+def gap_columns(order, count, by, by_v, slope_fields, gain_t, gain_r, at, out):
+    """Derivatives (10, count) of the balances at the unknowns to (scaled pose, scaled rates, vx, vz).
+
+    ``by`` (4, n m) of `link_gradients`, ``by_v`` (3, n, m) of `speed_gradients`; ``gain_t``, ``gain_r`` (n, m): of the
+    storage to the undeformed rate and gap; ``at``: `Directions`.
     """
-    count, n, m = lam.shape
-    answer = slopes_of(slope_fields)
-    x = np.empty((3, n, m))
-    y = np.zeros((2, n, m))
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            face = by[0, i, j] * answer.link[i, j]
-            x[0, i, j] = face
-            x[1, i, j] = 0.5 * (face * answer.D_r[i, j] - by[1, i, j] * answer.E_r[i, j])
-            x[2, i, j] = 0.5 * (face * answer.D_r[nxt, j] + by[1, i, j] * answer.E_r[nxt, j])
-        for j in range(m - 1):
-            y[0, i, j] = 0.5 * (by[2, i, j] * answer.H_r[i, j] - by[3, i, j] * answer.E_r[i, j])
-            y[1, i, j] = 0.5 * (by[2, i, j] * answer.H_r[i, j + 1] + by[3, i, j] * answer.E_r[i, j + 1])
-    for k in range(count):
-        g = gradient[k]
-        g[:] = 0.0
-        for i in range(n):
-            nxt = i + 1 if i + 1 < n else 0
-            cell0 = cell1 = next0 = next1 = face0 = face1 = rate0 = rate1 = sx = sz = 0.0
-            for j in range(m):
-                own = lam[k, i, j]
-                out = lam[k, nxt, j] - own
-                cell = out * x[1, i, j] - own * gain_r[i, j]
-                other = out * x[2, i, j]
-                face = out * x[0, i, j]
-                rate = own * gain_t[i, j]
-                sx += out * by_v[0, i, j]
-                cell0 += cell
-                cell1 += cell * z[j]
-                next0 += other
-                next1 += other * z[j]
-                face0 += face
-                face1 += face * z[j]
-                rate0 -= rate
-                rate1 -= rate * z[j]
-            for j in range(m - 1):
-                out = lam[k, i, j + 1] - lam[k, i, j]
-                a = out * y[0, i, j]
-                b = out * y[1, i, j]
-                cell0 += a + b
-                cell1 += a * z[j] + b * z[j + 1]
-                sx += out * by_v[1, i, j]
-                sz += out * by_v[2, i, j]
-            g[0] -= cell0 * cos_x[i] + next0 * cos_x[nxt] + face0 * cos_f[i]
-            g[1] -= cell0 * sin_x[i] + next0 * sin_x[nxt] + face0 * sin_f[i]
-            g[2] -= cell1 * cos_x[i] + next1 * cos_x[nxt] + face1 * cos_f[i]
-            g[3] -= cell1 * sin_x[i] + next1 * sin_x[nxt] + face1 * sin_f[i]
-            g[4] -= rate0 * cos_x[i]
-            g[5] -= rate0 * sin_x[i]
-            g[6] -= rate1 * cos_x[i]
-            g[7] -= rate1 * sin_x[i]
-            g[8] += sx
-            g[9] += sz
+    _, n, m = by_v.shape
+    size, answer = n * m, slopes_of(slope_fields.reshape(9, n * m))
+    last, e = size - m, size - 1
+    D, E, H = answer.D_r, answer.E_r, answer.H_r
+    face, one, two, low, high = np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size)
+    _product(by[0], answer.link, face)
+    _end_gain(face, by[1], -1.0, D, E, one)
+    _end_gain(face[:last], by[1, :last], 1.0, D[m:], E[m:], two[:last])
+    _end_gain(face[last:], by[1, last:], 1.0, D[:m], E[:m], two[last:])
+    _end_gain(by[2], by[3], -1.0, H, E, low)
+    _end_gain(by[2, :e], by[3, :e], 1.0, H[1:], E[1:], high[:e])
+    v, storage = by_v.reshape(3, size), (gain_t.reshape(-1), gain_r.reshape(-1))
+    columns_of_links(order, count, m, face, (one, two), (low, high), (v[0], v[1], v[2]), storage, at, out)
