@@ -23,7 +23,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import PROFILE_TYPES, Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.status import InputError, Status, require_number, require_vector
+from exudyn_ehd.status import InputError, Status, require_number, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
@@ -125,10 +125,10 @@ class JournalBearing:
     def __post_init__(self) -> None:
         self._check_sizes()
         for name, types in _OPTIONS.items():
-            _require_type(name, getattr(self, name), types)
+            require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         _check_temperatures(self)
         for profile in self.profiles:
-            _require_type("profile", profile, PROFILE_TYPES)
+            require_type("JournalBearing.profile", profile, *PROFILE_TYPES)
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))
@@ -282,14 +282,6 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
 }
 
 
-def _require_type(argument: str, value: object, types: tuple[type, ...]) -> None:
-    if not isinstance(value, types):
-        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
-        raise InputError(
-            f"JournalBearing.{argument} must be {names}, got {value!r}; options are objects, not strings or classes."
-        )
-
-
 def _check_temperatures(bearing: JournalBearing) -> None:
     """Refuse temperatures at which the lubricant's law gives no viscosity, as of degrees Celsius taken for kelvin."""
     law = bearing.lubricant.temperature_law
@@ -315,7 +307,8 @@ def _check_bush(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.mesh import HollowCylinder
 
-    _require_type("bush", bearing.bush, (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None)))
+    kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
+    require_type("JournalBearing.bush", bearing.bush, *kinds)
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
             "JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got "

@@ -123,6 +123,15 @@ def require_integer(where: str, value: int, *, at_least: int, hint: str = "") ->
     return int(value)
 
 
+def require_type(
+    where: str, value: object, *types: type, hint: str = "options are objects, not strings or classes."
+) -> None:
+    """Raise `InputError` for what is none of these types; ``type(None)`` stands for None."""
+    if not isinstance(value, types):
+        names = " or ".join("None" if t is type(None) else f"{t.__name__}(...)" for t in types)
+        raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
+
+
 def require_bool(where: str, value: bool) -> bool:
     """Return ``value`` as a bool; 0 and 1 count as such."""
     if not isinstance(value, (bool, np.bool_, int, np.integer)) or value not in (0, 1):

@@ -27,7 +27,7 @@ from exudyn_ehd.coupling.run.restart import JointState, check_owner, digest
 from exudyn_ehd.coupling.run.solve import joints_of, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.status import InputError, require_bool, require_vector
+from exudyn_ehd.status import InputError, require_bool, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -328,10 +328,8 @@ def CreateLubricatedJoint(
     require_system(_WHERE, mbs)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):
         require_bool(f"{_WHERE}.{argument}", value)
-    if not isinstance(axial, (Free, Held)):
-        raise InputError(f"{_WHERE}.axial must be Free() or Held(), got {axial!r}.")
-    if not isinstance(stepControl, (StepControl, type(None))):
-        raise InputError(f"{_WHERE}.stepControl must be StepControl(...) or None, got {stepControl!r}.")
+    require_type(f"{_WHERE}.axial", axial, Free, Held)
+    require_type(f"{_WHERE}.stepControl", stepControl, StepControl, type(None))
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:

@@ -109,7 +109,8 @@ def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colou
     order = list(view.axes)
     positions = (mesh.nodes + view.magnification * frame.displacements)[:, order]
     polygons, values = _facets(positions[mesh.boundary], frame.values[mesh.boundary], view.facets)
-    outlines = _outlines(positions[mesh.boundary])
+    # closed polylines through the corners and mid-edge nodes
+    outlines = positions[mesh.boundary][:, [0, 4, 1, 5, 2, 6, 3, 7, 0]]
     elevation, azimuth = np.radians([view.elevation, view.azimuth])
     camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
     sign = np.linalg.det(np.eye(3)[order])
@@ -140,11 +141,6 @@ def _facets(corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndar
         [i * (count + 1) + j, (i + 1) * (count + 1) + j, (i + 1) * (count + 1) + j + 1, i * (count + 1) + j + 1]
     )
     return points[:, quad.T].reshape(-1, 4, 3), fields[:, quad.T].mean(axis=2).ravel()
-
-
-def _outlines(corners: np.ndarray) -> np.ndarray:
-    """Closed polylines (f, 9, 3) through the corners and mid-edge nodes of 8-node faces."""
-    return corners[:, [0, 4, 1, 5, 2, 6, 3, 7, 0]]
 
 
 def _normals(quads: np.ndarray) -> np.ndarray:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from exudyn_ehd.solid.hex20 import IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
-from exudyn_ehd.status import InputError, require_number, require_numbers
+from exudyn_ehd.status import InputError, require_number, require_numbers, require_type
 
 # Of the error of a modal bush; below, the waves of its search do not suffice.
 SMALLEST_TOLERANCE, LARGEST_TOLERANCE = 2e-3, 0.2
@@ -48,8 +48,7 @@ class _Solid:
                 f"{kind}.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
                 "own mesh with mesh_from_fem or mesh_from_arrays."
             )
-        if not isinstance(self.material, SaintVenantKirchhoff):
-            raise InputError(f"{kind}.material must be a SaintVenantKirchhoff(...), got {self.material!r}.")
+        require_type(f"{kind}.material", self.material, SaintVenantKirchhoff)
         if not isinstance(self.quadrature, Quadrature):
             raise InputError(f"{kind}.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
         for field in fields(self):
@@ -83,8 +82,7 @@ class ANCFBush(_Solid):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if not isinstance(self.damping, Rayleigh | None):
-            raise InputError(f"ANCFBush.damping must be a Rayleigh(...) or None, got {self.damping!r}.")
+        require_type("ANCFBush.damping", self.damping, Rayleigh, type(None))
 
     def solid(self, mesh: BushMesh) -> TotalLagrange:
         """Return the solid on a mesh, which may have been moved to its place in the model."""

@@ -123,14 +123,12 @@ def shape_functions(points: np.ndarray) -> np.ndarray:
         Corners: N = 1/8 (1 + x)(1 + y)(1 + z)(x + y + z - 2) with x = xi xi_a and so on; mid-edge nodes:
         N = 1/4 (1 - xi^2)(1 + y)(1 + z) for an edge along xi, and its permutations.
     """
-    value, _ = _shapes(np.atleast_2d(points))
-    return value
+    return _shapes(np.atleast_2d(points))[0]
 
 
 def shape_gradients(points: np.ndarray) -> np.ndarray:
     """Return dN_a / d(xi, eta, zeta), shape (n, 20, 3), at natural coordinates of shape (n, 3)."""
-    _, gradient = _shapes(np.atleast_2d(points))
-    return gradient
+    return _shapes(np.atleast_2d(points))[1]
 
 
 def _shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -167,22 +167,21 @@ def beam_side(
     return BeamSide(ends, share, point, rotation)
 
 
+def body_frame(mbs: exu.MainSystem, body: Index, local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Position (3,) and rotation (3, 3) of a body in the reference state at local coordinates (3,)."""
+    kinds, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
+    place = mbs.GetObjectOutputBody(body, kinds.Position, local.tolist(), reference)
+    turn = mbs.GetObjectOutputBody(body, kinds.RotationMatrix, local.tolist(), reference)
+    return np.array(place), np.array(turn).reshape(3, 3)
+
+
 def marker_on_body(
     mbs: exu.MainSystem, where: str, body: Index, nodes: tuple[Index, ...], point: np.ndarray, rotation: np.ndarray
 ) -> MarkerSide:
     """Side through a new marker on an ANCF beam element or a RotationalMass1D, at a point of the reference state."""
-    output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
-
-    def at(local: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        value = [
-            mbs.GetObjectOutputBody(body, kind, local.tolist(), reference)
-            for kind in (output.Position, output.RotationMatrix)
-        ]
-        return np.array(value[0]), np.array(value[1]).reshape(3, 3)
-
     local = np.zeros(3)
     for _ in range(50):
-        place, matrix = at(local)
+        place, matrix = body_frame(mbs, body, local)
         step = matrix.T @ (point - place)
         local += step
         if np.abs(step).max() < 1e-15:
@@ -192,7 +191,7 @@ def marker_on_body(
         half = 0.5 * float(data["length"])
         local[0] = _within(where, local[0] + half, 0.0, 2.0 * half) - half
     marker = mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=local.tolist()))
-    return MarkerSide(marker, list(nodes), at(local)[1].T @ rotation)
+    return MarkerSide(marker, list(nodes), body_frame(mbs, body, local)[1].T @ rotation)
 
 
 def marker_on_node(

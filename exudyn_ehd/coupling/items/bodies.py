@@ -77,13 +77,10 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
     if kind in EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
     if kind in ("ObjectANCFBeam", "RotationalMass1D"):
-        output, reference = exu.OutputVariableType, exu.ConfigurationType.Reference
-        place = [
-            mbs.GetObjectOutputBody(body, o, [0.0] * 3, reference) for o in (output.Position, output.RotationMatrix)
-        ]
+        position, rotation = beams.body_frame(mbs, body, np.zeros(3))
         return Item(
-            position=np.array(place[0]),
-            rotation=np.array(place[1]).reshape(3, 3),
+            position=position,
+            rotation=rotation,
             is_marker=False,
             kind=None,
             nodes=nodes,

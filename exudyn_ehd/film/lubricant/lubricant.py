@@ -9,12 +9,18 @@ from exudyn_ehd.film.lubricant.density import DowsonHigginson
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_type
 
 PRESSURE_LAWS = (BarusPressure, RoelandsPressure)
 TEMPERATURE_LAWS = (ReynoldsTemperature, VogelTemperature, WaltherTemperature)
 SHEAR_LAWS = (CarreauShear,)
 DENSITY_LAWS = (DowsonHigginson,)
+LAWS = {
+    "pressure_law": PRESSURE_LAWS,
+    "temperature_law": TEMPERATURE_LAWS,
+    "shear_law": SHEAR_LAWS,
+    "density_law": DENSITY_LAWS,
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,10 +74,9 @@ class Lubricant:
             "Lubricant.temperature", self.temperature, "K", above=0.0, hint="0 degrees Celsius are 273.15 K."
         )
         require_number("Lubricant.specific_heat", self.specific_heat, "J/(kg K)", above=0.0)
-        _require_law("pressure_law", self.pressure_law, PRESSURE_LAWS)
-        _require_law("temperature_law", self.temperature_law, TEMPERATURE_LAWS)
-        _require_law("shear_law", self.shear_law, SHEAR_LAWS)
-        _require_law("density_law", self.density_law, DENSITY_LAWS)
+        for name, laws in LAWS.items():
+            hint = "laws are objects, not strings or classes."
+            require_type(f"Lubricant.{name}", getattr(self, name), *laws, type(None), hint=hint)
         if self.viscosity is None:
             object.__setattr__(self, "viscosity", self._viscosity_from_law())
         require_number("Lubricant.viscosity", self.viscosity, "Pa s", above=0.0)
@@ -101,11 +106,3 @@ class Lubricant:
         law = self.temperature_law
         ratio = law.viscosity(temperature, self.density) / law.viscosity(self.temperature, self.density)
         return dataclasses.replace(self, temperature=float(temperature), viscosity=float(self.viscosity * ratio))
-
-
-def _require_law(name: str, value: object, types: tuple[type, ...]) -> None:
-    if value is not None and not isinstance(value, types):
-        names = " or ".join(f"{t.__name__}(...)" for t in types)
-        raise InputError(
-            f"Lubricant.{name} must be {names} or None, got {value!r}; laws are objects, not strings or classes."
-        )

@@ -122,11 +122,10 @@ class _SqueezeFilm:
         self.grid = bearing_grid(1.0, length_to_radius, film.n_theta, film.n_z, stretch=film.stretch)
         self.solver = FilmSolver(self.grid, closure)
         self.scale = 6.0 / length_to_radius
-        self.trig = [np.cos(self.grid.x), np.sin(self.grid.x), np.cos(self.grid.x_face), np.sin(self.grid.x_face)]
 
     def force(self, eps: float, alpha: float, turn: float = 0.0) -> np.ndarray:
         """f (2,) along e and across, for e at the angle ``turn`` of the grid and V at ``turn + alpha``."""
-        s, z, (cx, sx, cf, sf) = self.solver, self.grid.z, self.trig
+        s, (cx, sx, cf, sf, z) = self.solver, self.grid.directions
         pose = np.array([eps * math.cos(turn), eps * math.sin(turn), 0.0, 0.0])
         rate = np.array([math.cos(turn + alpha), math.sin(turn + alpha), 0.0, 0.0])
         rigid_gap(pose, cx, sx, z, 1.0, s.H)

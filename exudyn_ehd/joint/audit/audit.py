@@ -18,7 +18,7 @@ from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_st
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.status import FilmError, InputError, Status
+from exudyn_ehd.status import FilmError, Status, require_type
 
 __all__ = ["Audit", "Finding", "audit_record", "audit_states"]
 
@@ -112,8 +112,7 @@ def audit_states(
     FilmError
         If there is no film at any state.
     """
-    if liner is not None and not isinstance(liner, ElasticLiner):
-        raise InputError(f"audit: liner must be ElasticLiner(...) or None, got {liner!r}.")
+    require_type("audit: liner", liner, ElasticLiner, type(None))
     samples = take_samples(model, states, record)
     if not samples:
         raise FilmError(

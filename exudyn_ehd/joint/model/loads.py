@@ -97,7 +97,7 @@ def film_loads(
     R, force = g.reference_length, scales.force
     ends, (lower, upper) = 0.0, scales.ends.tolist()
     if lower != 0.0 or upper != 0.0:
-        ends = upper * _ring_integral(s.H[:, -1]) - lower * _ring_integral(s.H[:, 0])
+        ends = float(upper * s.H[:, -1].sum() - lower * s.H[:, 0].sum()) * (2.0 * math.pi / len(s.H))
     wrench = np.array(
         [
             -force * sc,
@@ -148,8 +148,3 @@ def _add_contacts(
             friction_out,
             wrench,
         )
-
-
-def _ring_integral(row: np.ndarray) -> float:
-    """Integral over the circumference of a row of vertex values."""
-    return float(row.sum() * (2.0 * math.pi / row.size))

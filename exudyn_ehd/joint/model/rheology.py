@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import numpy as np
-
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
@@ -24,7 +22,7 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
         For a thermal effect whose lubricant has no temperature law.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
-    effects = Effects(pressure_law=_transform_law(oil))
+    effects = Effects(pressure_law=transform_law(oil))
     if isinstance(effects.pressure_law, CompressibleLaw):
         effects = replace(effects, density=effects.pressure_law)
     if oil.shear_law is not None:
@@ -48,46 +46,7 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     )
 
 
-def compressible_law(lubricant: Lubricant) -> CompressibleLaw | None:
-    """The lubricant's density law with its viscosity's pressure law; None for an incompressible one."""
-    if lubricant.density_law is None:
-        return None
+def transform_law(lubricant: Lubricant) -> PressureLaw | None:
+    """The law by which pressure becomes the solver's unknown, a `CompressibleLaw` with a density law; None: none."""
     viscosity = None if lubricant.pressure_law is None else lubricant.pressure_law.bound(lubricant.viscosity)
-    return lubricant.density_law.bound(viscosity)
-
-
-def _transform_law(lubricant: Lubricant) -> PressureLaw | None:
-    """The law of pressure, which for a compressible oil holds its density too."""
-    density = compressible_law(lubricant)
-    if density is not None or lubricant.pressure_law is None:
-        return density
-    return lubricant.pressure_law.bound(lubricant.viscosity)
-
-
-def known_pressures(lubricant: Lubricant, boundary: float | np.ndarray, cavity: float) -> tuple[np.ndarray, float]:
-    """Prescribed pressures and cavity pressure in the transformed variable, Pa.
-
-    Raises
-    ------
-    InputError
-        For a shear law: a film of any gap has no single sliding speed.
-    """
-    if lubricant.shear_law is not None:
-        raise InputError(
-            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
-            "the sliding speed of a JournalBearing (steady)."
-        )
-    law = _transform_law(lubricant)
-    if law is None:
-        return np.asarray(boundary), cavity
-    return law.transform(np.asarray(boundary, dtype=float)), float(law.transform(np.array([cavity]))[0])
-
-
-def true_pressure(lubricant: Lubricant, q: np.ndarray, scale: float) -> np.ndarray | None:
-    """Pressure (n, m) from the transformed one, both divided by ``scale`` in Pa; None if there is none."""
-    law = _transform_law(lubricant)
-    if law is None:
-        return q
-    p, ratio, slope = np.empty_like(q), np.empty_like(q), np.empty_like(q)
-    found = law.inverse(q * scale, p, ratio, slope)
-    return p / scale if found else None
+    return viscosity if lubricant.density_law is None else lubricant.density_law.bound(viscosity)

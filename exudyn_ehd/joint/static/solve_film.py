@@ -8,11 +8,13 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
-from exudyn_ehd.joint.model.rheology import compressible_law, known_pressures, true_pressure
+from exudyn_ehd.joint.model.rheology import transform_law
+from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
 
 
@@ -103,6 +105,11 @@ def solve_film(
     gap = np.asarray(gap, dtype=float)
     closure = SwiftStieber() if cavitation is None else cavitation
     _check_film(grid, gap, gap_rate, closure, history, step)
+    if lubricant.shear_law is not None:
+        raise InputError(
+            f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
+            "the sliding speed of a JournalBearing (steady)."
+        )
     speed = require_vector("solve_film: surface_speed", surface_speed, 2, "m/s")
     c, R = float(np.exp(np.mean(np.log(gap)))), grid.reference_length
     scale = 12.0 * lubricant.viscosity * R**2 / c**2
@@ -111,40 +118,43 @@ def solve_film(
     if history is not None:
         mass = np.asarray(history) / c
         rate = (H - mass) / step
-    solver = _any_gap_solver(grid, closure, lubricant, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
+    law = transform_law(lubricant)
+    solver = _any_gap_solver(grid, closure, law, rate is not None, SteppedGap(H) if stepped_gap else None, scale)
     solver.H[:] = H
     solver.HF[:] = 0.5 * (H + np.roll(H, -1, axis=0))
     if rate is not None:
         solver.H_t[:] = rate
-    boundary, cavity = known_pressures(lubricant, boundary, closure.cavity_pressure)
+    known = [np.asarray(p, dtype=float) for p in (boundary, closure.cavity_pressure)]
+    boundary, cavity = known if law is None else (law.transform(p) for p in known)
     solver.pressure[:] = np.where(grid.fixed, boundary, 0.0) / scale
     solver.coarse = None
-    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), cavity / scale, mass, step)
-    pressure = true_pressure(lubricant, solver.pressure, scale) if status is Status.CONVERGED else None
-    if pressure is None and status is Status.CONVERGED:
-        status = Status.NO_PRESSURE
-    if status is not Status.CONVERGED or pressure is None:
+    status, iterations = solver.solve(speed[0] / (2 * R), speed[1] / (2 * R), float(cavity) / scale, mass, step)
+    pressure = solver.pressure * scale
+    if law is not None and status is Status.CONVERGED:
+        ratio, slope = np.empty_like(pressure), np.empty_like(pressure)
+        if not law.inverse(pressure.copy(), pressure, ratio, slope):
+            status = Status.NO_PRESSURE
+    if status is not Status.CONVERGED:
         raise FilmError(f"solve_film: {status.name}: {status.advice}")
     fill = solver.fill.copy() if closure.conserves_mass else np.ones(grid.shape)
     return FilmResult(
         status=status,
         iterations=iterations,
-        pressure=pressure * scale,
+        pressure=pressure,
         gap=gap,
         unbroken=solver.work.active.copy(),
         inflow=solver.inflow() * c * R**2,
-        load=float(np.sum(pressure * grid.weight)) * scale * R**2,
+        load=float(np.sum(pressure * grid.weight)) * R**2,
         fill=fill,
         content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
     )
 
 
 def _any_gap_solver(
-    grid: FilmGrid, closure: Closure, lubricant: Lubricant, squeeze: bool, steps: SteppedGap | None, scale: float
+    grid: FilmGrid, closure: Closure, law: PressureLaw | None, squeeze: bool, steps: SteppedGap | None, scale: float
 ) -> FilmSolver:
     effects = () if steps is None else (steps,)
-    law = compressible_law(lubricant)
-    if law is None:
+    if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
     solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
