@@ -68,11 +68,6 @@ class Cell:
     errors: dict[str, float]
     seconds: float
 
-    @property
-    def point(self) -> tuple[float, float, float, float]:
-        """In the order of `AXES`."""
-        return self.length_to_diameter, self.tilt_ratio, self.elasticity, self.eccentricity_ratio
-
 
 @functools.cache
 def read_cells(path: pathlib.Path = DATA / FILE) -> tuple[Cell, ...]:

@@ -16,6 +16,7 @@ from scipy.spatial.transform import Rotation
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
@@ -151,8 +152,7 @@ class FloatingBoreSide:
 def _rate_of_rotation(angle: np.ndarray) -> np.ndarray:
     """T (3, 3) with angular velocity T d(angle)/dt of exp(angle), in the frame before the rotation."""
     size = float(np.linalg.norm(angle))
-    x, y, z = angle
-    S = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    S = skew(angle)
     if size < 1e-4:
         # to 1e-12: the next terms are of fourth order
         return np.eye(3) + S * (0.5 - size**2 / 24.0) + S @ S * (1.0 / 6.0 - size**2 / 120.0)

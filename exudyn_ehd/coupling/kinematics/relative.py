@@ -96,17 +96,16 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
                 dd_t = transposed_times(a_h, -vq - cross(wq, r) + cross(omega_h, jp) - cross(jr, u))
                 dspin = transposed_times(a_h, -wq - cross(jr, spin_g))
                 da = transposed_times(a_h, -cross(jr, axis))
-                dd_t_rate = transposed_times(a_h, -jp - cross(jr, r))
                 dspin_rate = transposed_times(a_h, -jr)
             else:
                 dd = transposed_times(a_h, jp)
                 dd_t = transposed_times(a_h, vq - cross(omega_h, jp))
                 dspin = transposed_times(a_h, wq)
                 da = transposed_times(a_h, cross(jr, axis))
-                dd_t_rate = transposed_times(a_h, jp)
                 dspin_rate = transposed_times(a_h, jr)
             _motion_variation(d, d_t, spin, a, a_t, dd, dd_t, dspin, da, motion_q_out[:, start + k])
-            _motion_variation(d, d_t, spin, a, a_t, zero, dd_t_rate, dspin_rate, zero, motion_qt_out[:, start + k])
+            # the velocity changes with the rates as the place does with the coordinates
+            _motion_variation(d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, motion_qt_out[:, start + k])
 
 
 @njit(cache=True)

@@ -161,8 +161,7 @@ class TreeSide(MarkerSide):
     def bind(self, mbs: exu.MainSystem) -> None:
         """Find the number of coordinates."""
         super().bind(mbs)
-        before = np.tri(self.size, dtype=bool)  # [k, j]: j <= k
-        self._turning, self._leading = before, ~before
+        self._leading = ~np.tri(self.size, dtype=bool)  # [k, j]: j > k
 
     def _jacobian_change(self, mbs: exu.MainSystem, q: np.ndarray) -> np.ndarray:
         Jp, Jr = self.jac[0].T, self.jac[1].T

@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
-from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.joint.static.steady_temperature import settled_history
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 _INITIAL = exu.ConfigurationType.Initial
@@ -91,7 +91,7 @@ def _memory(model: JointModel, motion: np.ndarray, result: EquilibriumResult) ->
     bore = result.film.bore_coordinates
     whole = motion if bore is None else np.concatenate((motion, bore, np.zeros_like(bore)))
     first = model.initial_history(whole)
-    settled = settle(model, whole)
+    settled = settled_history(model, whole)
     evaluation = model.evaluate(whole, settled)
     if first is None or evaluation.status is not Status.CONVERGED:
         return first

@@ -23,24 +23,6 @@ _0, _1, _2, _3 = (_unsigned(k) for k in range(4))
 
 
 @njit(cache=True)
-def add_flux(a, b, out_a, out_b, lower, upper):
-    """Add a flux a -> b to the balances of its ends: ``out_a``, ``out_b`` are its derivatives.
-
-    A, b are unknowns or -1.
-    """
-    if a >= 0:
-        upper[a, 0] += out_a
-        if b > a:
-            upper[a, b - a] += out_b
-            lower[a, b - a] -= out_a
-        elif b >= 0:
-            lower[b, a - b] += out_b
-            upper[b, a - b] -= out_a
-    if b >= 0:
-        upper[b, 0] -= out_b
-
-
-@njit(cache=True)
 def factor_lu(lower, upper, count, width, inv_diag_out):
     """Factor in place; returns False if a pivot vanishes."""
     if width > WIDEST_BY_PANELS:

@@ -41,7 +41,9 @@ class RoughFlow(FluxEffect):
         """Multiply conductances and carriers by their factors at the links' average gaps (n, m), with derivatives."""
         multiply_by_table(gap_x, 1.0 / self.sigma, self.phi_x, 0.0, 1.0, flux.gx, flux.gx_h)
         multiply_by_table(gap_z, 1.0 / self.sigma, self.phi_z, 0.0, 1.0, flux.gz, flux.gz_h)
-        self._carry(flux, gap_x, gap_z)
+        if self.shear != 0.0:
+            multiply_by_table(gap_x, 1.0 / self.sigma, self.psi_x, 1.0, self.shear, flux.cx, flux.cx_h)
+            multiply_by_table(gap_z, 1.0 / self.sigma, self.psi_z, 1.0, self.shear, flux.cz, flux.cz_h)
 
     def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
         """Conductances with their factors in one pass."""
@@ -64,11 +66,6 @@ class RoughFlow(FluxEffect):
             flux.cz,
             flux.cz_h,
         )
-
-    def _carry(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray) -> None:
-        if self.shear != 0.0:
-            multiply_by_table(gap_x, 1.0 / self.sigma, self.psi_x, 1.0, self.shear, flux.cx, flux.cx_h)
-            multiply_by_table(gap_z, 1.0 / self.sigma, self.psi_z, 1.0, self.shear, flux.cz, flux.cz_h)
 
 
 class RoughShear:

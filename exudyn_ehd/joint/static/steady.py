@@ -19,7 +19,7 @@ from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.joint.static.steady_temperature import settled_history
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
@@ -182,7 +182,7 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History |
 
     None if nothing remembers.
     """
-    history = settle(model, motion)
+    history = settled_history(model, motion)
     if not model.remembers_mass or not np.any(motion[4:8]):
         return history
     at_rest = motion.copy()

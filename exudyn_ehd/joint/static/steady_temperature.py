@@ -24,7 +24,7 @@ ACCELERATED = 5.0
 PATIENCE = 8
 
 
-def settle(model: BearingModel, motion: np.ndarray) -> History | None:
+def settled_history(model: BearingModel, motion: np.ndarray) -> History | None:
     """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
     One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant

@@ -174,7 +174,12 @@ def _measure(
 def write_cells(path: pathlib.Path, cells: Iterable[Cell], note: str) -> None:
     """CSV with one row per cell and setting; three digits."""
     rows = [
-        [c.kind, *c.point, c.setting, *(number_text(x, 3) for x in (c.seconds, *(c.errors[n] for n in NAMES)))]
+        [
+            c.kind,
+            *(getattr(c, axis) for axis in AXES),
+            c.setting,
+            *(number_text(x, 3) for x in (c.seconds, *(c.errors[n] for n in NAMES))),
+        ]
         for c in cells
     ]
     write_rows(path, [HEAD, *rows], notes=[note], line_end="\n")

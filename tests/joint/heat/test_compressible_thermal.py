@@ -14,7 +14,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.joint.static.steady_temperature import settled_history
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, OMEGA, STEP = 320.0, 300.0, 1e-4
@@ -77,7 +77,7 @@ def test_heat_in_is_carried_out_conducted_and_stored(thermal, cavitation, pressu
     history, worst = run(model, steps=20)
     assert worst < 1e-8
     assert np.all(np.isfinite(history.temperature))
-    settled = settle(model, REST)
+    settled = settled_history(model, REST)
     balance = model.effects.thermal.balance(model.evaluate(REST, settled).film, settled.temperature)
     assert balance["stored"] == 0.0
     assert defect(balance) < 1e-8
@@ -183,10 +183,10 @@ def test_field_heat_is_the_dissipated_power():
 def test_vanishing_compressibility_recovers_the_incompressible_film(thermal, cavitation):
     """Temperatures of a transient and of the settled film, with the first order in the coefficient."""
     plain, errors = make(thermal, None, cavitation=cavitation), []
-    expected = run(plain)[0].temperature, settle(plain, REST).temperature
+    expected = run(plain)[0].temperature, settled_history(plain, REST).temperature
     for a in (1e-11, 1e-12):
         model = make(thermal, ehd.DowsonHigginson(coefficient=a), cavitation=cavitation)
-        found = run(model)[0].temperature, settle(model, REST).temperature
+        found = run(model)[0].temperature, settled_history(model, REST).temperature
         errors.append([np.abs(np.asarray(f) - e).max() for f, e in zip(found, expected, strict=True)])
     errors = np.array(errors)
     assert np.all(errors[0] < 1e-2)  # K

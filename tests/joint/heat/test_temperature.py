@@ -13,7 +13,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.joint.static.steady_temperature import settled_history
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, MU, BETA, OMEGA = 320.0, 0.02, 0.03, 300.0
@@ -91,7 +91,7 @@ def test_adiabatic_petroff_heating_along_the_bearing():
     for n_z in (40, 80):
         film = ehd.FiniteLength(n_theta=16, n_z=n_z, stretch=0.0)
         model = build_model(bearing(ehd.FilmEnergy(supply_temperature=SUPPLY), film=film))
-        T = settle(model, motion(axial=w)).temperature
+        T = settled_history(model, motion(axial=w)).temperature
         heat = MU * ((R * OMEGA) ** 2 + w**2) / C
         z = model.grid.z * R + 0.5 * L
         exact = SUPPLY + np.log(1.0 + BETA * heat * z / (CAPACITY * q)) / BETA
@@ -203,7 +203,7 @@ def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
     if ends == (0.0, 0.0) and cavitation.conserves_mass:
         return
     at = motion(0.6)
-    settled = settle(model, at)
+    settled = settled_history(model, at)
     balance = model.effects.thermal.balance(model.evaluate(at, settled).film, settled.temperature)
     assert balance["stored"] == 0.0
     assert defect(balance) < BALANCE
@@ -215,7 +215,7 @@ def test_steady_temperature_is_where_the_transient_ends(cavitation):
     b = bearing(thermal, cavitation=cavitation, end_pressures=(1e5, 4e5), film=ehd.FiniteLength(n_theta=32, n_z=6))
     model = build_model(b)
     at = motion(0.5)
-    settled = settle(model, at).temperature
+    settled = settled_history(model, at).temperature
     history, _ = run(model, at, 2e-3, 600)
     np.testing.assert_allclose(
         history.temperature, settled, atol=1e-6

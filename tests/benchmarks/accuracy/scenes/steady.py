@@ -18,7 +18,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
-from exudyn_ehd.joint.static.steady_temperature import settle
+from exudyn_ehd.joint.static.steady_temperature import settled_history
 from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
 from tests.benchmarks.accuracy.scenes.setting import Outcome, QuantityOfInterest, Setting
 
@@ -107,7 +107,7 @@ def _evaluate(model: Any, motion: np.ndarray) -> Any:
     """Steady evaluation; a heated film and a flexible bore settle."""
     if isinstance(model, ImpedanceModel):
         return model.evaluate(motion)
-    return model.evaluate_steady(motion, settle(model, motion))
+    return model.evaluate_steady(motion, settled_history(model, motion))
 
 
 def _tangent(model: Any, evaluation: Any) -> np.ndarray:
