@@ -32,7 +32,7 @@ from exudyn_ehd.joint.solved_film import (
     OilFields,
     SolvedFilm,
 )
-from exudyn_ehd.joint.tangent.bore import elastic_tangent
+from exudyn_ehd.joint.tangent.bore import TangentProduct, elastic_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
 from exudyn_ehd.status import Status
 
@@ -81,6 +81,10 @@ class ElasticEvaluation(Evaluation):
     def steady_tangent(self) -> np.ndarray:
         """d wrench / d motion (6, 10) with the bore following slowly, after `ElasticBearingModel.evaluate_steady`."""
         return condensed_tangent(self.tangent(), self.model.elasticity, self.bore.coordinates)
+
+    def tangent_product(self) -> TangentProduct:
+        """The tangent as an operator; there must be a film."""
+        return TangentProduct(self._found(), self.model.bore)
 
     def nodal_forces(self, forces: BoreForces) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.

@@ -7,7 +7,6 @@ import pytest
 from bore_states import BUSHES, OPTIONS, C, make_bearing, random_motion
 
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.joint.tangent.bore import TangentProduct
 from exudyn_ehd.status import Status
 
 
@@ -27,7 +26,7 @@ def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
     tangent = evaluation.tangent()
     assert not tangent[6:].any() and not tangent[:2].any() and not tangent[:, 10 + k :].any()
     assert tangent[5, 8] < 0.0
-    product = TangentProduct(evaluation.film, evaluation.model.bore)
+    product = evaluation.tangent_product()
     assert not product.bore_load(np.ones(10), np.ones(k), np.ones(k)).any()
 
 
@@ -47,7 +46,7 @@ def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
     assert np.array_equal(combined[:, :10], tangent[:, :10])
     both = 2.0 * tangent[:, 10 : 10 + k] - 0.03 * tangent[:, 10 + k :]
     assert abs(combined[:, 10:] - both).max() < 1e-12 * abs(both).max()
-    product = TangentProduct(evaluation.film, evaluation.model.bore)
+    product = evaluation.tangent_product()
     change = np.random.default_rng(4).normal(size=tangent.shape[1])
     change[:10] *= [C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0]
     change[10 : 10 + k] *= C
