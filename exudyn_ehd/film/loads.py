@@ -151,16 +151,28 @@ def couette_integral_ratio(H, weight, ratio, share, whole):
 
 
 @njit(cache=True, error_model="numpy")
-def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, rhs_out):
+def shear_adjoint_rhs(order, count, weight, H, active, by_pressure, by_fill, by_gap, rhs_out):
     """Weights of ``sum weight share ratio / H`` at the unknowns, pressures where ``active``, else fills (count,).
 
-    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio.
+    ``by_pressure`` and ``by_fill`` (n, m) are the derivatives of share times ratio. ``by_gap``: the ratio, its
+    derivative to H and that of H to the pressure, of a gap that follows; else None.
     """
     w, h, known = weight.reshape(-1), H.reshape(-1), active.reshape(-1)
     p, f = by_pressure.reshape(-1), by_fill.reshape(-1)
     for r in range(count):
         at = order[r]
         rhs_out[r] = w[at] / h[at] * (p[at] if known[at] else f[at])
+    if by_gap is not None:
+        ratio, ratio_h, H_P = by_gap
+        _add_gap_answer(order, count, w, h, known, ratio.reshape(-1), ratio_h.reshape(-1), H_P.reshape(-1), rhs_out)
+
+
+@njit(cache=True, error_model="numpy")
+def _add_gap_answer(order, count, weight, H, known, ratio, ratio_h, H_P, rhs_out):
+    for r in range(count):
+        at = order[r]
+        if known[at]:
+            rhs_out[r] += weight[at] / H[at] * (ratio_h[at] - ratio[at] / H[at]) * H_P[at]
 
 
 @njit(cache=True)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
+from numba.extending import register_jitable
 
 from exudyn_ehd.film.banded.workspace import PAD
 
@@ -16,7 +17,8 @@ _unsigned: Any = np.uint64
 _0, _1 = _unsigned(0), _unsigned(1)
 
 
-@njit(cache=True)
+# slices alone, which Python does faster than the way into a compiled kernel takes
+@register_jitable
 def dense_band(buffer, count, width):
     """The part of a contiguous buffer that holds a band, row after row."""
     stride = width + 1 + PAD

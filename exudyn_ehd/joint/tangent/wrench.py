@@ -221,14 +221,11 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     """
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
     ratio = s.ones if oil.ratio is None else oil.ratio
-    ratio_q = s.nothing if oil.ratio_q is None else oil.ratio_q
-    by_pressure = ratio_q
+    by_pressure, by_gap = s.nothing if oil.ratio_q is None else oil.ratio_q, None
     if p.liner is not None:
-        # and by the gap that the pressure leaves
-        ratio_h = s.nothing if oil.ratio_h is None else oil.ratio_h
-        by_pressure = ratio_q + (ratio_h - ratio / s.H) * p.liner.gap_slopes.H_P
+        by_gap = ratio, s.nothing if oil.ratio_h is None else oil.ratio_h, p.liner.gap_slopes.H_P
     by_fill = ratio if s.closure.conserves_mass else s.nothing
-    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, row)
+    shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
 
 
 def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:

@@ -273,16 +273,14 @@ class LinerFilm:
 
     def storage_gradients(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of the storage to the undeformed gap and rate."""
-        a, area = self.answer, self.film.area
+        a, content = self.answer, self.film.area
         if self.rho is not None:
-            area = area * self.rho
-        if not self.fills:
-            return area * a.rate_r, area * a.rate_t
-        content = area * self.u.fill
-        by_gap = content * (a.rate_r * self.rates.own)
-        if self.rates.mass > 0.0 and not self.film.instant:
-            by_gap = by_gap + content * a.H_r * self.rates.mass
-        return by_gap, content * (a.rate_t * self.rates.own)
+            content = content * self.rho
+        if self.fills:
+            content = content * self.u.fill
+        if self.rates.own == 0.0:
+            return content * a.H_r * self.rates.mass, self.film.nothing
+        return content * a.rate_r, content * a.rate_t
 
     def flows_by_speed(self) -> np.ndarray:
         """Derivatives (3, n, m) of the links' flows, as of `speed_gradients`."""
