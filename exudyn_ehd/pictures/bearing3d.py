@@ -64,8 +64,8 @@ def plot_bearing(
     own = ax is None
     with styled():
         figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
-        quads, values = _quads(hill), _quads(unit(p)[..., None])[..., 0].mean(axis=1)
-        sides, caps = _quads(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
+        quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)
+        sides, caps = quads_of(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
         # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
         # corners, since it pads shorter ones with whatever the memory holds, and scales the axes by it
         polygons = _turned(np.concatenate([quads, sides, caps]))
@@ -77,7 +77,9 @@ def plot_bearing(
             ax.plot(*_turned(np.column_stack([ring, np.full(len(ring), end)])).T, color=BLACK, lw=0.6, zorder=order)
         peak = float(theta[int(np.argmax(closed_ring(film.theta, film.pressure)[1].max(axis=1)))])
         _draw_arrows(ax, film, z)
-        _finish_axes(ax, z, 1.0 + HILL, _camera(peak) if camera is None else camera)
+        reach = 1.0 + HILL
+        box = np.array([[-reach, reach], [-z[-1], -z[0]], [-reach, reach]])
+        look_at(ax, box, _camera(peak) if camera is None else camera, zoom=1.15)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
         style_ticks(figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02).ax)
         if own:
@@ -105,10 +107,11 @@ def journal_surface(film: Film, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
     return np.stack([X, Y, np.broadcast_to(z, X.shape)], axis=-1)
 
 
-def _quads(points: np.ndarray) -> np.ndarray:
-    """Quadrilaterals (q, 4, d) of a grid of points (k, m, d)."""
-    corners = [points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]]
-    return np.stack(corners, axis=2).reshape(-1, 4, points.shape[-1])
+def quads_of(points: np.ndarray) -> np.ndarray:
+    """Quadrilaterals (q, 4, d) of grids of points (..., k, m, d)."""
+    near, far = points[..., :-1, :, :], points[..., 1:, :, :]
+    corners = [near[..., :-1, :], far[..., :-1, :], far[..., 1:, :], near[..., 1:, :]]
+    return np.stack(corners, axis=-2).reshape(-1, 4, points.shape[-1])
 
 
 def _fan(rim: np.ndarray) -> np.ndarray:
@@ -145,9 +148,9 @@ def _camera(peak: float) -> tuple[float, float]:
     return float(elevation), float(np.degrees(np.arctan2(-1.0, sideways)))
 
 
-def _finish_axes(ax: Axes3D, z: np.ndarray, reach: float, camera: tuple[float, float]) -> None:
+def look_at(ax: Axes3D, box: np.ndarray, camera: tuple[float, float], *, zoom: float) -> None:
+    """Show a box (3, 2), to scale and without axes, from an elevation and an azimuth in degrees."""
     ax.set_axis_off()
-    box = np.array([[-reach, reach], [-z[-1], -z[0]], [-reach, reach]])
     ax.set(xlim=box[0], ylim=box[1], zlim=box[2])
-    ax.set_box_aspect(np.ptp(box, axis=1), zoom=1.15)
+    ax.set_box_aspect(np.ptp(box, axis=1), zoom=zoom)
     ax.view_init(elev=camera[0], azim=camera[1])

@@ -11,6 +11,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
+from exudyn_ehd.pictures.bearing3d import look_at, quads_of
 from exudyn_ehd.pictures.style import style_ticks, styled
 from exudyn_ehd.solid.hex20 import face_shapes
 from exudyn_ehd.solid.mesh import BushMesh
@@ -88,10 +89,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
             _draw(axes, mesh, frame, view, norm, colours)
-            axes.set(xlim=box[0], ylim=box[1], zlim=box[2])
-            axes.set_box_aspect(np.ptp(box, axis=1), zoom=1.1)
-            axes.view_init(elev=view.elevation, azim=view.azimuth)
-            axes.set_axis_off()
+            look_at(axes, box, (view.elevation, view.azimuth), zoom=1.1)
             axes.set_title(frame.title, y=1.0)
             plots.append(axes)
         bar = matplotlib.cm.ScalarMappable(norm=norm, cmap=colours)
@@ -136,11 +134,8 @@ def _facets(corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndar
     shapes, _ = face_shapes(np.stack([r.ravel(), s.ravel()], axis=1))
     points = np.einsum("pa,fai->fpi", shapes, corners)
     fields = np.einsum("pa,fa->fp", shapes, nodal)
-    i, j = (x.ravel() for x in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
-    quad = np.stack(
-        [i * (count + 1) + j, (i + 1) * (count + 1) + j, (i + 1) * (count + 1) + j + 1, i * (count + 1) + j + 1]
-    )
-    return points[:, quad.T].reshape(-1, 4, 3), fields[:, quad.T].mean(axis=2).ravel()
+    grids = (-1, count + 1, count + 1)
+    return quads_of(points.reshape(*grids, 3)), quads_of(fields.reshape(*grids, 1)).mean(axis=1).ravel()
 
 
 def _normals(quads: np.ndarray) -> np.ndarray:
