@@ -31,11 +31,14 @@ def _model(rng, length_to_diameter, supplied):
     n_theta, n_z = GRIDS[rng.integers(len(GRIDS))]
     cavity = 0.0 if supplied else -float(rng.choice([1e3, 1e5, 1e6]))
     bearing = ehd.JournalBearing(
-        journal_radius=RADIUS, length=2.0 * RADIUS * length_to_diameter, radial_clearance=CLEARANCE,
-        lubricant=ehd.Lubricant(viscosity=0.04), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+        journal_radius=RADIUS,
+        length=2.0 * RADIUS * length_to_diameter,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.04),
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
         cavitation=ehd.ElrodAdams(cavity_pressure=cavity),
         supply=SUPPLIES[rng.integers(len(SUPPLIES))] if supplied else (),
-    )  # fmt: skip
+    )
     return build_model(bearing)
 
 
@@ -111,9 +114,13 @@ def test_many_random_states(supplied):
 def test_short_bearing_keeps_its_oil(n_theta):
     """No pressure flow links the columns of a short bearing, but the oil's flow does: across the ring's seam too."""
     bearing = ehd.JournalBearing(
-        journal_radius=RADIUS, length=0.5 * RADIUS, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.04),
-        film=ehd.ShortBearing(n_theta=n_theta, n_z=6), cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
-    )  # fmt: skip
+        journal_radius=RADIUS,
+        length=0.5 * RADIUS,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.04),
+        film=ehd.ShortBearing(n_theta=n_theta, n_z=6),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+    )
     model = build_model(bearing)
     s, balance = model.solver.system, np.empty(model.grid.shape)
     forces = []

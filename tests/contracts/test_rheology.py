@@ -31,9 +31,15 @@ STEP = 1e-4
 def make(pressure=None, shear=None, thermal=None, cavitation=ehd.SwiftStieber(), **options):  # noqa: B008
     oil = dataclasses.replace(OIL, pressure_law=pressure, shear_law=shear)
     values = {
-        "journal_radius": 0.025, "length": 0.05, "radial_clearance": C, "lubricant": oil, "thermal": thermal,
-        "cavitation": cavitation, "end_pressures": (1e5, 2e5), "film": ehd.FiniteLength(n_theta=48, n_z=8),
-    }  # fmt: skip
+        "journal_radius": 0.025,
+        "length": 0.05,
+        "radial_clearance": C,
+        "lubricant": oil,
+        "thermal": thermal,
+        "cavitation": cavitation,
+        "end_pressures": (1e5, 2e5),
+        "film": ehd.FiniteLength(n_theta=48, n_z=8),
+    }
     return build_model(ehd.JournalBearing(**(values | options)))
 
 
@@ -247,9 +253,12 @@ def test_density_near_the_end_of_the_pressure_law(cavitation, coefficient):
     R, C, speed = 0.02, 20e-6, 300.0
     laws = {"pressure_law": ehd.BarusPressure(coefficient=coefficient), "density_law": ehd.DowsonHigginson()}
     options = {
-        "journal_radius": R, "length": 0.03, "radial_clearance": C, "film": ehd.FiniteLength(n_theta=96, n_z=10),
+        "journal_radius": R,
+        "length": 0.03,
+        "radial_clearance": C,
+        "film": ehd.FiniteLength(n_theta=96, n_z=10),
         "cavitation": cavitation,
-    }  # fmt: skip
+    }
     model = build_model(ehd.JournalBearing(lubricant=ehd.Lubricant(viscosity=0.03, **laws), **options))
     cold = build_model(ehd.JournalBearing(lubricant=ehd.Lubricant(viscosity=0.03, **laws), **options))
     peaks = []

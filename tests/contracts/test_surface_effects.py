@@ -34,18 +34,24 @@ EFFECTS = {
     "liner_worn": {"bush": LINER, "asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-12), "profile": PROFILE},
 }
 CLOSURES = {
-    "full": ehd.FullSommerfeld(), "gumbel": ehd.Gumbel(), "swift": ehd.SwiftStieber(cavity_pressure=-2e4),
+    "full": ehd.FullSommerfeld(),
+    "gumbel": ehd.Gumbel(),
+    "swift": ehd.SwiftStieber(cavity_pressure=-2e4),
     "elrod": ehd.ElrodAdams(cavity_pressure=-2e4),
-}  # fmt: skip
+}
 PAIRS = [(e, c) for e in EFFECTS for c in CLOSURES]
 every_pair = pytest.mark.parametrize(("effect", "closure"), PAIRS, ids="-".join)
 
 
 def bearing(n_theta=48, n_z=8, **options):
     return ehd.JournalBearing(
-        journal_radius=R, length=L, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.03),
-        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z), **({"end_pressures": (1e5, 2e5)} | options),
-    )  # fmt: skip
+        journal_radius=R,
+        length=L,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=0.03),
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+        **({"end_pressures": (1e5, 2e5)} | options),
+    )
 
 
 def motion(eps, angle=0.7, speed=SPEED, tilt=0.02, rate=0.1):
@@ -132,11 +138,14 @@ def vanishing(effect, amplitude):
     return {"bush": ehd.ElasticLiner(thickness=amplitude * 1e-2, youngs_modulus=1e10)}
 
 
-@pytest.mark.parametrize(("effect", "amplitudes", "rate"), [
-    ("profile", (4e-4, 2e-4, 1e-4), 1.0),
-    ("liner", (4e-3, 2e-3, 1e-3), 1.0),
-    ("roughness", (8e-4, 4e-4, 2e-4), 1.5),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("effect", "amplitudes", "rate"),
+    [
+        ("profile", (4e-4, 2e-4, 1e-4), 1.0),
+        ("liner", (4e-3, 2e-3, 1e-3), 1.0),
+        ("roughness", (8e-4, 4e-4, 2e-4), 1.5),
+    ],
+)
 def test_vanishing_amplitude_recovers_the_plain_film(effect, amplitudes, rate):
     """First order in the amplitude; order 1.5 by 1 + 0.87 H^-1.5 for surfaces
     with ridges along the motion. 0.06 for the next order."""
@@ -236,8 +245,13 @@ def test_random_states_on_a_liner(closure, modulus):
     model = build_model(bearing(cavitation=CLOSURES[closure], n_theta=40, n_z=6, bush=bush))
     for _ in range(60):
         reach, share = 0.99 * rng.random() ** 0.3, rng.choice([0.0, rng.random()])
-        at = motion(reach * (1 - share), rng.uniform(0, 6.3), SPEED * rng.choice([-1, 0.1, 1, 5]), 0.9 * reach * share,
-                    rng.choice([0.0, 0.1, 1.0]))  # fmt: skip
+        at = motion(
+            reach * (1 - share),
+            rng.uniform(0, 6.3),
+            SPEED * rng.choice([-1, 0.1, 1, 5]),
+            0.9 * reach * share,
+            rng.choice([0.0, 0.1, 1.0]),
+        )
         history = model.initial_history(0.95 * at)
         evaluation = model.evaluate(at, history, rng.choice([1e-5, 1e-4, 1e-3]))
         assert evaluation.status is ehd.Status.CONVERGED, at

@@ -94,9 +94,18 @@ def test_slider_grid():
 
 @pytest.mark.parametrize("spec", (FiniteLength, ShortBearing))
 @pytest.mark.parametrize(
-    "options", [{"n_theta": 15}, {"n_z": 3}, {"n_theta": 32.0}, {"n_theta": True}, {"n_z": "8"}, {"stretch": -0.1},
-                {"stretch": 0.96}, {"stretch": float("nan")}],
-)  # fmt: skip
+    "options",
+    [
+        {"n_theta": 15},
+        {"n_z": 3},
+        {"n_theta": 32.0},
+        {"n_theta": True},
+        {"n_z": "8"},
+        {"stretch": -0.1},
+        {"stretch": 0.96},
+        {"stretch": float("nan")},
+    ],
+)
 def test_validation(spec, options):
     with pytest.raises(InputError, match=rf"{spec.__name__}\.{next(iter(options))}"):
         spec(**options)

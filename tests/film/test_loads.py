@@ -21,8 +21,12 @@ def test_pressure_integrals(field):
     _, theta, z, weight, P = field
     out = np.empty(4)
     loads.pressure_integrals(P, weight, np.cos(theta), np.sin(theta), z, out)
-    shapes = [np.cos(theta)[:, None] + 0 * z, np.sin(theta)[:, None] + 0 * z,
-              np.cos(theta)[:, None] * z, np.sin(theta)[:, None] * z]  # fmt: skip
+    shapes = [
+        np.cos(theta)[:, None] + 0 * z,
+        np.sin(theta)[:, None] + 0 * z,
+        np.cos(theta)[:, None] * z,
+        np.sin(theta)[:, None] * z,
+    ]
     np.testing.assert_allclose(out, [(P * weight * s).sum() for s in shapes], rtol=1e-12)
 
 

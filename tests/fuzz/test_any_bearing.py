@@ -78,9 +78,12 @@ def check_film(bearing, eps, speed, tilt, direction):
     half = 0.5 * bearing.length
     size = tilt * (1.0 - eps) * bearing.radial_clearance / half
     film = ehd.steady(
-        bearing, speed=speed, eccentricity_ratio=eps, direction=direction,
+        bearing,
+        speed=speed,
+        eccentricity_ratio=eps,
+        direction=direction,
         tilt=(size * math.cos(1.0), size * math.sin(1.0)),
-    )  # fmt: skip
+    )
     for field in dataclasses.fields(film):
         value = getattr(film, field.name)
         if isinstance(value, (float, np.ndarray)) and field.name not in ("sommerfeld_number", "attitude_angle"):

@@ -126,9 +126,14 @@ def random_bearing(rng, closure, *, laws=True):
             {"shear_law": ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)},
         ][rng.integers(2)]
     return ehd.JournalBearing(
-        journal_radius=RADIUS, length=length, radial_clearance=CLEARANCE, film=film, cavitation=closure,
-        lubricant=ehd.Lubricant(viscosity=viscosity, **oil), **options,
-    )  # fmt: skip
+        journal_radius=RADIUS,
+        length=length,
+        radial_clearance=CLEARANCE,
+        film=film,
+        cavitation=closure,
+        lubricant=ehd.Lubricant(viscosity=viscosity, **oil),
+        **options,
+    )
 
 
 def random_liner(rng, closure):
@@ -369,9 +374,14 @@ def count(record, model, evaluation, context, past=(None, 0.0)) -> bool:
 def _compressible(rng):
     bearing = random_bearing(rng, ehd.SwiftStieber(), laws=False)
     plain = dataclasses.replace(
-        bearing, film=ehd.FiniteLength(n_theta=48, n_z=8), supply=(), contact=None, asperity=None, roughness=None,
+        bearing,
+        film=ehd.FiniteLength(n_theta=48, n_z=8),
+        supply=(),
+        contact=None,
+        asperity=None,
+        roughness=None,
         cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
-    )  # fmt: skip
+    )
     oil = ehd.Lubricant(viscosity=1e-2 * VISCOSITY, density_law=ehd.DowsonHigginson())
     return dataclasses.replace(plain, lubricant=oil)
 

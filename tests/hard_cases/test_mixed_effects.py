@@ -113,9 +113,13 @@ def rotor(bearing, seed, **options):
     load = (300.0, 1500.0, 3000.0)[seed % 3]
     speed = 300.0 if seed % 2 else (lambda t: 200.0 / RATE * math.sin(RATE * t), lambda t: 200.0 * math.cos(RATE * t))
     return hard_scene.Rotor(
-        bearing, mass=3.0, speed=speed, position=(0.2 * C, -0.3 * C), **options,
+        bearing,
+        mass=3.0,
+        speed=speed,
+        position=(0.2 * C, -0.3 * C),
+        **options,
         load=lambda t: (0.5 * load * math.sin(RATE * t), -load * (1.0 - 0.4 * math.cos(RATE * t))),
-    )  # fmt: skip
+    )
 
 
 # Configurations with a sharp impact or a slender film ring at these steps, which the package says.

@@ -27,9 +27,12 @@ def bearing(laws=None, **options):
         viscosity=OIL.viscosity, temperature=OIL.temperature, temperature_law=OIL.temperature_law, **(laws or {})
     )
     plain = {
-        "journal_radius": 0.02, "length": 0.016, "radial_clearance": 20e-6, "lubricant": oil,
+        "journal_radius": 0.02,
+        "length": 0.016,
+        "radial_clearance": 20e-6,
+        "lubricant": oil,
         "film": ehd.FiniteLength(n_theta=64, n_z=8),
-    }  # fmt: skip
+    }
     return ehd.JournalBearing(**(plain | options))
 
 

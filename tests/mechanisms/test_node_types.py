@@ -24,9 +24,12 @@ def _history(node, *, steps, solver=None):
         gravity=[0, -200.0, 0],
     )
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.03, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.005),
+        journal_radius=0.025,
+        length=0.03,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.005),
         film=ehd.FiniteLength(n_theta=48, n_z=6),
-    )  # fmt: skip
+    )
     joint = ehd.CreateLubricatedJoint(
         mbs, name="journal", itemNumbers=[mbs.CreateGround(), body], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing
     )

@@ -26,9 +26,13 @@ def _rows():
 
 def _orbit(planar_rotor, film, step, end=0.08):
     bearing = ehd.JournalBearing(
-        journal_radius=0.025, length=0.025, radial_clearance=CLEARANCE, lubricant=ehd.Lubricant(viscosity=0.02),
-        film=film, cavitation=ehd.Gumbel(),
-    )  # fmt: skip
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=CLEARANCE,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=film,
+        cavitation=ehd.Gumbel(),
+    )
     return planar_rotor(bearing, mass=2.0, speed=100 * math.pi, load=(0, -2000)).run(end, step)
 
 

@@ -80,9 +80,15 @@ def test_conical_gap_published_pressures():
     # Published to whole pascals: 1e-6.
     for z, expected in ((0.25, 1998536.0), (0.5, 1972128.0), (0.75, 1519941.0)):
         p = slider.conical_gap_pressure(
-            z * 0.025, viscosity=1e-3, length=0.025, inlet=1e-5, slope=6e-4, speed=22.0, gap_rate=-0.0132,
+            z * 0.025,
+            viscosity=1e-3,
+            length=0.025,
+            inlet=1e-5,
+            slope=6e-4,
+            speed=22.0,
+            gap_rate=-0.0132,
             pressures=(0.8e5, 10e5),
-        )  # fmt: skip
+        )
         assert p == pytest.approx(expected, rel=1e-6)
 
 

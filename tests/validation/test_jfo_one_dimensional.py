@@ -33,9 +33,14 @@ def _pocket(n):
     grid = ehd.slider_grid(SLIDER, 1.0, n, 1, sealed_sides=True)
     x = grid.x * SLIDER
     film = ehd.solve_film(
-        grid, np.repeat(_pocket_gap(x)[:, None], 2, axis=1), lubricant=ehd.Lubricant(viscosity=0.01),
-        surface_speed=(1.0, 0.0), cavitation=ehd.ElrodAdams(), boundary=1e5, stepped_gap=True,
-    )  # fmt: skip
+        grid,
+        np.repeat(_pocket_gap(x)[:, None], 2, axis=1),
+        lubricant=ehd.Lubricant(viscosity=0.01),
+        surface_speed=(1.0, 0.0),
+        cavitation=ehd.ElrodAdams(),
+        boundary=1e5,
+        stepped_gap=True,
+    )
     return x, film
 
 
@@ -74,9 +79,14 @@ def test_mean_gap_is_first_order_at_the_steps_and_stepped_gap_is_not():
         grid = ehd.slider_grid(L, 1.0, n, 1, sealed_sides=True)
         gap = np.repeat(np.where(grid.x * L < L / 2, h1, h2)[:, None], 2, axis=1)
         film = ehd.solve_film(
-            grid, gap, lubricant=ehd.Lubricant(viscosity=mu), surface_speed=(U, 0.0),
-            cavitation=ehd.FullSommerfeld(), boundary=p0, stepped_gap=stepped,
-        )  # fmt: skip
+            grid,
+            gap,
+            lubricant=ehd.Lubricant(viscosity=mu),
+            surface_speed=(U, 0.0),
+            cavitation=ehd.FullSommerfeld(),
+            boundary=p0,
+            stepped_gap=stepped,
+        )
         error = abs(film.inflow[0].sum() / exact - 1.0)
         if stepped:
             assert error < 1e-12
@@ -92,9 +102,13 @@ def test_parabolic_slider(n, measured):
     x = grid.x * length
     gap = 25.4e-6 + 25.4e-6 * (2.0 * x / length - 1.0) ** 2
     film = ehd.solve_film(
-        grid, np.repeat(gap[:, None], 2, axis=1), lubricant=ehd.Lubricant(viscosity=0.039), surface_speed=(4.57, 0.0),
-        cavitation=ehd.ElrodAdams(), boundary=101325.0,
-    )  # fmt: skip
+        grid,
+        np.repeat(gap[:, None], 2, axis=1),
+        lubricant=ehd.Lubricant(viscosity=0.039),
+        surface_speed=(4.57, 0.0),
+        cavitation=ehd.ElrodAdams(),
+        boundary=101325.0,
+    )
     cell = length / n
     cavity = x[film.fill[:, 0] < 1.0]
     measured("rupture, cells", abs(cavity.min() - 51.833e-3) / cell, 1.0)
@@ -120,9 +134,14 @@ def squeeze():
     for k in range(1, round(0.74 / step) + 1):
         t = k * step
         film = ehd.solve_film(
-            grid, (0.125 * np.cos(4.0 * np.pi * t) + 0.375) * ones, lubricant=lubricant, cavitation=ehd.ElrodAdams(),
-            boundary=0.025, history=content, step=step,
-        )  # fmt: skip
+            grid,
+            (0.125 * np.cos(4.0 * np.pi * t) + 0.375) * ones,
+            lubricant=lubricant,
+            cavitation=ehd.ElrodAdams(),
+            boundary=0.025,
+            history=content,
+            step=step,
+        )
         balances.append(np.sum(film.inflow) * step - np.sum(area * (film.content - content)))
         content = film.content
         cavity = grid.x[film.fill[:, 0] < 1.0]

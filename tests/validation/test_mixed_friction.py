@@ -19,11 +19,14 @@ import exudyn_ehd as ehd
 with open(Path(__file__).parent / "data" / "sander2015_mixed_friction.csv", encoding="utf-8") as _file:
     ROWS = [{k: float(v) for k, v in row.items()} for row in csv.DictReader(_file)]
 BEARING = ehd.JournalBearing(
-    journal_radius=0.024, length=0.025, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=0.009),
+    journal_radius=0.024,
+    length=0.025,
+    radial_clearance=30e-6,
+    lubricant=ehd.Lubricant(viscosity=0.009),
     film=ehd.FiniteLength(n_theta=128, n_z=12),
     asperity=ehd.GreenwoodTripp(composite_roughness=0.35e-6, composite_modulus=1e11, friction_coefficient=0.05),
     roughness=ehd.PatirCheng(composite_roughness=0.35e-6),
-)  # fmt: skip
+)
 
 
 def measured(pressure):

@@ -18,9 +18,13 @@ def test_classic_scheme_on_the_papers_journal(table, measured):
         if row["bc"] != "Gumbel_periodic":
             continue
         bearing = ehd.JournalBearing(
-            journal_radius=row["R_m"], length=0.066, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=9e-3),
-            film=ehd.ClassicSOR(n_theta=192, n_z=48), cavitation=ehd.Gumbel(),
-        )  # fmt: skip
+            journal_radius=row["R_m"],
+            length=0.066,
+            radial_clearance=30e-6,
+            lubricant=ehd.Lubricant(viscosity=9e-3),
+            film=ehd.ClassicSOR(n_theta=192, n_z=48),
+            cavitation=ehd.Gumbel(),
+        )
         film = ehd.steady(bearing, speed=100.0 * math.pi, eccentricity_ratio=0.8)
         # Second-order error of this grid (a quarter of that at 96 x 24) plus that of rule (11) at 1e-5.
         measured("load", abs(np.hypot(*film.force[:2]) / row["load_N"] - 1.0), 5e-4)

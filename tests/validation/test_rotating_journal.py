@@ -21,9 +21,14 @@ def test_peak_load_attitude_and_friction(table, measured):
         cavitation = CLOSURES[row["bc"].split("_")[0]]
         inlet = ehd.MaximumGap() if row["bc"].endswith("hmax") else ehd.Periodic()
         bearing = ehd.JournalBearing(
-            journal_radius=row["R_m"], length=0.066, radial_clearance=30e-6, cavitation=cavitation, inlet=inlet,
-            lubricant=ehd.Lubricant(viscosity=0.009), film=ehd.FiniteLength(n_theta=192, n_z=16),
-        )  # fmt: skip
+            journal_radius=row["R_m"],
+            length=0.066,
+            radial_clearance=30e-6,
+            cavitation=cavitation,
+            inlet=inlet,
+            lubricant=ehd.Lubricant(viscosity=0.009),
+            film=ehd.FiniteLength(n_theta=192, n_z=16),
+        )
         film = ehd.steady(bearing, speed=100.0 * math.pi, eccentricity_ratio=0.8)
         name = f"{row['bc']}, R {row['R_m']}"
         measured(f"peak pressure, {name}", abs(film.peak_pressure / 1e6 / row["pmax_MPa"] - 1.0), 1e-3)

@@ -39,9 +39,12 @@ def test_parabolic_slider_with_a_cavity_below_ambient(table, measured):
     x = grid.x * L
     gap = np.repeat((h0 + (h1 - h0) * (2.0 * x / L - 1.0) ** 2)[:, None], 2, axis=1)
     film = ehd.solve_film(
-        grid, gap, lubricant=ehd.Lubricant(viscosity=mu), surface_speed=(U, 0.0),
+        grid,
+        gap,
+        lubricant=ehd.Lubricant(viscosity=mu),
+        surface_speed=(U, 0.0),
         cavitation=ehd.SwiftStieber(cavity_pressure=-ambient),
-    )  # fmt: skip
+    )
     p = film.pressure[:, 0] + ambient
     measured("peak pressure", abs(p.max() / 3.66666e6 - 1.0), 1e-4)
     rupture = x[np.flatnonzero(p <= 1e-3)[0]]
@@ -66,9 +69,13 @@ def test_axial_flow_through_a_conical_gap(measured, n_z, limit):
     boundary = np.zeros(grid.shape)
     boundary[:, 0], boundary[:, -1] = 0.8e5, 10e5
     film = ehd.solve_film(
-        grid, gap, lubricant=ehd.Lubricant(viscosity=1e-3), surface_speed=(0.0, 22.0), boundary=boundary,
+        grid,
+        gap,
+        lubricant=ehd.Lubricant(viscosity=1e-3),
+        surface_speed=(0.0, 22.0),
+        boundary=boundary,
         gap_rate=np.full(grid.shape, -0.0132),
-    )  # fmt: skip
+    )
     worst = 0.0
     for share, printed in ((4, 1998536.0), (2, 1972128.0), (4 / 3, 1519941.0)):
         j = round(n_z / share)
@@ -94,9 +101,12 @@ def test_petroff(closure):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # psi = 1e-5 is outside the usual range, and says so
         bearing = ehd.JournalBearing(
-            journal_radius=5e-3, length=5e-3, radial_clearance=5e-8, lubricant=ehd.Lubricant(viscosity=1e-3),
+            journal_radius=5e-3,
+            length=5e-3,
+            radial_clearance=5e-8,
+            lubricant=ehd.Lubricant(viscosity=1e-3),
             cavitation=closure,
-        )  # fmt: skip
+        )
     film = ehd.steady(bearing, speed=speed, eccentricity_ratio=0.0)
     exact = petroff.torque(1e-3, speed, 5e-3, 5e-3, 5e-8)
     assert -film.friction_torque == pytest.approx(exact, rel=1e-12)

@@ -87,10 +87,14 @@ def _patch(eps, tilt, cavitation, n_theta):
     of 15 degrees x 60 mm at 70 kPa, 90 degrees ahead."""
     radius, length, clearance = 0.05, 0.08, 150e-6
     bearing = ehd.JournalBearing(
-        journal_radius=radius, length=length, radial_clearance=clearance, lubricant=ehd.Lubricant(viscosity=0.01),
-        film=ehd.FiniteLength(n_theta=n_theta, n_z=51, stretch=0.0), cavitation=cavitation,
+        journal_radius=radius,
+        length=length,
+        radial_clearance=clearance,
+        lubricant=ehd.Lubricant(viscosity=0.01),
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=51, stretch=0.0),
+        cavitation=cavitation,
         supply=(ehd.Pocket(angle=math.pi / 2, width_angle=math.radians(15.0), length=0.06, pressure=7e4),),
-    )  # fmt: skip
+    )
     slope = (0.0, 2.0 * tilt * clearance / length)
     return ehd.steady(bearing, speed=100.0 * math.pi, eccentricity_ratio=eps, tilt=slope)
 

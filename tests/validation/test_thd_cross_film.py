@@ -153,14 +153,23 @@ def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=
     )
     U_b, U_j = (0.0 if wall is None else coefficient for wall in walls)
     thermal = ehd.FilmEnergy(
-        supply_temperature=SUPPLY, bush_coefficient=U_b, journal_coefficient=U_j, conductivity=conductivity,
-        bush_temperature=walls[0], journal_temperature=walls[1],
-    )  # fmt: skip
+        supply_temperature=SUPPLY,
+        bush_coefficient=U_b,
+        journal_coefficient=U_j,
+        conductivity=conductivity,
+        bush_temperature=walls[0],
+        journal_temperature=walls[1],
+    )
     groove = ehd.AxialGroove(angle=math.pi, width_angle=math.radians(20.0))
     bearing = ehd.JournalBearing(
-        journal_radius=R, length=0.05, radial_clearance=C, lubricant=oil, thermal=thermal, supply=(groove,),
+        journal_radius=R,
+        length=0.05,
+        radial_clearance=C,
+        lubricant=oil,
+        thermal=thermal,
+        supply=(groove,),
         film=ehd.LongBearing(n_theta=360, n_z=2),
-    )  # fmt: skip
+    )
     film = ehd.steady(bearing, speed=speed, eccentricity_ratio=eps)
     phi = (np.asarray(film.theta) - math.pi) % (2.0 * math.pi)
     order = np.argsort(phi)

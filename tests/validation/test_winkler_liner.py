@@ -25,9 +25,14 @@ def solve(eps, cbar, n_theta, n_z):
         modulus = K_NU * MU * OMEGA * (R / C) ** 3 * THICKNESS / R / cbar
         bush = ehd.ElasticLiner(thickness=THICKNESS, youngs_modulus=modulus, poisson_ratio=NU)
     bearing = ehd.JournalBearing(
-        journal_radius=R, length=2 * R, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), bush=bush,
-        inlet=ehd.MaximumGap(), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
-    )  # fmt: skip
+        journal_radius=R,
+        length=2 * R,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=MU),
+        bush=bush,
+        inlet=ehd.MaximumGap(),
+        film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+    )
     return ehd.steady(bearing, speed=OMEGA, eccentricity_ratio=eps)
 
 

@@ -72,9 +72,14 @@ class WallContact:
         settle_wall(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
 
     def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None:  # fmt: skip
+        self,
+        H: np.ndarray,
+        HF: np.ndarray,
+        H_t: np.ndarray,
+        slope_out: np.ndarray,
+        bend_out: np.ndarray,
+        face_slope_out: np.ndarray,
+    ) -> None:
         """Replace scaled gaps and the rate (n, m) by those that the film sees; as `joint.seams.GapLimiter`."""
         limit_gap(H, HF, H_t, self.onset, self.residual, slope_out, bend_out, face_slope_out)
 

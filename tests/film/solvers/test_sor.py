@@ -28,8 +28,11 @@ def _dense_solution(H, H_t, vx, vz, dx, dz):
             north, south = (i, j + 1), (i, j - 1)
             hx, hz = (H[east] - H[west]) / (2 * dx), (H[north] - H[south]) / (2 * dz)
             for (a, c), sign, slope, d in (
-                (east, 1, hx, dx), (west, -1, hx, dx), (north, 1, hz, dz), (south, -1, hz, dz)
-            ):  # fmt: skip
+                (east, 1, hx, dx),
+                (west, -1, hx, dx),
+                (north, 1, hz, dz),
+                (south, -1, hz, dz),
+            ):
                 A[r, (a % n) * m + c] += h**3 / d**2 + sign * 3 * h**2 * slope / (2 * d)
             A[r, r] -= 2 * h**3 / dx**2 + 2 * h**3 / dz**2
             b[r] = vx * hx + vz * hz + H_t[i, j]
@@ -63,9 +66,10 @@ def test_second_order_and_the_same_limit_as_finite_volumes(make_bearing, measure
     # Clipping at whole vertices leaves a ripple of the same order.
     assert 1.6 < order < 2.6
     reference = ehd.steady(
-        make_bearing(film=ehd.FiniteLength(n_theta=384, n_z=24), cavitation=ehd.Gumbel()), speed=100.0,
+        make_bearing(film=ehd.FiniteLength(n_theta=384, n_z=24), cavitation=ehd.Gumbel()),
+        speed=100.0,
         eccentricity_ratio=0.6,
-    ).sommerfeld_number  # fmt: skip
+    ).sommerfeld_number
     measured("load against finite volumes", abs(fine / reference - 1.0), 5e-4)
 
 

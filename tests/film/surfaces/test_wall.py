@@ -55,9 +55,17 @@ def test_limits_and_smoothness():
 
 
 @pytest.mark.parametrize(
-    "options", [{"onset": 0.0}, {"onset": -1e-6}, {"onset": 1e-6, "pressure": 0.0}, {"onset": 1e-6, "residual": 0.001},
-                {"onset": 1e-6, "residual": 0.95}, {"onset": float("nan")}, {"onset": "small"}],
-)  # fmt: skip
+    "options",
+    [
+        {"onset": 0.0},
+        {"onset": -1e-6},
+        {"onset": 1e-6, "pressure": 0.0},
+        {"onset": 1e-6, "residual": 0.001},
+        {"onset": 1e-6, "residual": 0.95},
+        {"onset": float("nan")},
+        {"onset": "small"},
+    ],
+)
 def test_validation(options):
     with pytest.raises(InputError, match="RegularisedWall"):
         RegularisedWall(**options)
