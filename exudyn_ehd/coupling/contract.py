@@ -21,17 +21,6 @@ Index: TypeAlias = SupportsInt
 """Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
 
 
-class Geometry(Protocol):
-    """The dimensions of a bearing that the coupling looks at."""
-
-    @property
-    def radial_clearance(self) -> float: ...
-    @property
-    def journal_radius(self) -> float: ...
-    @property
-    def length(self) -> float: ...
-
-
 class Evaluation(Protocol):
     """Result of one film evaluation.
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.bearing import advice
-from exudyn_ehd.coupling.contract import Geometry, Trial
+from exudyn_ehd.bearing import JournalBearing, advice
+from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.joint.static.steady_temperature import HOTTEST, WAY_OUT
 from exudyn_ehd.status import FilmError, Status
@@ -25,7 +25,7 @@ class Failures:
     bearing : JournalBearing
     """
 
-    def __init__(self, name: str, bearing: Geometry) -> None:
+    def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:

@@ -9,7 +9,8 @@ import exudyn as exu
 import numpy as np
 from numpy.typing import ArrayLike
 
-from exudyn_ehd.coupling.contract import Geometry, Side
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import Side
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics import relative
@@ -102,7 +103,9 @@ def joint_points(
     return point, point.copy()
 
 
-def check_start(mbs: exu.MainSystem, bearing: Geometry, housing: tuple[Item, Side], journal: tuple[Item, Side]) -> None:
+def check_start(
+    mbs: exu.MainSystem, bearing: JournalBearing, housing: tuple[Item, Side], journal: tuple[Item, Side]
+) -> None:
     """Refuse an initial state in which the journal isn't inside the bore."""
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):

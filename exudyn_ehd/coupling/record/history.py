@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Geometry
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
@@ -253,7 +253,7 @@ def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
 class Record:
     """Rows of accepted steps of a bearing in a growing array."""
 
-    def __init__(self, bearing: Geometry) -> None:
+    def __init__(self, bearing: JournalBearing) -> None:
         self._dimensions: dict[str, Any] = {
             name: float(getattr(bearing, name)) for name in ("radial_clearance", "journal_radius", "length")
         }

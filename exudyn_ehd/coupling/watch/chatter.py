@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Geometry
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 
 # Mismatch s of a step that is not resolved: an oscillation with less than 3.5 steps per period.
@@ -52,7 +52,7 @@ class ChatterWatch:
         |d - h (v0 + v1) / 2| of the last step, m; tilts count by half the length.
     """
 
-    def __init__(self, bearing: Geometry) -> None:
+    def __init__(self, bearing: JournalBearing) -> None:
         self.clearance = bearing.radial_clearance
         self.lever = 0.5 * bearing.length
         self.begin_anew()
