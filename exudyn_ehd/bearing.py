@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
@@ -20,7 +20,7 @@ from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
-from exudyn_ehd.film.surfaces.profile import PROFILE_TYPES, Profile
+from exudyn_ehd.film.surfaces.profile import Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
 from exudyn_ehd.status import InputError, Status, require_number, require_type, require_vector
@@ -128,7 +128,7 @@ class JournalBearing:
             require_type(f"JournalBearing.{name}", getattr(self, name), *types)
         _check_temperatures(self)
         for profile in self.profiles:
-            require_type("JournalBearing.profile", profile, *PROFILE_TYPES)
+            require_type("JournalBearing.profile", profile, *get_args(Profile))
         ends = require_vector("JournalBearing.end_pressures", self.end_pressures, 2, "Pa")
         # a list or an array compares and hashes like the pair that it is
         object.__setattr__(self, "end_pressures", tuple(ends.tolist()))

@@ -9,7 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.bearing import _OPTIONS
 from exudyn_ehd.film.lubricant import lubricant
 
-LAWS = {name: getattr(lubricant, f"{name.upper()}S") for name in ("pressure_law", "shear_law", "density_law")}
+LAWS = {name: lubricant.LAWS[name] for name in ("pressure_law", "shear_law", "density_law")}
 
 CAVITATION = _OPTIONS["cavitation"]
 

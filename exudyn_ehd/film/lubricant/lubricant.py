@@ -11,15 +11,11 @@ from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
 from exudyn_ehd.status import InputError, require_number, require_type
 
-PRESSURE_LAWS = (BarusPressure, RoelandsPressure)
-TEMPERATURE_LAWS = (ReynoldsTemperature, VogelTemperature, WaltherTemperature)
-SHEAR_LAWS = (CarreauShear,)
-DENSITY_LAWS = (DowsonHigginson,)
-LAWS = {
-    "pressure_law": PRESSURE_LAWS,
-    "temperature_law": TEMPERATURE_LAWS,
-    "shear_law": SHEAR_LAWS,
-    "density_law": DENSITY_LAWS,
+LAWS: dict[str, tuple[type, ...]] = {
+    "pressure_law": (BarusPressure, RoelandsPressure),
+    "temperature_law": (ReynoldsTemperature, VogelTemperature, WaltherTemperature),
+    "shear_law": (CarreauShear,),
+    "density_law": (DowsonHigginson,),
 }
 
 

@@ -178,7 +178,6 @@ class ProfileTable:
 
 
 Profile = OutOfRound | Crown | EdgeRelief | AxialProfile | ProfileTable
-PROFILE_TYPES = (OutOfRound, Crown, EdgeRelief, AxialProfile, ProfileTable)
 
 
 class ProfileTerm:
