@@ -186,35 +186,40 @@ def _add_entry(lower, upper, row, col, value):
 
 
 @njit(cache=True)
-def _add_link(i, j, p, q, k, f, full, fixed, number, P, pc, lower, upper, rhs):
-    """One link from vertex a = (i, j) to b = (p, q): Poiseuille k (P_a - P_b) and Couette f fill_upstream.
+def _add_link(c, d, k, f, full, fixed, number, P, pc, lower, upper, rhs):
+    """One link from vertex c to d (flat): Poiseuille k (P_c - P_d) and Couette f fill_upstream.
 
     Prescribed vertices count as full.
     """
-    a, b = number[i, j], number[p, q]
+    # read at once, so that little of what follows branches
+    a, b, full_c, full_d = number[c], number[d], full[c], full[d]
+    P_c, P_d, fixed_c, fixed_d = P[c], P[d], fixed[c], fixed[d]
     # Poiseuille part: pressure is an unknown at full vertices, known (prescribed or pc) elsewhere.
-    if a >= 0 and full[i, j]:
+    if a >= 0 and full_c:
         upper[a, 0] += k
         if b >= 0:
             _add_entry(lower, upper, b, a, -k)
     else:
-        known = P[i, j] if fixed[i, j] else pc
+        known = P_c if fixed_c else pc
         if a >= 0:
             rhs[a] -= k * known
         if b >= 0:
             rhs[b] += k * known
-    if b >= 0 and full[p, q]:
+    if b >= 0 and full_d:
         upper[b, 0] += k
         if a >= 0:
             _add_entry(lower, upper, a, b, -k)
     else:
-        known = P[p, q] if fixed[p, q] else pc
+        known = P_d if fixed_d else pc
         if b >= 0:
             rhs[b] -= k * known
         if a >= 0:
             rhs[a] += k * known
     # Couette part: fill of the upstream vertex, an unknown if that one is cavitated.
-    up, up_full = (a, full[i, j]) if f >= 0.0 else (b, full[p, q])
+    if f >= 0.0:
+        up, up_full = a, full_c
+    else:
+        up, up_full = b, full_d
     if up >= 0 and not up_full:
         if a >= 0:
             _add_entry(lower, upper, a, up, f)
@@ -231,31 +236,35 @@ def _add_link(i, j, p, q, k, f, full, fixed, number, P, pc, lower, upper, rhs):
 def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width, P, lower, upper, rhs):
     """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones."""
     n, m = number.shape
-    kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
-    for r in range(count):
-        rhs[r] = 0.0
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a = number[i, j]
-            if (a >= 0 or number[nxt, j] >= 0) and (kx[i, j] != 0.0 or fx[i, j] != 0.0):
-                _add_link(i, j, nxt, j, kx[i, j], fx[i, j], full, fixed, number, P, pc, lower, upper, rhs)
-            if j + 1 < m and (a >= 0 or number[i, j + 1] >= 0):
-                _add_link(i, j, i, j + 1, kz[i, j], fz[i, j], full, fixed, number, P, pc, lower, upper, rhs)
-            if a >= 0:
-                w = area[i, j]
-                if inverse_step > 0.0:
-                    rhs[a] += w * mass_old[i, j] * inverse_step
-                    s = w * film.H[i, j] * inverse_step
-                else:
-                    s = w * film.H_t[i, j]
-                if full[i, j]:
-                    rhs[a] -= s
-                else:
-                    upper[a, 0] += s
+    size, j = n * m, -1
+    kx, kz, fx, fz = film.kx.reshape(-1), film.kz.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
+    area, fixed, H, H_t = film.area.reshape(-1), film.fixed.reshape(-1), film.H.reshape(-1), film.H_t.reshape(-1)
+    sets, rows, pressure, old = full.reshape(-1), number.reshape(-1), P.reshape(-1), mass_old.reshape(-1)
+    rhs[:count] = 0.0
+    lower[:count, : width + 1 + PAD] = 0.0
+    upper[:count, : width + 1 + PAD] = 0.0
+    for at in range(size):
+        # unsigned indices need no check of their sign
+        c, nxt = np.uint64(at), np.uint64(at + m if at + m < size else at + m - size)
+        j = j + 1 if j + 1 < m else 0
+        a = rows[c]
+        if (a >= 0 or rows[nxt] >= 0) and (kx[c] != 0.0 or fx[c] != 0.0):
+            _add_link(c, nxt, kx[c], fx[c], sets, fixed, rows, pressure, pc, lower, upper, rhs)
+        if j + 1 < m:
+            d = c + np.uint64(1)
+            if a >= 0 or rows[d] >= 0:
+                _add_link(c, d, kz[c], fz[c], sets, fixed, rows, pressure, pc, lower, upper, rhs)
+        if a >= 0:
+            w = area[c]
+            if inverse_step > 0.0:
+                rhs[a] += w * old[c] * inverse_step
+                s = w * H[c] * inverse_step
+            else:
+                s = w * H_t[c]
+            if sets[c]:
+                rhs[a] -= s
+            else:
+                upper[a, 0] += s
 
 
 @njit(cache=True)
