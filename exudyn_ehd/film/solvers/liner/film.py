@@ -163,7 +163,8 @@ class LinerFilm:
         else:
             if not self.press(P):
                 return False
-            smallest = press_elements(self.rigid, self.load_fields, self.beta, self.true_gap)
+            gap = self.true_gap if contact is None else self.pressed
+            smallest = press_elements(self.rigid, self.load_fields, self.beta, gap)
             if contact is not None:
                 self._touch(contact, smallest)
             on_links = move_elements(self.rigid, self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields)
@@ -178,10 +179,11 @@ class LinerFilm:
     def _touch(self, contact: ElementContact, smallest: float) -> None:
         """Gaps of elements that the contact presses as well."""
         if smallest < contact.presses_below:
-            self.pressed[:] = self.true_gap
             contact.settle(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
             self.apart = False
-        elif not self.apart:
+            return
+        self.true_gap[:] = self.pressed
+        if not self.apart:
             for field in (self.contact_pressure, self.contact_G, self.bend):
                 field[:] = 0.0
             self.answer.rate_t[:] = self.answer.link[:] = 1.0
