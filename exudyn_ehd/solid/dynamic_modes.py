@@ -82,12 +82,12 @@ def vibration_modes(solid: TotalLagrange, static: np.ndarray, stiffness: np.ndar
     keep = energy > DEPENDENT
     added = np.zeros((int(keep.sum()), free.size))
     added[:, free] = (rest @ vectors[:, keep]).T
-    peak = np.linalg.norm(added.reshape(len(added), -1, 3), axis=2).max(axis=1)
+    peak = np.linalg.norm(added.reshape(len(added), free.size // 3, 3), axis=2).max(axis=1)
     added /= peak[:, None]
     whole = np.concatenate((u, added[:, free]))
     mass = whole @ (M @ whole.T)
     return {
-        "displacements": added.reshape(len(added), -1, 3),
+        "displacements": added.reshape(len(added), free.size // 3, 3),
         "stiffness": energy[keep] / peak**2,
         "mass": 0.5 * (mass + mass.T),
         "moments": solid.scalar_mass @ np.column_stack((np.ones(len(solid.mesh.nodes)), solid.mesh.nodes)),
@@ -155,14 +155,14 @@ def body_force_modes(
         lacking = np.abs(loads @ basis.T) * np.linalg.norm(mesh.bore.radial(basis), axis=1)
         scale = np.maximum(size, SMALLEST_RESPONSE * largest)
         added = basis[(lacking / scale[:, None]).max(axis=0) > SMALLEST_PART]
-        peak = np.linalg.norm(added.reshape(len(added), -1, 3), axis=2).max(axis=1)
+        peak = np.linalg.norm(added.reshape(len(added), free.size // 3, 3), axis=2).max(axis=1)
         known = np.concatenate((known, added / peak[:, None]))
         energies = np.concatenate((energies, 1.0 / peak**2))
     k = len(displacements)
     mass = known[k:] @ (solid.mass @ known.T)
     mass[:, k:] = 0.5 * (mass[:, k:] + mass[:, k:].T)
     return {
-        "displacements": known[k:].reshape(len(known) - k, -1, 3),
+        "displacements": known[k:].reshape(len(known) - k, len(mesh.nodes), 3),
         "stiffness": energies[k:],
         "mass": mass,
     }

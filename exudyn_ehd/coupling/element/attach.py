@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -18,7 +19,8 @@ from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
 from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
@@ -106,7 +108,7 @@ def _settle_modes(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[
     if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
         return
     held = bush.held()
-    start = initial_coordinates(model, sides, ModalBore(held, model.grid))
+    start = initial_coordinates(model, sides, lambda grid: ModalBore(held, grid))
     if start is not None:
         mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
 
@@ -147,21 +149,22 @@ def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
 
 
 def initial_coordinates(
-    model: ElasticBearingModel, sides: tuple[Side, Side], bore: ModalBore | None = None
+    model: ElasticBearingModel, sides: tuple[Side, Side], make_bore: Callable[[FilmGrid], Bore] | None = None
 ) -> np.ndarray | None:
     """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
-    flooded film's first instant is Swift-Stieber's. ``bore`` takes the place of the model's.
+    flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
+    ``make_bore`` takes the place of the model's own.
     """
-    bearing = dataclasses.replace(model.bearing, thermal=None)
+    bearing = model.bearing
     if bearing.cavitation.conserves_mass:
         closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
         bearing = dataclasses.replace(bearing, cavitation=closure)
     film = ElasticBearingModel(
-        bearing, lambda grid: bore or model.bore, elasticity=model.elasticity, effects=collect_effects(bearing)
+        bearing, make_bore or model.make_bore, elasticity=model.elasticity, effects=collect_effects(bearing)
     )
     motion = np.empty(MOTION_SIZE)
     relative.relative_motion(sides[0].frame, sides[1].frame, motion)
-    settled = film.evaluate_steady(motion)
+    settled = film.evaluate_steady(motion, film.initial_history(motion))
     return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None

@@ -198,7 +198,7 @@ class ElasticBearingModel(BearingModel):
         effects = dataclasses.replace(effects, gap_terms=(*effects.gap_terms, term))
         super().__init__(bearing, start_angle=start_angle, effects=effects)
         self._term = term
-        self.bore = bore(self.grid)
+        self.make_bore, self.bore = bore, bore(self.grid)
         self.elasticity = elasticity
         self._coordinates = np.zeros(self.bore.size)
         self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
