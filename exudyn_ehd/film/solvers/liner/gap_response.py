@@ -34,8 +34,7 @@ def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
     """What the pressure flow over links with the gaps ``mean`` and half
     differences ``lean`` of E answers to h and d."""
     for c in range(by_d.size):
-        slant = lean[c] / mean[c]
-        by_d[c] = -k[c] * (P_b[c] - P_a[c]) * 2.0 * slant / ((1.0 + slant * slant) * mean[c])
+        by_d[c] = -2.0 * k[c] * (P_b[c] - P_a[c]) * lean[c] / (mean[c] * mean[c] + lean[c] * lean[c])
     if g is None:
         for c in range(by_h.size):
             by_h[c] = (-3.0 * k[c] * (P_b[c] - P_a[c]) - by_d[c] * lean[c]) / mean[c]
