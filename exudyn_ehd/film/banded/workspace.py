@@ -134,6 +134,12 @@ class Workspace:
         return self._new_band()
 
     @cached_property
+    def matrix(self) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, ...]]:
+        """Derivatives, numbers of the vertices and factor (order, unknowns, L, U, 1 / diagonal) of Newton's matrix."""
+        factor = self.order, self.unknowns, self.lower, self.upper, self.inv_diag
+        return np.zeros((5, self.order.size)), self.number, factor
+
+    @cached_property
     def transport(self) -> Transport:
         """Factor along the flow of a mass-conserving film; it shares the symmetric band."""
         return transport_buffers(*self.shape, self.band)

@@ -4,11 +4,12 @@ Module map
 ----------
 linear          linear for given sets: rigid surfaces, incompressible
 newton          the driver for gaps or densities that answer to the pressure
+compiled        the driver compiled as a whole, for the fast ones among them
+steps           their matrix, steps and sets
 balance         their mass balance with its derivatives
 nonlinear       film on an elastic liner, with contact, laws of the oil and density
 liner           what it is made of
 compressible    density that follows the pressure, on rigid surfaces
-density_newton  its iteration
 impedance_map   fitted map for plain bearings
 sor             finite differences and successive over-relaxation
 """

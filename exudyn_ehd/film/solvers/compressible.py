@@ -27,25 +27,16 @@ import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance
-from exudyn_ehd.film.solvers.density_newton import (
-    CLIPPED,
-    COMPLEMENTARY,
-    FILLED,
-    FULL,
-    Buffers,
-    factor_compressible,
-    raise_to,
-    solve_compressible,
-    solve_exact_transposed,
-)
+from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 
 SMALLEST_SHARE = 1.0 / 64.0
@@ -82,27 +73,22 @@ class CompressibleFilmSolver(FilmSolver):
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         shape = grid.shape
         self.law, self.pressure_scale = law, 1.0
-        w, s = self.work, self.system
-        # without a history, what full films store grows with the gap
-        grow = s.H_t if squeeze and not closure.conserves_mass else np.zeros(shape)
-        self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, np.zeros(shape), np.zeros(shape), self.area, grid.fixed)
-        known, (rho_P, residual) = np.full((6, self.area.size), np.nan), np.zeros((2, *shape))
-        self.buffers = Buffers(
-            w.order, w.number, w.lower, w.upper, w.inv_diag, w.unknowns, known, np.ones(shape), rho_P, residual
-        )
+        s, fills = self.system, closure.conserves_mass
+        self.fields = np.zeros((8, *shape))
+        s.kx, s.kz, s.fx, s.fz, grow, known, kept, area = self.fields
+        self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, grid.fixed)
+        self.film.area[:] = self.area
+        if squeeze and not fills:
+            # what full films store grows with the gap
+            self.H_t = s.H_t = self.film.grow
+        # density over that at ambient pressure (n, m), of the last solution, and its derivative when last factored
+        self.rho, self.rho_P = np.ones((2, *shape))
+        self.known, self.residual = np.full((6, self.area.size), np.nan), np.zeros(shape)
+        self.full, self.free = np.ones((2, *shape), dtype=np.bool_)
+        self.u = s.linear_pressure, s.fill if fills else None, self.full if fills else None
+        self.trial = tuple(None if f is None else np.empty_like(f) for f in self.u)
         self.exact = False
         self.reusable = False
-        if closure.conserves_mass:
-            self.kind = FILLED
-        elif closure.clips:
-            self.kind = CLIPPED
-        else:
-            self.kind = COMPLEMENTARY if np.isfinite(closure.cavity_pressure) else FULL
-
-    @property
-    def rho(self) -> np.ndarray:
-        """Density ratio of the last solution (n, m)."""
-        return self.buffers.rho
 
     @property
     def content(self) -> np.ndarray:
@@ -112,7 +98,7 @@ class CompressibleFilmSolver(FilmSolver):
     @property
     def _floor(self) -> float:
         """Scaled pressure below which the density stays."""
-        return -np.inf if self.kind == FULL else self.system.cavity_pressure
+        return self.system.cavity_pressure if self.ruptures else -np.inf
 
     @property
     def _fill(self) -> np.ndarray:
@@ -190,23 +176,43 @@ class CompressibleFilmSolver(FilmSolver):
         self.reusable = False
         super().refresh_fixed()
 
+    def _oil(self, share: float) -> tuple[float, float, DensityTable, float, np.ndarray, np.ndarray, np.ndarray]:
+        """The law with ``share`` of the density's departure from a constant, as kernels take it."""
+        return self.pressure_scale, self._floor, self.law.kernel_table, share, self.known, self.rho, self.rho_P
+
+    def _speeds(self) -> tuple[float, float, float, float]:
+        """Cavity pressure, speeds and compliance, as kernels take them."""
+        return self._floor, self.vx, self.vz, 0.0
+
+    def _unknown(self) -> np.ndarray:
+        """Vertices that Newton's matrix has a row for."""
+        if self.complementary and not self.closure.conserves_mass:
+            return self.work.active
+        return np.logical_not(self.grid.fixed, out=self.free)
+
     def _newton(self, share: float) -> tuple[bool, int]:
-        s, w = self.system, self.work
-        ok, steps, self.exact, w.count, w.width = solve_compressible(
-            self.film,
-            self.pressure_scale,
-            s.cavity_pressure,
-            self.kind,
-            self.law.kernel_table,
-            share,
-            self.reusable,
-            w.count,
-            w.width,
-            w.active,
-            self.buffers,
-            s.linear_pressure,
-            self._fill,
+        w, fixed, fills = self.work, self.grid.fixed, self.closure.conserves_mass
+        if fills:
+            np.logical_or(w.active, fixed, out=self.full)
+        if self.complementary:
+            admit(*self.u, fixed, self.system.cavity_pressure)
+        ok, steps, self.exact, w.count, w.width = solve(
+            self.u,
+            self.trial,
+            fixed,
+            self._speeds(),
+            (False, self.complementary and not fills),
+            self.fields,
+            self.H_t,
+            None,
+            self._oil(share),
+            w.matrix,
+            self.residual,
+            self._unknown(),
+            (self.reusable, True, w.count, w.width),
         )
+        if fills:
+            np.logical_and(self.full, self.free, out=w.active)
         self.reusable = ok
         return ok, steps
 
@@ -236,13 +242,13 @@ class CompressibleFilmSolver(FilmSolver):
         s, w, fixed = self.system, self.work, self.grid.fixed
         P = s.linear_pressure
         w.warm = True
-        if self.kind == CLIPPED:
+        if self.closure.clips:
             np.copyto(s.pressure, np.where(fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~fixed, s.cavity_pressure <= P, out=w.active)
-        elif self.kind != FULL:
-            raise_to(P, fixed, s.cavity_pressure)
-            if self.kind == FILLED:
-                np.clip(s.fill, 0.0, 1.0, out=s.fill)
+        elif not self.complementary:
+            np.logical_not(fixed, out=w.active)
+        elif self.closure.conserves_mass:
+            np.maximum(s.fill, 0.0, out=s.fill)
         return Status.CONVERGED, steps
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
@@ -251,8 +257,10 @@ class CompressibleFilmSolver(FilmSolver):
 
         False where that has no pressure.
         """
-        s, b, out = self.system, self.buffers, (p_out, ratio_out, ratio_P_out, p_P_out)
-        if viscosity_at(s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, b.known, b.rho, *out):
+        s, out = self.system, (p_out, ratio_out, ratio_P_out, p_P_out)
+        if viscosity_at(
+            s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, self.known, self.rho, *out
+        ):
             return True
         if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
             return False
@@ -265,7 +273,7 @@ class CompressibleFilmSolver(FilmSolver):
         """Scaled pressure of the last solution (n, m) and its derivative to the
         transformed one; False where that has no pressure."""
         s, table = self.system, self.law.kernel_table
-        if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.buffers.known, p_out, p_P_out):
+        if pressure_at(s.pressure, self.pressure_scale, self._floor, table, self.known, p_out, p_P_out):
             return True
         rest = np.empty((2, *p_out.shape))
         return self.viscosity(p_out, rest[0], rest[1], p_P_out)
@@ -290,11 +298,8 @@ class CompressibleFilmSolver(FilmSolver):
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
         w = self.work
-        solve_exact_transposed(
-            self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
-            self.law.kernel_table, self._unknown_pressure(), w.count, w.width, self.buffers, self.exact, rhs,
-        )  # fmt: skip
-        self.exact = True
+        lower, upper = self._exact_factor()
+        solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
@@ -310,17 +315,13 @@ class CompressibleFilmSolver(FilmSolver):
 
     def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
         """L and U of Newton's matrix at the solution, factored if the last one was before."""
-        w, b = self.work, self.buffers
+        w = self.work
         if not self.exact:
-            factor_compressible(
-                self.system.linear_pressure, self._fill, self.film, self.kind, self.pressure_scale, self._floor,
-                self.law.kernel_table, 1.0, self._unknown_pressure(), b,
-            )  # fmt: skip
+            _, w.count, w.width = factor(
+                self.u, self.grid.fixed, self._speeds(), self.fields, None, self._oil(1.0), w.matrix, self._unknown()
+            )
             self.exact = True
-        return dense_band(b.lower, w.count, w.width), dense_band(b.upper, w.count, w.width)
-
-    def _unknown_pressure(self) -> np.ndarray:
-        return ~self.grid.fixed if self.kind == CLIPPED else self.work.active
+        return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
     def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
         """Derivatives (5, n, m) of the links' mass flows with respect to their gaps and the speeds."""
@@ -329,7 +330,7 @@ class CompressibleFilmSolver(FilmSolver):
     def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
         s, content = self.system, self.area * self.rho
-        if self.kind == FILLED:
+        if self.closure.conserves_mass:
             content *= s.fill
         if s.inverse_step > 0.0 and not self.instant:
             return self.nothing, content * s.inverse_step

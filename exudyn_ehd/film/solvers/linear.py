@@ -129,9 +129,12 @@ class FilmSolver:
         self.vx = 0.0
         self.vz = 0.0
         self.instant = False
+        # whether there is a cavity, and whether no unknown pressure is below the cavity's
+        self.ruptures = bool(np.isfinite(closure.cavity_pressure))
+        self.complementary = self.ruptures and not closure.clips
         coarse = grid.coarser()
         self.coarse: FilmSolver | None = None
-        if coarse is not None and not closure.clips and np.isfinite(closure.cavity_pressure):
+        if coarse is not None and self.complementary:
             self.coarse = FilmSolver(
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
             )

@@ -12,8 +12,6 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.reynolds.links import FilmState
 
 
@@ -112,7 +110,32 @@ class Balance(Protocol):
         """Whether the film holds what a film can hold."""
 
 
-def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
+@njit(cache=True)
+def too_slow(size, last):
+    """Whether a step shows that an older factor is of no use any more; ``last`` is the step before."""
+    return size > RULE.contraction * last
+
+
+@njit(cache=True)
+def improves(gap, trial_norm, norm, size, changes):
+    """Whether a trial state is taken: with a gap, and balances that hold better, unless they can't tell."""
+    return gap > 0.0 and (trial_norm < norm or size <= RULE.silent or changes > 0)
+
+
+@njit(cache=True)
+def is_final(left, last, fresh):
+    """Whether what a step leaves may be left: about its square, or with an
+    older factor itself times its ratio to the last one."""
+    return left * left <= (RULE.square if fresh else RULE.converged * min(max(last, 1e-300), 1.0))
+
+
+@njit(cache=True)
+def pays_again(size, last, new):
+    """Whether a factor is used for another step; ``new``: it was for the first time, in this film."""
+    return new or size <= RULE.reusable * last
+
+
+def newton(film: Balance) -> tuple[bool, int]:
     """Solve from the film's present state, in place; returns (found, steps)."""
     norm, gap = film.balance(film.u)
     if not gap > 0.0:
@@ -121,7 +144,7 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
     reused = ready = film.reusable
     film.reusable = film.exact = False
     last, last_left, moved = 0.0, 0.0, 0.0
-    for count in range(1, rule.most_steps + 1):
+    for count in range(1, RULE.most_steps + 1):
         fresh = not ready
         if fresh:
             if not film.factor():
@@ -134,12 +157,12 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
         if not step.size < 1e300:
             return False, count
         from_last = reused and count == 1
-        converged = step.size <= rule.converged
-        if not (fresh or from_last or converged) and step.size > rule.contraction * last:
+        converged = step.size <= RULE.converged
+        if not (fresh or from_last or converged) and too_slow(step.size, last):
             ready = False
             continue
-        share, trial_norm, trial_gap = _search(film, step, norm, 1 if from_last else rule.most_halvings, rule)
-        if from_last and not (trial_gap > 0.0 and (trial_norm < norm or converged)):
+        share, trial_norm, trial_gap = _search(film, step, norm, 1 if from_last else RULE.most_halvings)
+        if from_last and not improves(trial_gap, trial_norm, norm, step.size, film.changes):
             norm, gap = film.balance(film.u)
             film.undo()
             ready = False
@@ -155,25 +178,19 @@ def newton(film: Balance, rule: Rule = RULE) -> tuple[bool, int]:
         ready = changes == 0 and share == 1.0
         if ready:
             converged = converged and film.settled(norm)
-            if converged or (not from_last and _left(step.left, last_left, fresh, rule) <= 1.0):
+            if converged or (not from_last and is_final(step.left, last_left, fresh)):
                 if not converged:
                     film.correct(gap)
-                film.exact = not from_last and moved <= rule.exact
+                film.exact = not from_last and moved <= RULE.exact
                 film.reusable = True
                 return film.sound(), count
-        # a factor that leaves much of a step is of no use after it
-        ready = ready and (fresh or from_last or step.size <= rule.reusable * last)
-        last, last_left = step.size, step.left
-    return False, rule.most_steps
+        ready = ready and pays_again(step.size, last, fresh or from_last)
+        # how steps with another film's factor shrink says nothing about what is left
+        last, last_left = step.size, 0.0 if from_last else step.left
+    return False, RULE.most_steps
 
 
-def _left(left: float, last: float, fresh: bool, rule: Rule) -> float:
-    """What a step leaves over what may be left: about its square, or with an
-    older factor itself times its ratio to the last one."""
-    return left * left / (rule.square if fresh else rule.converged * min(max(last, 1e-300), 1.0))
-
-
-def _search(film: Balance, step: Step, norm: float, most: int, rule: Rule) -> tuple[float, float, float]:
+def _search(film: Balance, step: Step, norm: float, most: int) -> tuple[float, float, float]:
     """Halve the step until the balances improve; returns (share of the step, norm, smallest gap)."""
     share, changes, trial_norm, gap = step.share, film.changes, np.inf, -1.0
     for k in range(most):
@@ -181,17 +198,6 @@ def _search(film: Balance, step: Step, norm: float, most: int, rule: Rule) -> tu
             share *= 0.5
             changes = film.move(share, step.peak)
         trial_norm, gap = film.balance(film.trial)
-        if gap > 0.0 and (trial_norm < norm or step.size <= rule.silent or changes > 0):
+        if improves(gap, trial_norm, norm, step.size, changes):
             break
     return share, trial_norm, gap
-
-
-@njit(cache=True)
-def solve_step(residual, order, x, lower, upper, inv_diag, count, width):
-    """Newton's step of the numbered unknowns into x."""
-    flat = residual.reshape(-1)
-    for r in range(count):
-        x[r] = -flat[order[r]]
-    if count > 0:
-        L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-        solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))

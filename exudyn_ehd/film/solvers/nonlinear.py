@@ -60,7 +60,6 @@ from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
-from exudyn_ehd.film.solvers.liner.film import CLIPPED, FULL
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
 from exudyn_ehd.film.solvers.liner.parts import ElementContact, ElementLimiter, ElementOil, LinerParts
 from exudyn_ehd.status import Status
@@ -237,7 +236,7 @@ class NonlinearFilmSolver(FilmSolver):
         if e.contact is not None:
             return Status.NOT_CONVERGED
         # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
-        shut = e.kind == FULL or float(e.rigid[0].min()) + e.beta * e.cavity_load <= 0.0
+        shut = not self.ruptures or float(e.rigid[0].min()) + e.beta * e.cavity_load <= 0.0
         return Status.NO_FILM if shut else Status.NOT_CONVERGED
 
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
@@ -268,10 +267,10 @@ class NonlinearFilmSolver(FilmSolver):
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
         g, s, e = self.grid, self.system, self.elements
         P = s.linear_pressure
-        if e.kind == CLIPPED:
+        if self.closure.clips:
             np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
             np.logical_and(~g.fixed, s.cavity_pressure <= P, out=self.work.active)
-        elif e.kind == FULL:
+        elif not self.ruptures:
             np.logical_not(g.fixed, out=self.work.active)
         e.gradients()
         if self.closure.conserves_mass and e.rates.mass > 0.0:
@@ -292,7 +291,7 @@ class NonlinearFilmSolver(FilmSolver):
         if not e.exact:
             e.factor()
             e.exact = True
-        lower, upper = (dense_band(band, w.count, w.width) for band in e.factored[2:4])
+        lower, upper = (dense_band(band, w.count, w.width) for band in e.matrix[2][2:4])
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
 
     def motion_columns(self, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:

@@ -256,10 +256,11 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     e.balance(e.u)
     e.gradients()
     lower, upper = (np.zeros((P.size, 2 * SMALL.z.size + 6)) for _ in range(2))
+    slopes = e.matrix[0]
     count, width = number_cells(~SMALL.fixed, e.metric[0], w.order, w.number)
-    film_slopes(*(e._sides(e.u)[1:]), None, None, e.terms, e.slopes)
-    add_gap_slopes(*e._sides(e.u), None, e.terms, e.answer, e.load, e.rates, e.beta, e.by, e.slopes)
-    assemble(e.metric[0], e.metric[1], e.slopes, w.number, w.order, count, lower, upper)
+    film_slopes(*(e._sides(e.u)[1:]), None, None, e.terms, slopes)
+    add_gap_slopes(*e._sides(e.u), None, e.terms, e.answer, e.load, e.rates, e.beta, e.by, slopes)
+    assemble(e.metric[0], e.metric[1], slopes, w.number, w.order, count, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
         for d in range(min(width, count - 1 - k) + 1):
@@ -281,7 +282,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
 
 @every_closure
 def test_the_driver_compiled_as_a_whole_finds_the_same_film(closure):
-    """`solve_plain` and `newton` by turns on one film: 1e-11 of the peak, steady and with the liner's rate."""
+    """`compiled.solve` and `newton` by turns on one film: 1e-11 of the peak, steady and with the liner's rate."""
     if closure.conserves_mass:
         return
     for eps, rate, step in ((0.6, 10.0, 0.0), (0.95, -4.0, 1e-3)):

@@ -6,7 +6,6 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner.film import CLIPPED, COMPLEMENTARY, FULL
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 
 GRID = bearing_grid(0.02, 0.03, 32, 6)
@@ -72,7 +71,7 @@ def test_balance(closure):
     e.deflection_old[:] = rng.random(GRID.shape)
     P = e.u.P
     P[:] = 1.0 + rng.normal(size=GRID.shape)
-    D = np.where(GRID.fixed | (e.kind != CLIPPED), P, np.maximum(P, pc))
+    D = np.where(GRID.fixed | (not closure.clips), P, np.maximum(P, pc))
     norm, smallest = e.balance(e.u)
     assert smallest > 0.0 and norm > 0.0
     expected = balance(e.rigid, P, D, 2.0, -1.0, 0.02, 3.0, e.deflection_old)
@@ -274,13 +273,13 @@ def test_suction_that_runs_away_is_balanced_or_refused():
 
 def test_status_of_films_that_are_not_found():
     """Tension that may pull the liner shut: no film to be found; else the closure did not settle."""
-    solver = NonlinearFilmSolver(GRID, ehd.SwiftStieber())
-    e = solver.elements
-    e.beta, e.rigid[0] = 0.01, 0.1
-    for e.kind, e.cavity_load, status in (
-        (FULL, 0.0, ehd.Status.NO_FILM),
-        (COMPLEMENTARY, -20.0, ehd.Status.NO_FILM),
-        (COMPLEMENTARY, -1.0, ehd.Status.NOT_CONVERGED),
-        (CLIPPED, 0.0, ehd.Status.NOT_CONVERGED),
+    for closure, cavity_load, status in (
+        (ehd.FullSommerfeld(), 0.0, ehd.Status.NO_FILM),
+        (ehd.SwiftStieber(), -20.0, ehd.Status.NO_FILM),
+        (ehd.SwiftStieber(), -1.0, ehd.Status.NOT_CONVERGED),
+        (ehd.Gumbel(), 0.0, ehd.Status.NOT_CONVERGED),
     ):
+        solver = NonlinearFilmSolver(GRID, closure)
+        e = solver.elements
+        e.beta, e.rigid[0], e.cavity_load = 0.01, 0.1, cavity_load
         assert solver._failure() is status

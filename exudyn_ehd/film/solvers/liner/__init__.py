@@ -4,10 +4,9 @@ Module map
 ----------
 elements      Winkler elements: what presses on them, how far they deflect
 gap_response  what flows answer to gaps that follow the pressure
-kernels       balance, matrix, steps and sets as kernels
+kernels       balance as kernels
 film          the film on them: gaps, links, balance, derivatives
 balance       the film as Newton's method sees it
-compiled      Newton's method compiled as a whole, for a film without effects
 continuation  dry guess and pseudo time
 parts         contact, gap limiter and oil, as the elements take them
 """

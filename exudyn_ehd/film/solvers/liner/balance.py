@@ -8,25 +8,27 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
 from exudyn_ehd.film.reynolds.links import FilmState
+from exudyn_ehd.film.solvers.compiled import solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.liner.compiled import solve_plain
-from exudyn_ehd.film.solvers.liner.film import CLIPPED, COMPLEMENTARY, LinerFilm
-from exudyn_ehd.film.solvers.liner.kernels import (
+from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner.parts import LinerParts
+from exudyn_ehd.film.solvers.newton import RULE, Step, newton
+from exudyn_ehd.film.solvers.steps import (
     BALANCED,
+    ENDLESS,
     LEAST_DEFLECTION,
     LEAST_PRESSURE,
     ROUNDED,
     ROUNDING,
     SUCTION,
-    factor_liner,
+    admit,
+    factor_film,
     flow_rounding,
-    liner_step,
+    newton_step,
     select,
     take_over,
     take_step,
 )
-from exudyn_ehd.film.solvers.liner.parts import LinerParts
-from exudyn_ehd.film.solvers.newton import RULE, Step, newton
 
 
 class LinerBalance(LinerFilm):
@@ -34,44 +36,41 @@ class LinerBalance(LinerFilm):
 
     def __init__(self, film: FilmSolver, set_links: Callable[[], None], parts: LinerParts) -> None:
         super().__init__(film, set_links, parts)
-        shape, w = film.grid.shape, film.work
+        shape, self.matrix = film.grid.shape, film.work.matrix
         self.trial = FilmState(np.zeros(shape), np.ones(shape), np.ones(shape, dtype=np.bool_))
-        self.slopes = np.zeros((5, w.order.size))
-        self.factored = (w.order, w.unknowns, w.lower, w.upper, w.inv_diag)
         self.exact = self.reusable = False
         self.changes = 0
         self.slight = self.noise = 0.0
 
     def solve(self) -> tuple[bool, int]:
         """Newton for the film that is asked for, from the present state and sets: (found, steps)."""
-        s, free = self.film.system, ~self.film.grid.fixed
-        if self.fills:
-            # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
-            self.u.full[~free] = True
-            self.u.fill[self.u.full] = 1.0
-            self.u.P[~self.u.full] = s.cavity_pressure
-        elif self.kind == COMPLEMENTARY:
-            np.copyto(self.u.P, np.maximum(self.u.P, s.cavity_pressure), where=free)
+        # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
+        if self.film.complementary:
+            admit(*self._sides(self.u), self.film.grid.fixed, self.film.system.cavity_pressure)
         return self._solve_plain() if self.plain and not self.fills else newton(self)
 
     def _solve_plain(self) -> tuple[bool, int]:
         """`newton` compiled as a whole."""
         f, w, start = self.film, self.film.work, self.reusable and self.film.work.warm
         self.reusable = self.exact = self.known_slopes = False
-        ok, steps, self.exact, w.count, w.width = solve_plain(
-            tuple(self.u),
-            tuple(self.trial),
+        ok, steps, self.exact, w.count, w.width = solve(
+            self._sides(self.u),
+            self._sides(self.trial),
             f.grid.fixed,
             (f.system.cavity_pressure, f.vx, f.vz, self.beta),
-            (self.kind == CLIPPED, self._chooses()),
-            (self.load_fields, self.rigid, self.true_gap, self.deflection_old, self.gap_fields, self.slope_fields),
-            (self.metric, self.term_fields, self.known),
-            tuple(self.rates),
-            (self.by, self.slopes, w.number, self.factored),
+            (self.clips, self._chooses()),
+            self.term_fields,
+            self.rigid[2],
+            (
+                self.load_fields, self.rigid, self.true_gap, self.deflection_old, self.gap_fields, self.slope_fields,
+                self.metric, self.known, tuple(self.rates), self.by,
+            ),
+            None,
+            self.matrix,
             self.residual,
             w.active,
             (start, w.warm, w.count, w.width),
-        )
+        )  # fmt: skip
         self.reusable = ok
         return ok, steps
 
@@ -109,22 +108,14 @@ class LinerBalance(LinerFilm):
         w, u, g = self.film.work, self.u, self.film.grid
         if not self.known_slopes:
             self.gradients()
-        active = w.active if self._chooses() else ~g.fixed
-        ok, w.count, w.width = factor_liner(
+        ok, w.count, w.width = factor_film(
             self._sides(u),
             (self.rho, self.rho_P),
             self.term_fields,
             g.fixed,
-            self.slope_fields,
-            self.load_fields,
-            tuple(self.rates),
-            self.beta,
-            self.by,
-            self.slopes,
-            self.metric,
-            active,
-            w.number,
-            self.factored,
+            (self.slope_fields, self.load_fields, tuple(self.rates), self.beta, self.by),
+            self.matrix,
+            w.active if self._chooses() else ~g.fixed,
         )
         return bool(ok)
 
@@ -135,18 +126,17 @@ class LinerBalance(LinerFilm):
     def step(self, gap: float) -> Step:
         """Newton's step with the factor at hand, and the trial state after it; ``gap`` is the smallest one."""
         w, opening, pc = self.film.work, gap / self.beta, self.film.system.cavity_pressure
-        *found, self.changes = liner_step(
+        *found, self.changes = newton_step(
             self.residual,
-            tuple(self.u),
-            self.load_fields,
-            self.gaps.H,
-            self.answer.H_P,
-            self.factored,
+            self._sides(self.u),
+            (self.load_fields, self.gap_fields, self.slope_fields),
+            ENDLESS,
+            self.matrix[2],
             w.count,
             w.width,
-            (self.kind == CLIPPED and not self.fills, self._chooses(), self.fills),
+            (self.clips, self._chooses()),
             (pc, self.cavity_load, max(LEAST_DEFLECTION * opening, self.slight), opening, ROUNDED * self.slight),
-            tuple(self.trial),
+            self._sides(self.trial),
         )
         return Step(*found)
 
@@ -155,15 +145,16 @@ class LinerBalance(LinerFilm):
         self.press(self.u.P)
         self.changes = int(
             take_step(
-                tuple(self.u),
-                self.load_fields,
-                self.factored,
+                self._sides(self.u),
+                (self.load_fields,),
+                ENDLESS,
+                self.matrix[2],
                 self.film.work.count,
                 share,
                 self.film.system.cavity_pressure,
-                (self._chooses(), self.fills),
+                self._chooses(),
                 max(SUCTION * peak, ROUNDED * self.slight),
-                tuple(self.trial),
+                self._sides(self.trial),
             )
         )
         return self.changes
@@ -192,7 +183,7 @@ class LinerBalance(LinerFilm):
 
     def settled(self, norm: float) -> bool:
         """Whether small steps mean a solution: suction without bounds makes any step a small one."""
-        return self.kind != CLIPPED or self.fills or norm <= BALANCED / ROUNDING * self.noise
+        return not self.clips or norm <= BALANCED / ROUNDING * self.noise
 
     def correct(self, gap: float) -> None:
         """One more step for the balances where the gap is wide: what is left changes the gaps by next to nothing."""

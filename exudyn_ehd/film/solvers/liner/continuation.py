@@ -9,7 +9,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
-from exudyn_ehd.film.solvers.liner.film import FULL
 from exudyn_ehd.film.solvers.liner.parts import ElementOil
 from exudyn_ehd.film.solvers.newton import newton
 
@@ -49,7 +48,7 @@ def _dry_guess(film: LinerBalance) -> None:
     if film.oil is not None:
         guess = _transformed(film, film.oil, guess)
     free = ~film.film.grid.fixed
-    lowest = film.film.system.cavity_pressure if film.kind != FULL else 0.0
+    lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0
     film.u.P[free] = np.maximum(guess, lowest)[free]
 
 

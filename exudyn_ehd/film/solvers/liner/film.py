@@ -32,8 +32,6 @@ from exudyn_ehd.film.solvers.liner.kernels import (
 )
 from exudyn_ehd.film.solvers.liner.parts import ElementContact, LinerParts
 
-FULL, CLIPPED, COMPLEMENTARY = 0, 1, 2
-
 
 class LinerFilm:
     """Film on Winkler elements: gaps and links for its unknowns, its balance and derivatives.
@@ -57,10 +55,7 @@ class LinerFilm:
             self.to_pressure = density.pressure
         s, g, closure = film.system, film.grid, film.closure
         shape = g.shape
-        if closure.clips:
-            self.kind = CLIPPED
-        else:
-            self.kind = COMPLEMENTARY if np.isfinite(closure.cavity_pressure) else FULL
+        self.clips = closure.clips
         # whether vertices may be cavitated; a film that keeps its mass starts cold from one that ruptures without
         self.fills = closure.conserves_mass
         self.beta, self.scale = 0.0, 1.0
@@ -113,7 +108,7 @@ class LinerFilm:
     def set_known_loads(self) -> bool:
         """Pressures on the elements at prescribed vertices and in the cavity; False where the oil has none."""
         fixed, pc = self.film.grid.fixed, self.film.system.cavity_pressure
-        self.cavity_load = 0.0 if self.kind == FULL else pc
+        self.cavity_load = pc if self.film.ruptures else 0.0
         P = self.u.P
         if self.to_pressure is None:
             return True
@@ -129,7 +124,7 @@ class LinerFilm:
     def press(self, P: np.ndarray) -> bool:
         """Pressure on every element for the film's unknown P; False where the oil would be solid."""
         load, f = self.load, self.film
-        drive_elements(P, f.grid.fixed, f.system.cavity_pressure, self.kind == CLIPPED, self.load_fields)
+        drive_elements(P, f.grid.fixed, f.system.cavity_pressure, self.clips, self.load_fields)
         if self.oil is None or self.to_pressure is None:
             return True
         if not self.to_pressure(load.drive * self.scale, load.p, load.slope, load.bend):
@@ -151,7 +146,7 @@ class LinerFilm:
                 P,
                 f.grid.fixed,
                 f.system.cavity_pressure,
-                self.kind == CLIPPED,
+                self.clips,
                 self.load_fields,
                 self.rigid,
                 self.beta,
@@ -227,7 +222,7 @@ class LinerFilm:
             P,
             f.grid.fixed,
             (f.system.cavity_pressure, f.vx, f.vz, self.beta),
-            (self.kind == CLIPPED, self._chooses()),
+            (self.clips, self._chooses()),
             self.load_fields,
             self.rigid,
             self.true_gap,
@@ -243,7 +238,7 @@ class LinerFilm:
 
     def _chooses(self) -> bool:
         """Whether vertices without pressure are no unknowns."""
-        return self.kind == COMPLEMENTARY and not self.fills
+        return self.film.complementary and not self.fills
 
     def gradients(self) -> None:
         """Derivatives of gaps and of the links' flows at the present state, into ``answer`` and ``by``."""
