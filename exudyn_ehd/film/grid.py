@@ -24,7 +24,8 @@ import numpy as np
 class Mesh(NamedTuple):
     """Metric of a `FilmGrid`, as arrays of the same names.
 
-    Kernels are handed plain tuples, and give names to them: numba looks at one with names for as long as they compute.
+    Kernels are handed plain tuples and give them their names: to look at a tuple with names takes numba as long as such
+    a kernel runs.
     """
 
     width_x: np.ndarray

@@ -1,8 +1,8 @@
 """Derivatives of the links' flows to gap and speeds at fixed pressure, and their sums with adjoint solutions.
 
 For an adjoint solution lam the gradient of ``-lam . r``, r the balance of the vertices, is taken either as fields
-(`contract_links`, for elastic bores and liners) or, with the chain rule to the journal's pose, in one sweep without
-fields in between (`pose_gradient`).
+(`contract_links`) or, with the chain rule to the journal's pose, from the gradients of the balances
+(`exudyn_ehd.film.sensitivity.rigid.motion_columns`).
 
 Symbols: DX, DZ derivative of the flow of a link in theta, z with respect to the gap that the link sees (with the
 limiter's slope for the true gap), SX, SZ with respect to its own mean speed, SZX of the flow in z with respect to vx;

@@ -2,7 +2,7 @@
 
 Module map
 ----------
-rigid            from the adjoint film to the pose of a rigid journal, and the wrench
+rigid            from the balances to the motion of a rigid journal, and the wrench
 mirror_symmetry  even and odd halves of the film
 bore_stencil     from the adjoint film to the elastic bore
 """

@@ -28,7 +28,7 @@ def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, pla
     order, count
         Flat vertices of the unknowns.
     d, slope, AR, AC : (5, n, m) array, (n, m) arrays
-        As `swept_derivatives` returns them.
+        As `gap_derivatives` returns them.
     by_gap, by_rate : float
         Factors.
     weight_out, place_out : (count, 5) float and int arrays

@@ -33,7 +33,7 @@ from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, shear_needs_adjoint, swept_derivatives, wrench_tangent
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, gap_derivatives, shear_needs_adjoint, wrench_tangent
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
@@ -99,7 +99,7 @@ class Balances:
         p, work = film.parts, film.solver.work
         self.clearance = p.bearing.radial_clearance
         self.places = work.order[: work.count]
-        self.links, self.slope, self.by_rate, self.by_gap = swept_derivatives(film)
+        self.links, self.slope, self.by_rate, self.by_gap = gap_derivatives(film)
         self.motion = np.empty((MOTION_SIZE, work.count))
         motion_columns(
             self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion

@@ -119,11 +119,11 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
     if film.parts.liner is not None:
         film.parts.liner.motion_columns(at, out)
     else:
-        motion_columns(w.order, w.count, *swept_derivatives(film), at, out)
+        motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
     return out
 
 
-def swept_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Derivatives to the true gap: of the links (5, n, m), and slope, AR, AC (n, m) as `motion_columns` takes them."""
     s = film.solver
     d = s.link_derivatives()
