@@ -12,7 +12,9 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 
@@ -38,56 +40,6 @@ class GapTerm(Protocol):
         """Scaled addition to the gap at the vertices (n, m) for the history at the start of the step."""
 
 
-class GapLimiter(Protocol):
-    """Keeps the gap that the film sees above zero where surfaces touch."""
-
-    @property
-    def limits_below(self) -> float:
-        """Scaled gap from which on the film sees the gap itself."""
-
-    def limit(
-        self,
-        H: np.ndarray,
-        HF: np.ndarray,
-        H_t: np.ndarray,
-        slope_out: np.ndarray,
-        bend_out: np.ndarray,
-        face_slope_out: np.ndarray,
-    ) -> None:
-        """Replace gaps at vertices (H) and links (HF) and the gap's rate (H_t) by the film's, in place.
-
-        ``slope_out`` and ``face_slope_out`` take d(film gap)/d(gap), ``bend_out`` the second derivative times the
-        gap's rate.
-        """
-
-
-class Contact(Protocol):
-    """A pressure between the surfaces that depends on the true gap alone."""
-
-    @property
-    def presses_below(self) -> float:
-        """Scaled gap from which on there is no pressure."""
-
-    def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
-        """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
-
-    def settle(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None:
-        """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place.
-
-        Outputs: the pressure there, Pa, and its slope over ``scale``.
-        """
-
-    @property
-    def friction_coefficient(self) -> float:
-        """Boundary friction coefficient; 0 for a frictionless contact."""
-
-    @property
-    def transition_speed(self) -> float:
-        """Sliding speed over which Coulomb friction is regularised, m/s."""
-
-
 class Wear(Protocol):
     """A depth that the contact pressure adds to the gap, step by accepted step."""
 
@@ -96,27 +48,6 @@ class Wear(Protocol):
 
     def grown(self, wear: np.ndarray | None, contact_pressure: np.ndarray, speed: float, step: float) -> np.ndarray:
         """Scaled depth (n, m) after a step (s) under a contact pressure (n, m) in Pa and a sliding speed in m/s."""
-
-
-class PressureLaw(Protocol):
-    """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
-
-    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever
-    the law: the complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
-    """
-
-    @property
-    def largest_pressure(self) -> float:
-        """Pa, at which the oil counts as solid."""
-
-    def transform(self, p: np.ndarray) -> np.ndarray:
-        """q(p), Pa."""
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q (1/Pa).
-
-        False where q has no p.
-        """
 
 
 class ShearFactor(Protocol):

@@ -134,6 +134,7 @@ SHARED = {
     "cavitation.cavity_transport",
     "surfaces.patir_cheng",
     "solvers.liner.parts",
+    "surfaces.contact",
     "surfaces.elastic_liner",
     "solvers.balance",
     "banded.assemble",

@@ -32,14 +32,29 @@ _ONE, _ROW = _unsigned(1), _unsigned(7)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
 
 
-class BoundPressureLaw(Protocol):
-    """A pressure law for one reference viscosity."""
+class PressureLaw(Protocol):
+    """Viscosity that depends on pressure, by the Kirchhoff transform q = integral dp / (mu(p)/mu_0).
+
+    With it the pressure flow ``mu_0 / mu(p) grad p = grad q`` is that of a film of constant viscosity in q, whatever
+    the law: the complementarity problem and its solver stay as they are. Pressures in Pa (gauge).
+    """
+
+    @property
+    def largest_pressure(self) -> float:
+        """Pa, at which the oil counts as solid."""
 
     def transform(self, p: np.ndarray) -> np.ndarray:
         """q(p), Pa."""
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = dp/dq and dr/dq (1/Pa); False where q has no p."""
+        """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q (1/Pa).
+
+        False where q has no p.
+        """
+
+
+class BoundPressureLaw(PressureLaw, Protocol):
+    """A pressure law for one reference viscosity."""
 
     def ratio(self, p: np.ndarray) -> np.ndarray:
         """r(p) for p >= 0."""
@@ -50,10 +65,6 @@ class BoundPressureLaw(Protocol):
     @property
     def coefficient(self) -> float:
         """dr/dp at ambient pressure, 1/Pa; below, the law is Barus' with this coefficient."""
-
-    @property
-    def largest_pressure(self) -> float:
-        """Pa, at which the oil counts as solid."""
 
 
 LARGEST_COEFFICIENT = 1e-4

@@ -53,6 +53,7 @@ from exudyn_ehd.film.banded.assemble import dense_band
 from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
 from exudyn_ehd.film.solvers.balance import film_balance
@@ -61,7 +62,8 @@ from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
 from exudyn_ehd.film.solvers.liner.gap_response import gap_columns
-from exudyn_ehd.film.solvers.liner.parts import ElementContact, ElementLimiter, ElementOil, LinerParts
+from exudyn_ehd.film.solvers.liner.parts import LinerParts
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing step where the pressure at one instant is asked for, s; short against any motion of a journal.
@@ -101,10 +103,10 @@ class NonlinearFilmSolver(FilmSolver):
         closure: Closure,
         *,
         squeeze: bool = True,
-        contact: ElementContact | None = None,
-        limiter: ElementLimiter | None = None,
+        contact: Contact | None = None,
+        limiter: GapLimiter | None = None,
         flux_effects: tuple[FluxEffect, ...] = (),
-        oil: ElementOil | None = None,
+        oil: PressureLaw | None = None,
         density: CompressibleLaw | None = None,
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)

@@ -8,6 +8,7 @@ flow_factors    the same as effects on flow and friction
 average_gap     mean gap of rough surfaces
 asperity        Greenwood-Tripp
 wall            RegularisedWall
+contact         what a contact and a gap limiter must offer
 contact_wrench  forces of the contacts
 elastic_liner   ElasticLiner, the option
 wear            Archard

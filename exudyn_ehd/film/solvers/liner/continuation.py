@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
-from exudyn_ehd.film.solvers.liner.parts import ElementOil
 from exudyn_ehd.film.solvers.newton import newton
 
 MAX_PSEUDO_STEPS = 200
@@ -52,7 +52,7 @@ def _dry_guess(film: LinerBalance) -> None:
     film.u.P[free] = np.maximum(guess, lowest)[free]
 
 
-def _transformed(film: LinerBalance, oil: ElementOil, guess: np.ndarray) -> np.ndarray:
+def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.ndarray:
     """Unknowns of guessed pressures (n, m), which thicken the oil no more than they need to open the gap."""
     touching = np.maximum((OPEN - film.rigid[0]) / film.beta, 0.0)
     p = np.minimum(guess, np.maximum(touching, MODERATE * oil.largest_pressure / film.scale))

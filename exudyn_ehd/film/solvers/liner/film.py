@@ -30,7 +30,8 @@ from exudyn_ehd.film.solvers.liner.kernels import (
     liner_residual,
     plain_residual,
 )
-from exudyn_ehd.film.solvers.liner.parts import ElementContact, LinerParts
+from exudyn_ehd.film.solvers.liner.parts import LinerParts
+from exudyn_ehd.film.surfaces.contact import Contact
 
 
 class LinerFilm:
@@ -171,7 +172,7 @@ class LinerFilm:
             self.smallest = min(smallest, on_links)
         return True
 
-    def _touch(self, contact: ElementContact, smallest: float) -> None:
+    def _touch(self, contact: Contact, smallest: float) -> None:
         """Gaps of elements that the contact presses as well."""
         if smallest < contact.presses_below:
             contact.settle(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)

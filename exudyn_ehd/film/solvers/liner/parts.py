@@ -2,45 +2,11 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
-
-import numpy as np
+from typing import NamedTuple
 
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
-
-
-class ElementContact(Protocol):
-    """What presses on a Winkler element besides the film; as `exudyn_ehd.joint.seams.Contact`."""
-
-    @property
-    def presses_below(self) -> float: ...
-
-    def settle(
-        self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
-    ) -> None: ...
-
-
-class ElementLimiter(Protocol):
-    """The gap that the film sees between touching surfaces; as `exudyn_ehd.joint.seams.GapLimiter`."""
-
-    @property
-    def limits_below(self) -> float: ...
-
-    def limit(
-        self, H: np.ndarray, HF: np.ndarray, H_t: np.ndarray,
-        slope_out: np.ndarray, bend_out: np.ndarray, face_slope_out: np.ndarray,
-    ) -> None: ...  # fmt: skip
-
-
-class ElementOil(Protocol):
-    """How pressure follows from the film's unknown; as `exudyn_ehd.joint.seams.PressureLaw`."""
-
-    @property
-    def largest_pressure(self) -> float: ...
-
-    def transform(self, p: np.ndarray) -> np.ndarray: ...
-
-    def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool: ...
+from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
+from exudyn_ehd.film.surfaces.contact import Contact, GapLimiter
 
 
 class LinerParts(NamedTuple):
@@ -48,17 +14,17 @@ class LinerParts(NamedTuple):
 
     Attributes
     ----------
-    contact : ElementContact or None
+    contact : Contact or None
         What presses on the liner besides the film.
-    limiter : ElementLimiter or None
+    limiter : GapLimiter or None
         Of the gap that the film sees; goes with the contact or with flow factors.
-    oil : ElementOil or None
+    oil : PressureLaw or None
         Of a viscosity that follows the pressure.
     density : CompressibleLaw or None
         Of a density that does; then it is the ``oil`` as well.
     """
 
-    contact: ElementContact | None
-    limiter: ElementLimiter | None
-    oil: ElementOil | None
+    contact: Contact | None
+    limiter: GapLimiter | None
+    oil: PressureLaw | None
     density: CompressibleLaw | None
