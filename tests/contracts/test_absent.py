@@ -136,7 +136,7 @@ SHARED = {
     "solvers.liner.parts",
     "surfaces.contact",
     "surfaces.elastic_liner",
-    "solvers.balance",
+    "reynolds.balance",
     "banded.assemble",
 }
 

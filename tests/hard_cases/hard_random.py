@@ -31,8 +31,10 @@ from collections.abc import Callable
 import numpy as np
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.cavitation.elrod_adams import film_terms
 from exudyn_ehd.film.lubricant.pressure_viscosity import LARGEST_PRESSURE
-from exudyn_ehd.film.reynolds.links import fill_balance, vertex_balance
+from exudyn_ehd.film.reynolds.balance import film_balance
+from exudyn_ehd.film.reynolds.links import vertex_balance
 from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE, VISCOSITY = 0.01, 2e-5, 0.04
@@ -219,7 +221,7 @@ def balance_error(model):
     y = s.system
     out = np.empty(g.shape)
     if closure.conserves_mass:
-        fill_balance(y.pressure, y.fill, y.coefficients, y.inverse_step, y.mass_old, out)
+        film_balance(y.pressure, y.fill, None, film_terms(y.coefficients, y.inverse_step, y.mass_old), out)
     else:
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P = y.linear_pressure

@@ -28,11 +28,12 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
-from exudyn_ehd.film.banded.workspace import PAD, Workspace
+from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.film.cavitation.cavity_transport import (
@@ -43,10 +44,11 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     solve_transport,
 )
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
 from exudyn_ehd.status import Status, require_number
 
 MAX_NEWTON_STEPS = 60
-MAX_PSEUDO_STEPS = 60
 SET_TOLERANCE = 1e-12
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
@@ -92,7 +94,7 @@ class ElrodAdams:
             ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
             steps += count
         if not ok:
-            ok, count = self._pseudo_transient(system, work)
+            ok, count = self._follow(system, work)
             steps += count
         work.warm = ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
@@ -122,34 +124,28 @@ class ElrodAdams:
         )
         return ok, steps
 
-    def _pseudo_transient(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
-        """Implicit steps towards the target, from short to long and from a full film.
-
-        The last one is the target itself.
-        """
+    def _follow(self, s: FilmSystem, work: Workspace) -> tuple[bool, int]:
+        """In pseudo time from a full film."""
         largest = max(float(np.max(np.abs(s.fx))), float(np.max(np.abs(s.fz))), float(np.max(np.abs(s.H_t * s.area))))
         largest += float(np.max(s.kx) * np.max(np.abs(s.pressure[s.fixed] - s.cavity_pressure), initial=0.0))
         rate = largest / float(np.min(s.area[s.area > 0.0])) + s.inverse_step
-        if rate == 0.0:
-            rate = 1.0
-        mass = s.mass_old if s.inverse_step > 0.0 else s.H.copy()
+        mass = (s.mass_old if s.inverse_step > 0.0 else s.H).copy()
         np.logical_not(s.fixed, out=work.active)
         s.fill[:] = 1.0
-        extra, total = 4.0 * rate, 0
-        for _ in range(MAX_PSEUDO_STEPS):
+
+        def attempt(extra: float) -> tuple[bool, int]:
             inverse = s.inverse_step + extra
-            blend = (s.inverse_step * s.mass_old + extra * mass) / inverse
+            blend = (s.inverse_step * s.mass_old + extra * mass) / inverse if inverse > 0.0 else s.mass_old
             ok, steps = self._newton(s, work, inverse, blend)
-            total += steps
             if ok:
-                mass = s.fill * s.H
-                extra *= 0.5
-                if extra < 1e-6 * rate:
-                    ok, steps = self._newton(s, work, s.inverse_step, s.mass_old)
-                    return ok, total + steps
-            else:
-                extra *= 8.0
-        return False, total
+                np.multiply(s.fill, s.H, out=mass)
+            return ok, steps
+
+        return pseudo_time(attempt, rate if rate > 0.0 else 1.0)
+
+    def _factor(self, work: Workspace) -> tuple[np.ndarray, np.ndarray]:
+        """L and U of the folded ring."""
+        return dense_band(work.lower, work.count, work.width), dense_band(work.upper, work.count, work.width)
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
@@ -159,7 +155,7 @@ class ElrodAdams:
                 reduce_transposed(t, work.count, rhs)
             solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs)
             return
-        solve_lu_transposed(work.lower, work.upper, work.inv_diag, work.count, work.width, rhs)
+        solve_lu_transposed(*self._factor(work), work.inv_diag, work.count, work.width, rhs)
 
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every column of tiles rhs, in place."""
@@ -167,104 +163,54 @@ class ElrodAdams:
             for tile in rhs:
                 solve_transport_transposed(work.transport, work.count, tile[: work.count])
             return
-        solve_in_tiles(work.upper, work.lower, work.inv_diag, False, work.count, work.width, rhs)
+        lower, upper = self._factor(work)
+        solve_in_tiles(upper, lower, work.inv_diag, False, work.count, work.width, rhs)
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the system of the last solution for rhs (count,), in place."""
         if work.convected:
             solve_transport(work.transport, work.count, rhs)
             return
-        solve_lu(work.lower, work.upper, work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
+        solve_lu(*self._factor(work), work.inv_diag, work.count, work.width, rhs.reshape(1, -1))
 
 
 @njit(cache=True)
-def _add_entry(lower, upper, row, col, value):
-    if col >= row:
-        upper[row, col - row] += value
+def film_terms(film, inverse_step, mass_old):
+    """`FilmTerms` of the mass-conserving film of `Coefficients`; parameters as for `solve_elrod`."""
+    grow, kept = np.empty(film.H.shape), np.zeros(film.H.shape)
+    if inverse_step > 0.0:
+        grow[:] = inverse_step * film.H
+        kept[:] = -inverse_step * mass_old
     else:
-        lower[col, row - col] += value
+        grow[:] = film.H_t
+    nothing = np.zeros(film.H.shape)
+    return FilmTerms(film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.fixed)
 
 
 @njit(cache=True)
-def _add_link(c, d, k, f, full, fixed, number, P, pc, lower, upper, rhs):
-    """One link from vertex c to d (flat): Poiseuille k (P_c - P_d) and Couette f fill_upstream.
+def assemble_elrod(terms, links, pc, full, number, order, count, P, lower, upper, rhs):
+    """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones.
 
-    Prescribed vertices count as full.
+    The balance is linear in them: minus its value without them is the right-hand side. ``links``: not zero where
+    vertices are linked in theta; prescribed vertices count as ``full``.
     """
-    # read at once, so that little of what follows branches
-    a, b, full_c, full_d = number[c], number[d], full[c], full[d]
-    P_c, P_d, fixed_c, fixed_d = P[c], P[d], fixed[c], fixed[d]
-    # Poiseuille part: pressure is an unknown at full vertices, known (prescribed or pc) elsewhere.
-    if a >= 0 and full_c:
-        upper[a, 0] += k
-        if b >= 0:
-            _add_entry(lower, upper, b, a, -k)
-    else:
-        known = P_c if fixed_c else pc
-        if a >= 0:
-            rhs[a] -= k * known
-        if b >= 0:
-            rhs[b] += k * known
-    if b >= 0 and full_d:
-        upper[b, 0] += k
-        if a >= 0:
-            _add_entry(lower, upper, a, b, -k)
-    else:
-        known = P_d if fixed_d else pc
-        if b >= 0:
-            rhs[b] -= k * known
-        if a >= 0:
-            rhs[a] += k * known
-    # Couette part: fill of the upstream vertex, an unknown if that one is cavitated.
-    if f >= 0.0:
-        up, up_full = a, full_c
-    else:
-        up, up_full = b, full_d
-    if up >= 0 and not up_full:
-        if a >= 0:
-            _add_entry(lower, upper, a, up, f)
-        if b >= 0:
-            _add_entry(lower, upper, b, up, -f)
-    else:
-        if a >= 0:
-            rhs[a] -= f
-        if b >= 0:
-            rhs[b] += f
-
-
-@njit(cache=True)
-def assemble_elrod(film, inverse_step, mass_old, pc, full, number, count, width, P, lower, upper, rhs):
-    """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones."""
-    n, m = number.shape
-    size, j = n * m, -1
-    kx, kz, fx, fz = film.kx.reshape(-1), film.kz.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
-    area, fixed, H, H_t = film.area.reshape(-1), film.fixed.reshape(-1), film.H.reshape(-1), film.H_t.reshape(-1)
-    sets, rows, pressure, old = full.reshape(-1), number.reshape(-1), P.reshape(-1), mass_old.reshape(-1)
-    rhs[:count] = 0.0
-    lower[:count, : width + 1 + PAD] = 0.0
-    upper[:count, : width + 1 + PAD] = 0.0
-    for at in range(size):
-        # unsigned indices need no check of their sign
-        c, nxt = np.uint64(at), np.uint64(at + m if at + m < size else at + m - size)
-        j = j + 1 if j + 1 < m else 0
-        a = rows[c]
-        if (a >= 0 or rows[nxt] >= 0) and (kx[c] != 0.0 or fx[c] != 0.0):
-            _add_link(c, nxt, kx[c], fx[c], sets, fixed, rows, pressure, pc, lower, upper, rhs)
-        if j + 1 < m:
-            d = c + np.uint64(1)
-            if a >= 0 or rows[d] >= 0:
-                _add_link(c, d, kz[c], fz[c], sets, fixed, rows, pressure, pc, lower, upper, rhs)
-        if a >= 0:
-            w = area[c]
-            if inverse_step > 0.0:
-                rhs[a] += w * old[c] * inverse_step
-                s = w * H[c] * inverse_step
-            else:
-                s = w * H_t[c]
-            if sets[c]:
-                rhs[a] -= s
-            else:
-                upper[a, 0] += s
+    known, fill, out, slopes = np.empty(P.shape), np.empty(P.shape), np.empty(P.shape), np.empty((5, P.size))
+    k, f, given, fixed, sets = (
+        known.reshape(-1),
+        fill.reshape(-1),
+        P.reshape(-1),
+        terms.fixed.reshape(-1),
+        full.reshape(-1),
+    )
+    for c in range(k.size):
+        k[c] = given[c] if fixed[c] else (0.0 if sets[c] else pc)
+        f[c] = 1.0 if sets[c] else 0.0
+    film_balance(known, fill, None, terms, out)
+    film_slopes(fill, full, None, None, terms, slopes)
+    assemble(links, terms.kz, slopes, number, order, count, lower, upper)
+    left = out.reshape(-1)
+    for r in range(count):
+        rhs[r] = -left[order[r]]
 
 
 @njit(cache=True)
@@ -280,11 +226,14 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
             solve_transport(t, count, x)
             return True, count, 1, True
     # oil also links columns that exchange no pressure flow (short bearings)
-    count, width = number_cells(np.logical_not(film.fixed), np.abs(film.kx) + np.abs(film.fx), order, number)
-    assemble_elrod(film, inverse_step, mass_old, pc, full | film.fixed, number, count, width, P, lower, upper, x)
-    if not factor_lu(lower, upper, count, width, inv_diag):
+    links = np.abs(film.kx) + np.abs(film.fx)
+    count, width = number_cells(np.logical_not(film.fixed), links, order, number)
+    L, U = dense_band(lower, count, width), dense_band(upper, count, width)
+    terms = film_terms(film, inverse_step, mass_old)
+    assemble_elrod(terms, links, pc, full | film.fixed, number, order, count, P, L, U, x)
+    if not factor_lu(L, U, count, width, inv_diag):
         return False, count, width, False
-    solve_lu(lower, upper, inv_diag, count, width, x.reshape(1, x.size))
+    solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))
     return True, count, width, False
 
 

@@ -16,9 +16,8 @@ areas.
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
-
-from exudyn_ehd.film.banded.workspace import PAD
 
 
 @njit(cache=True)
@@ -196,35 +195,18 @@ def _cavity_work(H_t, area, cavity):
     return cavity * closing
 
 
-@njit(cache=True)
-def assemble_energy(qx, qz, diagonal, number, width, lower, upper):
-    """Band of the upwind system: ``diagonal`` (n, m) holds everything but the inflows from neighbours."""
-    n, m = qx.shape
-    for r in range(n * m):
-        for d in range(width + 1 + PAD):
-            lower[r, d] = 0.0
-            upper[r, d] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            a = number[i, j]
-            upper[a, 0] += diagonal[i, j]
-            _add_inflow(a, number[nxt, j], qx[i, j], lower, upper)
-            if j + 1 < m:
-                _add_inflow(a, number[i, j + 1], qz[i, j], lower, upper)
+def upwind_slopes(qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
+    """Derivatives (5, n m) as `exudyn_ehd.film.banded.assemble` takes them, of the upwind system.
 
-
-@njit(cache=True)
-def _add_inflow(a, b, flow, lower, upper):
-    """One link a -> b: the downstream vertex takes in the upstream one's temperature."""
-    if flow >= 0.0:
-        row, col, f = b, a, flow
-    else:
-        row, col, f = a, b, -flow
-    if f == 0.0:
-        return
-    upper[row, 0] += f
-    if col >= row:
-        upper[row, col - row] -= f
-    else:
-        lower[col, row - col] -= f
+    The heat over a link is its flow times the temperature upstream. Of the flows out of a vertex less those into it,
+    times its own temperature, the energy less T times the mass is free: they are taken off ``diagonal`` (n, m), which
+    holds everything but the inflows from neighbours. ``qz`` is zero at the end, where there is no link.
+    """
+    out = np.empty((5, *qx.shape))
+    for k, flow in ((0, qx), (2, qz)):
+        np.maximum(flow, 0.0, out=out[k])
+        np.minimum(flow, 0.0, out=out[k + 1])
+    leaving = qx + qz - np.roll(qx, 1, axis=0)
+    leaving[:, 1:] -= qz[:, :-1]
+    np.subtract(diagonal, leaving, out=out[4])
+    return out.reshape(5, -1)

@@ -248,28 +248,3 @@ def vertex_balance(P, kx, kz, b, out):
             if j + 1 < m:
                 r += kz[i, j] * (P[i, j] - P[i, j + 1])
             out[i, j] = r
-
-
-@njit(cache=True)
-def fill_balance(P, fill, film, inverse_step, mass_old, out):
-    """Balance of every vertex with the upstream fill in the Couette fluxes; zero at free vertices of a solved film.
-
-    ``film``: `Coefficients`; ``mass_old`` (n, m) the old content fill H if ``inverse_step`` > 0.
-    """
-    n, m = P.shape
-    kx, kz, fx, fz, H, H_t, area = film.kx, film.kz, film.fx, film.fz, film.H, film.H_t, film.area
-    out[:] = 0.0
-    for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            q = kx[i, j] * (P[i, j] - P[nxt, j]) + fx[i, j] * (fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j])
-            out[i, j] += q
-            out[nxt, j] -= q
-            if j + 1 < m:
-                q = kz[i, j] * (P[i, j] - P[i, j + 1]) + fz[i, j] * (fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1])
-                out[i, j] += q
-                out[i, j + 1] -= q
-            if inverse_step > 0.0:
-                out[i, j] += area[i, j] * (fill[i, j] * H[i, j] - mass_old[i, j]) * inverse_step
-            else:
-                out[i, j] += area[i, j] * fill[i, j] * H_t[i, j]

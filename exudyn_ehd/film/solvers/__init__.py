@@ -6,7 +6,6 @@ linear          linear for given sets: rigid surfaces, incompressible
 newton          the driver for gaps or densities that answer to the pressure
 compiled        the driver compiled as a whole, for the fast ones among them
 steps           their matrix, steps and sets
-balance         their mass balance with its derivatives
 nonlinear       film on an elastic liner, with contact, laws of the oil and density
 liner           what it is made of
 compressible    density that follows the pressure, on rigid surfaces

@@ -7,7 +7,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
-from exudyn_ehd.film.solvers.balance import film_balance, terms_of, violation
+from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import plain_slopes
 from exudyn_ehd.film.solvers.liner.gap_response import link_gradients
 from exudyn_ehd.film.solvers.liner.kernels import plain_residual

@@ -31,9 +31,9 @@ from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance
 from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.steps import admit

@@ -13,12 +13,13 @@ from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.cavitation.elrod_adams import film_terms
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
+from exudyn_ehd.film.reynolds.balance import film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
-    fill_balance,
     link_flux,
     set_links,
     vertex_balance,
@@ -315,7 +316,7 @@ class FilmSolver:
         s = self.system
         balance = np.empty(self.grid.shape)
         if self.closure.conserves_mass:
-            fill_balance(s.pressure, s.fill, s.coefficients, s.inverse_step, s.mass_old, balance)
+            film_balance(s.pressure, s.fill, None, film_terms(s.coefficients, s.inverse_step, s.mass_old), balance)
         else:
             vertex_balance(s.pressure, s.kx, s.kz, s.b, balance)
         return np.where(self.grid.fixed, balance, 0.0)

@@ -15,7 +15,7 @@ from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
-from exudyn_ehd.film.solvers.balance import film_slopes, terms_of
+from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
 

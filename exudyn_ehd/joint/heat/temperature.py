@@ -10,11 +10,12 @@ import math
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.heat.energy import assemble_energy, film_heat
+from exudyn_ehd.film.heat.energy import film_heat, upwind_slopes
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
@@ -296,9 +297,10 @@ class FilmTemperature(_Temperature):
         if self.number is None:
             self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
             _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
-            self.lower, self.upper = np.zeros((n * m, self.width + 2 + PAD)), np.zeros((n * m, self.width + 2 + PAD))
+            self.lower, self.upper = np.zeros((2, n * m, self.width + 1 + PAD))
             self.inverse = np.zeros(n * m)
-        assemble_energy(qx, qz, diagonal, self.number, self.width, self.lower, self.upper)
+        slopes = upwind_slopes(qx, qz, diagonal)
+        assemble(qx, qz, slopes, self.number, self.order, n * m, self.lower, self.upper)
         x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
         if not factor_lu(self.lower, self.upper, n * m, self.width, self.inverse):
             return np.full(rhs.shape, np.inf)

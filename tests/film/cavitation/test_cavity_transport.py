@@ -15,7 +15,7 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     flow_direction,
     solve_transport,
 )
-from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod
+from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod, film_terms
 from exudyn_ehd.film.reynolds.links import Coefficients
 
 N, M, PC = 14, 6, -0.3
@@ -67,12 +67,14 @@ def film(columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap
 def dense(arguments, P):
     """Matrix, right-hand side and flat vertex of every unknown, from the kernel of the folded ring."""
     *given, full = arguments
-    kx, fx, fixed = given[0].kx, given[0].fx, given[0].fixed
+    coefficients, inverse_step, mass_old, pc = given
+    links, fixed = np.abs(coefficients.kx) + np.abs(coefficients.fx), coefficients.fixed
     order, number = np.zeros(N * M, dtype=np.int64), np.zeros((N, M), dtype=np.int64)
-    count, width = number_cells(~fixed, np.abs(kx) + np.abs(fx), order, number)
-    lower, upper = (np.zeros((N * M, 2 * M + 2 + PAD)) for _ in range(2))
+    count, width = number_cells(~fixed, links, order, number)
+    lower, upper = np.zeros((2, count, width + 1 + PAD))
     rhs = np.zeros(N * M)
-    assemble_elrod(*given, full | fixed, number, count, width, P, lower, upper, rhs)
+    terms = film_terms(coefficients, inverse_step, mass_old)
+    assemble_elrod(terms, links, pc, full | fixed, number, order, count, P, lower, upper, rhs)
     A = np.zeros((count, count))
     for r in range(count):
         for d in range(min(width, count - 1 - r) + 1):

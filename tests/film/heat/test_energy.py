@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.heat.energy import assemble_energy, content_rate, film_flows, film_heat, outside_flows
+from exudyn_ehd.film.heat.energy import content_rate, film_flows, film_heat, outside_flows, upwind_slopes
 
 SHAPE = (8, 5)
 
@@ -90,8 +91,11 @@ def test_band_is_the_upwind_matrix(fields):
     n, m = SHAPE
     number, order = np.zeros(SHAPE, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
     _, width = number_cells(np.ones(SHAPE, dtype=np.bool_), np.ones(SHAPE), order, number)
-    lower, upper = np.zeros((n * m, width + 2 + PAD)), np.zeros((n * m, width + 2 + PAD))
-    assemble_energy(fields["fx"], fields["fz"], fields["storage"], number, width, lower, upper)
+    lower, upper = np.zeros((2, n * m, width + 1 + PAD))
+    # nothing flows over the links at the end
+    fields["fz"][:, -1] = 0.0
+    slopes = upwind_slopes(fields["fx"], fields["fz"], fields["storage"])
+    assemble(np.ones(SHAPE), fields["fz"], slopes, number, order, n * m, lower, upper)
     band = np.zeros((n * m, n * m))
     for r in range(n * m):
         for d in range(width + 1):

@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 import exudyn_ehd as ehd
 from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.solvers.balance import FilmTerms, film_balance, film_slopes
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.joint.model.build import build_model
 

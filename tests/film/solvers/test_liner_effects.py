@@ -14,8 +14,8 @@ from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.film.reynolds.balance import film_slopes
 from exudyn_ehd.film.reynolds.links import FilmState
-from exudyn_ehd.film.solvers.balance import film_slopes
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import Rates
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes

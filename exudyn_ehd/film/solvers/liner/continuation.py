@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.newton import newton
 
-MAX_PSEUDO_STEPS = 200
 # Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.
 OPEN, MODERATE = 0.01, 0.1
 # Gap below which a dry guess opens the liner: a tenth of the clearance.
 THIN = 0.1
-# Pseudo rates over those of the film: of the first storage, of one that no film comes out of, and of one that is none.
-FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
 
 
 def cold_start(film: LinerBalance) -> tuple[bool, int]:
@@ -72,37 +70,23 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     rate = (
         abs(film.film.vx) + abs(film.film.vz) + float(np.max(np.abs(film.rigid[2]))) + rates.liner + rates.mass + 1e-300
     )
-    extra, total = FIRST * rate, 0
-    start = _copy(film)
+    start = tuple(field.copy() for field in film.u)
     film.settle(film.u.P)
-    for _ in range(MAX_PSEUDO_STEPS):
+
+    def attempt(extra: float) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
         film.pseudo_old[:] = _stored(film, start)
         ok, steps = film.solve()
-        film.rates, film.reusable = rates, False
-        total += steps
-        if ok:
-            work.warm = True
-            start = _copy(film)
-            extra *= 0.3
-            if extra >= LAST * rate:
-                continue
-            ok, steps = film.solve()
-            total += steps
-            if ok:
-                return True, total
-        else:
-            extra *= 8.0
-            if extra > HOPELESS * rate:
-                return False, total
-        for field, old in zip(film.u, start, strict=True):
-            field[:] = old
-        film.settle(film.u.P)
-    return False, total
+        film.rates, film.reusable = rates, film.reusable and extra == 0.0
+        work.warm = work.warm or ok
+        taken, given = (start, film.u) if ok else (film.u, start)
+        for field, other in zip(taken, given, strict=True):
+            field[:] = other
+        if not ok:
+            film.settle(film.u.P)
+        return ok, steps
 
-
-def _copy(film: LinerBalance) -> tuple[np.ndarray, ...]:
-    return tuple(field.copy() for field in film.u)
+    return pseudo_time(attempt, rate)
 
 
 def _stored(film: LinerBalance, start: tuple[np.ndarray, ...]) -> np.ndarray:

@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FilmState, LinkFlux
-from exudyn_ehd.film.solvers.balance import FilmTerms
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import (
     Gaps,

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.lubricant.density import density_ratio
-from exudyn_ehd.film.solvers.balance import film_balance, terms_of, violation
+from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import (
     Rates,
     bend_links,
