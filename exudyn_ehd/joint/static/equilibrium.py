@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, evaluate_at, history_at, require_oil, result_at
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
 
@@ -33,7 +35,10 @@ class EquilibriumResult:
     eccentricity_ratio, attitude_angle : float
         e/c; angle from the load to the eccentricity in the sense of rotation, rad.
     stiffness, damping : (2, 2) arrays
-        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame.
+        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame, at ``frequency``.
+    frequency : float
+        rad/s, of the small motions for which K and C hold. 0 where they do not depend on it; with `ElrodAdams` that of
+        the whirl threshold, or half the spin if there is none.
     whirl_ratio : float
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
@@ -44,6 +49,8 @@ class EquilibriumResult:
     iterations : int
         Film evaluations.
     film : SteadyResult
+    response : FilmResponse or None
+        What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
     """
 
     position: np.ndarray
@@ -56,6 +63,22 @@ class EquilibriumResult:
     residual: float
     iterations: int
     film: SteadyResult = field(repr=False)
+    frequency: float = 0.0
+    response: FilmResponse | None = field(default=None, repr=False)
+
+    def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
+        """Z = K + i nu C (k, 2, 2) in N/m at the frequencies nu (k,), rad/s: the force's amplitude is -Z x for a
+        motion x exp(i nu t).
+
+        With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay; see
+        `exudyn_ehd.joint.static.dynamic_stiffness`.
+        """
+        nu = np.asarray(frequencies, dtype=float)
+        if nu.ndim != 1 or not np.all(np.isfinite(nu)):
+            raise InputError(f"dynamic_stiffness: frequencies must be finite numbers in rad/s, got {frequencies!r}.")
+        if self.response is None:
+            return self.stiffness + 1j * nu[:, None, None] * self.damping
+        return np.array([self.response.at(float(f)) for f in nu]).reshape(-1, 2, 2)
 
 
 def equilibrium(
@@ -67,9 +90,10 @@ def equilibrium(
     the bearing and costs nothing near the solution. Where it fails, the journal creeps to its position against a
     falling resistance.
 
-    With `ElrodAdams` the stiffness is that of the steady film (the cavity's oil follows the position), the damping
-    that of a sudden velocity in it (the cavity's oil content stays): the limit of slow displacement and fast motion.
-    A transient joint has what lies between.
+    With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
+    with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
+    come from `EquilibriumResult.dynamic_stiffness`. On a liner or a flexible bore the stiffness is that of the steady
+    film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with `ElrodAdams`).
 
     Parameters
     ----------
@@ -120,8 +144,15 @@ def equilibrium(
             "may carry "
             "no such load at any position: look at ehd.steady(...) around there."
         )
-    K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
-    ratio, mass = whirl_threshold(K, C, abs(omega))
+    response, frequency = None, 0.0
+    if model.remembers_mass and model.parts.liner is None and not model.flexible and evaluation.film is not None:
+        response = FilmResponse(evaluation.film, tangent)
+        ratio, mass = threshold(response.at, abs(omega))
+        frequency = abs(omega) * (0.5 if math.isnan(ratio) else ratio)
+        K, C = response.at(frequency).real, response.at(frequency).imag / frequency
+    else:
+        K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
+        ratio, mass = whirl_threshold(K, C, abs(omega))
     film = result_at(model, motion, "equilibrium")
     return EquilibriumResult(
         position=motion[:2].copy(),
@@ -134,6 +165,8 @@ def equilibrium(
         residual=residual,
         iterations=count,
         film=film,
+        frequency=frequency,
+        response=response,
     )
 
 

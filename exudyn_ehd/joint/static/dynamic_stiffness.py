@@ -1,0 +1,133 @@
+"""Response of a mass-conserving film to small motions of the journal about a steady state, at any frequency.
+
+The cavity's oil follows the journal with a delay, so that stiffness and damping depend on the frequency nu. With the
+steady balance ``r(u, x) = 0`` of the unknowns u (pressures of full vertices, fills of cavitated ones) for the position
+x, and the oil content ``C(u, x)`` of the vertices, a small motion ``x exp(i nu t)`` gives
+
+    (A + i nu S) u + (B + i nu T) x = 0,    A = dr/du, S = area dC/du, B = dr/dx, T = area dC/dx,
+
+at fixed sets of full and cavitated vertices. The force's amplitude is ``-Z x`` with the dynamic stiffness
+``Z = K + i nu C``, from one adjoint solve of ``(A + i nu S)^T`` per component of the force. For nu = 0 it is the
+stiffness of the steady film; for nu without bounds C tends to that of a sudden velocity.
+
+The threshold of whirl: a rotor of mass M on the bearing neither grows nor decays where ``Z(i nu)`` has the real
+eigenvalue ``M nu^2``.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.sparse import coo_matrix, csc_matrix, diags_array
+from scipy.sparse.linalg import splu
+
+from exudyn_ehd.film.sensitivity.rigid import pose_gradient
+from exudyn_ehd.film.solvers.balance import FilmTerms, film_slopes
+from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.joint.solved_film import SolvedFilm
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, swept_derivatives
+
+# Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
+SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
+
+
+class FilmResponse:
+    """Dynamic stiffness of a film on a rigid bore that conserves mass.
+
+    Parameters
+    ----------
+    film : SolvedFilm
+        Of the steady state; what is needed of it is copied.
+    tangent : (6, 10) array
+        Of the wrench there, for slow motions.
+    """
+
+    def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
+        s, w, m = film.solver, film.solver.work, film.grid.shape[1]
+        n = w.count
+        self.order, self.shape = w.order[:n].copy(), film.grid.shape
+        self.directions = tuple(film.grid.directions)
+        d, slope, by_rate, by_gap = swept_derivatives(film)
+        self.derivatives = np.array(d), np.array(slope), np.array(by_rate), np.array(by_gap)
+        slopes, store = np.zeros((5, w.order.size)), (s.area * s.H).reshape(-1)
+        full = w.active | film.grid.fixed
+        if isinstance(s, CompressibleFilmSolver):
+            film_slopes(s.fill, full, s.rho, s.buffers.rho_P, s.film, slopes)
+            store = store * np.where(w.active, s.buffers.rho_P, s.rho).reshape(-1)
+        else:
+            nothing = np.zeros(self.shape)
+            links = (s.system.kx, s.system.kz, s.system.fx, s.system.fz)
+            terms = FilmTerms(*links, nothing, nothing, nothing, s.area, film.grid.fixed)
+            film_slopes(s.fill, full, s.ones, nothing, terms, slopes)
+            store = np.where(w.active.reshape(-1), 0.0, store)
+        number = np.full(w.order.size, -1)
+        number[self.order] = np.arange(n)
+        self.matrix = _matrix(slopes, number, m)
+        self.store = diags_array(store[self.order])
+        self.rows = adjoint_rows(film)[:2].copy()
+        self.scale = film.scales.force * np.asarray(film.parts.pose_scale)[:2]
+        steady = self._gradients(0.0)
+        self.rest = -tangent[:2, :2] - steady[0], -tangent[:2, 4:6] - steady[1]
+
+    def at(self, frequency: float) -> np.ndarray:
+        """Z (2, 2), N/m, at a frequency, rad/s."""
+        pose, rate = self._gradients(frequency)
+        return self.rest[0] + pose + 1j * frequency * (self.rest[1] + rate)
+
+    def _gradients(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
+        """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
+        matrix = csc_matrix(self.matrix + 1j * frequency * self.store)
+        lam = np.zeros((2, math.prod(self.shape)), dtype=complex)
+        lam[:, self.order] = splu(matrix).solve(self.rows.T.astype(complex), trans="T").T
+        gradient = np.zeros((2, 10), dtype=complex)
+        for part, unit in ((lam.real, 1.0), (lam.imag, 1j)):
+            out = np.empty((2, 10))
+            fields = np.ascontiguousarray(part).reshape(2, *self.shape)
+            pose_gradient(fields, *self.derivatives, self.directions, out)
+            gradient += unit * out
+        return self.scale * gradient[:, :2], self.scale * gradient[:, 4:6]
+
+
+def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:
+    """Newton's matrix from the derivatives of links and storage (5, n m), as `exudyn_ehd.film.banded.assemble` fills
+    its bands; ``number`` (n m,): places of the unknowns, -1 elsewhere."""
+    ax, bx, az, bz, store = slopes
+    here, along, across = number, np.roll(number, -m), np.roll(number, -1)
+    entries = (
+        (here, here, ax + az + store),
+        (here, along, bx), (along, here, -ax), (along, along, -bx),
+        (here, across, bz), (across, here, -az), (across, across, -bz),
+    )  # fmt: skip
+    rows, columns, values = (np.concatenate(parts) for parts in zip(*entries, strict=True))
+    known = (rows >= 0) & (columns >= 0)
+    count = int(number.max()) + 1
+    return coo_matrix((values[known], (rows[known], columns[known])), shape=(count, count)).tocsc()
+
+
+def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:
+    """Whirl ratio and critical mass of a rigid rotor on a bearing of the dynamic stiffness Z(nu) (2, 2).
+
+    As `exudyn_ehd.joint.static.equilibrium.whirl_threshold`; thresholds are looked for between 0.05 and twice the
+    spin omega > 0, and the one of the smallest mass counts.
+    """
+
+    def both(ratio: float) -> float:
+        """Of one sign while neither eigenvalue of Z becomes real."""
+        return float(np.prod(np.linalg.eigvals(stiffness(ratio * omega)).imag))
+
+    ratios = np.geomspace(SLOWEST, FASTEST, STEPS)
+    signs = [both(ratio) for ratio in ratios]
+    found = []
+    for k in np.flatnonzero(np.diff(np.sign(signs))):
+        ratio = brentq(both, ratios[k], ratios[k + 1], rtol=1e-9)
+        values = np.linalg.eigvals(stiffness(ratio * omega))
+        real = float(values[np.argmin(np.abs(values.imag))].real)
+        if real > 0.0:
+            found.append((real / (ratio * omega) ** 2, ratio))
+    if found:
+        mass, ratio = min(found)
+        return ratio, mass
+    return math.nan, math.inf if signs[0] > 0.0 else 0.0

@@ -1,0 +1,133 @@
+"""Dynamic stiffness of mass-conserving films: limits, and the film's own response to a forced motion in time."""
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_study_model
+from tests.sampling import sample
+
+R, L, C, SPEED, VISCOSITY = 0.025, 0.025, 25e-6, 300.0, 0.02
+ELROD = ehd.ElrodAdams(cavity_pressure=-1e5)
+
+
+def bearing(cavitation=ELROD, film=(96, 10), oil=None, **options):
+    return ehd.JournalBearing(
+        journal_radius=R,
+        length=L,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=VISCOSITY, **(oil or {})),
+        cavitation=cavitation,
+        film=ehd.FiniteLength(n_theta=film[0], n_z=film[1]),
+        **options,
+    )
+
+
+def at_load(made, sommerfeld, angle=0.1):
+    load = sommerfeld * 2 * R * L * VISCOSITY * SPEED / (C / R) ** 2
+    return ehd.equilibrium(made, speed=SPEED, load=(load * math.cos(angle), load * math.sin(angle)))
+
+
+def forced(made, position, frequency, steps, amplitude=1e-4, periods=5):
+    """Z (2, 2) from motions along x and y, the film's oil from step to step."""
+    model = build_study_model(made, 0.0)
+    out, step = np.zeros((2, 2), complex), 2 * math.pi / frequency / steps
+    for axis in (0, 1):
+        motion = np.zeros(10)
+        motion[:2], motion[8] = position, SPEED
+        history, forces = model.evaluate(motion).history(), []
+        times = step * np.arange(1, steps * periods + 1)
+        for t in times:
+            motion[:2] = position
+            motion[axis] += amplitude * C * math.sin(frequency * t)
+            motion[4:6] = 0.0
+            motion[4 + axis] = amplitude * C * frequency * math.cos(frequency * t)
+            evaluation = model.evaluate(motion, history, step)
+            history = evaluation.history()
+            forces.append(evaluation.wrench[:2])
+        last = frequency * times[-steps:]
+        parts = np.column_stack([np.sin(last), np.cos(last), np.ones(steps)])
+        sine, cosine, _ = np.linalg.lstsq(parts, np.array(forces[-steps:]), rcond=None)[0]
+        out[:, axis] = -(sine + 1j * cosine) / (amplitude * C)
+    return out
+
+
+SCENES = {
+    "plain": {},
+    "density": {"oil": {"density_law": ehd.DowsonHigginson()}},
+    "barus": {"oil": {"pressure_law": ehd.BarusPressure(coefficient=2e-8)}},
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=2e-6)},
+    "groove": {
+        "cavitation": ehd.ElrodAdams(),
+        "supply": (ehd.AxialGroove(angle=2.0, width_angle=0.5, length=0.02, pressure=1e5),),
+    },
+    "shallow": {"contact": ehd.RegularisedWall(onset=1.2e-5)},
+}
+
+
+@pytest.mark.parametrize("scene", sample(list(SCENES), 0, 1, 4))
+def test_response_is_that_of_the_film_in_time(scene):
+    """Backward Euler's error is of first order in the step: extrapolated, it leaves some thousandths."""
+    made = bearing(**SCENES[scene])
+    result = at_load(made, 0.3)
+    for ratio in (0.3, 0.5):
+        coarse, fine = (forced(made, result.position, ratio * SPEED, n) for n in (240, 480))
+        (expected,) = result.dynamic_stiffness([ratio * SPEED])
+        assert np.abs(2 * fine - coarse - expected).max() < 3e-3 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_slow_and_fast_limits(scene):
+    """Slow: the steady film's stiffness, by differences of its force. Fast: the damping of a sudden velocity."""
+    made = bearing(**SCENES[scene])
+    result = at_load(made, 0.3)
+    slow, fast = result.dynamic_stiffness([0.0, 1e6 * SPEED])
+    assert np.abs(slow.imag).max() == 0.0
+    step = 1e-5 * C
+    for axis in (0, 1):
+        forces = []
+        for sign in (1.0, -1.0):
+            x, y = result.position + sign * step * np.eye(2)[axis]
+            film = ehd.steady(made, speed=SPEED, eccentricity_ratio=math.hypot(x, y) / C, direction=math.atan2(y, x))
+            forces.append(film.force[:2])
+        slope = -(forces[0] - forces[1]) / (2 * step)
+        assert np.abs(slope - slow[:, axis].real).max() < 1e-4 * np.abs(slow).max()
+    model = build_study_model(made, 0.0)
+    motion = np.zeros(10)
+    motion[:2], motion[8] = result.position, SPEED
+    sudden = -model.evaluate(motion, model.evaluate(motion).history()).tangent()[:2, 4:6]
+    if made.lubricant.density_law is None:
+        assert np.abs(fast.imag / (1e6 * SPEED) - sudden).max() < 1e-3 * np.abs(sudden).max()
+
+
+def test_without_memory_there_is_one_stiffness_and_one_damping():
+    result = at_load(bearing(ehd.SwiftStieber()), 0.3)
+    assert result.frequency == 0.0
+    nu = np.array([0.0, 100.0, 700.0])
+    expected = result.stiffness + 1j * nu[:, None, None] * result.damping
+    assert np.array_equal(result.dynamic_stiffness(nu), expected)
+
+
+@pytest.mark.parametrize("sommerfeld", [0.1, 0.3, 1.0])
+def test_threshold_is_where_the_returned_matrices_have_theirs(sommerfeld):
+    """det(K + i nu C - M nu^2) = 0 with K and C at nu, and a load in another direction changes nothing."""
+    result = at_load(bearing(), sommerfeld)
+    nu = result.whirl_ratio * SPEED
+    assert result.frequency == nu
+    (Z,) = result.dynamic_stiffness([nu])
+    assert np.allclose(result.stiffness + 1j * nu * result.damping, Z, rtol=1e-12)
+    values = np.linalg.eigvals(Z)
+    real = values[np.argmin(np.abs(values.imag))]
+    assert abs(real.imag) < 1e-6 * abs(real)
+    assert real.real / nu**2 == pytest.approx(result.critical_mass, rel=1e-9)
+    turned = at_load(bearing(), sommerfeld, angle=0.1 + math.pi / 2)
+    assert turned.critical_mass == pytest.approx(result.critical_mass, rel=1e-6)
+
+
+def test_frequencies_are_checked():
+    result = at_load(bearing(), 0.3)
+    with pytest.raises(ehd.InputError, match=r"frequencies must be finite numbers in rad/s"):
+        result.dynamic_stiffness([math.nan])
+    assert result.dynamic_stiffness([]).shape == (0, 2, 2)
