@@ -24,11 +24,10 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.sensitivity.rigid import pose_gradient
 from exudyn_ehd.film.solvers.balance import FilmTerms, film_slopes
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.joint.solved_film import SolvedFilm
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, swept_derivatives
+from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
 SLOWEST, FASTEST, STEPS = 0.05, 2.0, 24
@@ -46,31 +45,28 @@ class FilmResponse:
     """
 
     def __init__(self, film: SolvedFilm, tangent: np.ndarray) -> None:
-        s, w, m = film.solver, film.solver.work, film.grid.shape[1]
-        n = w.count
-        self.order, self.shape = w.order[:n].copy(), film.grid.shape
-        self.directions = tuple(film.grid.directions)
-        d, slope, by_rate, by_gap = swept_derivatives(film)
-        self.derivatives = np.array(d), np.array(slope), np.array(by_rate), np.array(by_gap)
+        s, w, shape = film.solver, film.solver.work, film.grid.shape
+        order = w.order[: w.count].copy()
         slopes, store = np.zeros((5, w.order.size)), (s.area * s.H).reshape(-1)
         full = w.active | film.grid.fixed
         if isinstance(s, CompressibleFilmSolver):
             film_slopes(s.fill, full, s.rho, s.buffers.rho_P, s.film, slopes)
             store = store * np.where(w.active, s.buffers.rho_P, s.rho).reshape(-1)
         else:
-            nothing = np.zeros(self.shape)
+            nothing = np.zeros(shape)
             links = (s.system.kx, s.system.kz, s.system.fx, s.system.fz)
             terms = FilmTerms(*links, nothing, nothing, nothing, s.area, film.grid.fixed)
             film_slopes(s.fill, full, s.ones, nothing, terms, slopes)
             store = np.where(w.active.reshape(-1), 0.0, store)
         number = np.full(w.order.size, -1)
-        number[self.order] = np.arange(n)
-        self.matrix = _matrix(slopes, number, m)
-        self.store = diags_array(store[self.order])
-        self.rows = adjoint_rows(film)[:2].copy()
-        self.scale = film.scales.force * np.asarray(film.parts.pose_scale)[:2]
-        steady = self._gradients(0.0)
-        self.rest = -tangent[:2, :2] - steady[0], -tangent[:2, 4:6] - steady[1]
+        number[order] = np.arange(order.size)
+        self.matrix = _matrix(slopes, number, shape[1])
+        self.store = diags_array(store[order])
+        self.rows = adjoint_rows(film)[:2].T.astype(complex)
+        by_motion = -balance_gradients(film) * (film.scales.force * film.parts.motion_scale)[:, None]
+        self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6].copy()
+        pose, rate = self._gradients(0.0)
+        self.rest = -tangent[:2, :2] - pose, -tangent[:2, 4:6] - rate
 
     def at(self, frequency: float) -> np.ndarray:
         """Z (2, 2), N/m, at a frequency, rad/s."""
@@ -79,16 +75,8 @@ class FilmResponse:
 
     def _gradients(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
-        matrix = csc_matrix(self.matrix + 1j * frequency * self.store)
-        lam = np.zeros((2, math.prod(self.shape)), dtype=complex)
-        lam[:, self.order] = splu(matrix).solve(self.rows.T.astype(complex), trans="T").T
-        gradient = np.zeros((2, 10), dtype=complex)
-        for part, unit in ((lam.real, 1.0), (lam.imag, 1j)):
-            out = np.empty((2, 10))
-            fields = np.ascontiguousarray(part).reshape(2, *self.shape)
-            pose_gradient(fields, *self.derivatives, self.directions, out)
-            gradient += unit * out
-        return self.scale * gradient[:, :2], self.scale * gradient[:, 4:6]
+        lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
+        return (self.by_pose @ lam).T, (self.by_rate @ lam).T
 
 
 def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:
