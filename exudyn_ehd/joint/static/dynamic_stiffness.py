@@ -24,7 +24,8 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
-from exudyn_ehd.film.solvers.balance import FilmTerms, film_slopes
+from exudyn_ehd.film.cavitation.elrod_adams import film_terms
+from exudyn_ehd.film.reynolds.balance import film_slopes
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients
@@ -50,13 +51,11 @@ class FilmResponse:
         slopes, store = np.zeros((5, w.order.size)), (s.area * s.H).reshape(-1)
         full = w.active | film.grid.fixed
         if isinstance(s, CompressibleFilmSolver):
-            film_slopes(s.fill, full, s.rho, s.buffers.rho_P, s.film, slopes)
-            store = store * np.where(w.active, s.buffers.rho_P, s.rho).reshape(-1)
+            film_slopes(s.fill, full, s.rho, s.rho_P, s.film, slopes)
+            store = store * np.where(w.active, s.rho_P, s.rho).reshape(-1)
         else:
-            nothing = np.zeros(shape)
-            links = (s.system.kx, s.system.kz, s.system.fx, s.system.fz)
-            terms = FilmTerms(*links, nothing, nothing, nothing, s.area, film.grid.fixed)
-            film_slopes(s.fill, full, s.ones, nothing, terms, slopes)
+            terms = film_terms(s.system.coefficients, 0.0, s.system.mass_old)
+            film_slopes(s.fill, full, None, None, terms, slopes)
             store = np.where(w.active.reshape(-1), 0.0, store)
         number = np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
