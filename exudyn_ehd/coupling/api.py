@@ -142,8 +142,10 @@ class LubricatedJoint(JointResults):
             raise InputError(
                 f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
-        time, memory, rows = self.element.steps.remembered(self.mbs)
-        return JointState(name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows)
+        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
+        return JointState(
+            name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows, begin=begin
+        )
 
     def restore_state(self, state: JointState) -> None:
         """Let the next run, if it starts at the state's time, go on with its memory and record.
@@ -156,7 +158,7 @@ class LubricatedJoint(JointResults):
             If the state is of another joint or bearing.
         """
         check_owner(self, state)
-        self.element.steps.resume(state.time, state.memory, state.rows)
+        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were without effect.

@@ -10,6 +10,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import Status
 
 # Exudyn's index types exist at run time, but not in its type stubs.
@@ -46,9 +47,12 @@ class Evaluation(Protocol):
 
 
 class Trial:
-    """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked."""
+    """One state handed to the film, and what came back; ``evaluation`` is None if the film was not asked.
 
-    __slots__ = ("evaluation", "memory", "motion", "q", "q_t", "status", "step")
+    ``motion`` is what the film was told of the ``bodies``' motion in the step from ``begin``.
+    """
+
+    __slots__ = ("begin", "bodies", "evaluation", "memory", "motion", "q", "q_t", "status", "step")
 
     def __init__(
         self,
@@ -56,6 +60,8 @@ class Trial:
         q_t: list[float],
         memory: History | None,
         step: float,
+        begin: StepStart | None,
+        bodies: np.ndarray,
         motion: np.ndarray,
         evaluation: Evaluation | None,
     ) -> None:
@@ -63,6 +69,8 @@ class Trial:
         self.q_t = q_t
         self.memory = memory
         self.step = step
+        self.begin = begin
+        self.bodies = bodies
         self.motion = motion
         self.evaluation = evaluation
         if evaluation is not None:

@@ -40,8 +40,11 @@ class History:
 
     Attributes
     ----------
+    void : (n, m) array or None
+        Scaled gap less content (fill times gap / c) at the vertices (mass-conserving closures).
     mass : (n, m) array or None
-        Scaled film content, fill times gap / c, at the vertices (mass-conserving closures).
+        Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
+        what `exudyn_ehd.film.solvers.linear.FilmSolver.keep` says. No film depends on it.
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
@@ -52,6 +55,7 @@ class History:
         Density ratio of a compressible film (mass-conserving closures with a heat balance).
     """
 
+    void: np.ndarray | None = None
     mass: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None

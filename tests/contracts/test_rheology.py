@@ -13,7 +13,6 @@ from exudyn_ehd.film.reynolds import links
 from exudyn_ehd.film.solvers import linear as solver
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.seams import Effects
-from exudyn_ehd.joint.solved_film import History
 
 C = 25e-6
 WALTHER = ehd.WaltherTemperature(first=(313.15, 23e-6), second=(373.15, 5e-6))
@@ -48,7 +47,7 @@ def start(model):
     history = model.initial_history(MOTION)
     if history is not None and isinstance(history.temperature, np.ndarray):
         field = 330.0 + 20.0 * np.random.default_rng(0).random(model.grid.shape)
-        history = History(mass=history.mass, temperature=field)
+        history = dataclasses.replace(history, temperature=field)
     for _ in range(3):
         evaluation = model.evaluate(MOTION, history, STEP)
         assert evaluation.status is ehd.Status.CONVERGED

@@ -24,6 +24,7 @@ from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.steady_temperature import is_too_hot
+from exudyn_ehd.joint.step_rates import StepStart, next_start
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -83,6 +84,8 @@ class AcceptedSteps:
         The one of them that is at work.
     memory : History or None
         What the film remembers at ``start``; None for a film that remembers nothing, or is steady.
+    begin : StepStart or None
+        Where the present step begins; None where the film takes the velocities as they are.
     control : GapWatch or None
         Rejects steps that are too coarse.
     recorder : FilmRecorder or None
@@ -97,6 +100,7 @@ class AcceptedSteps:
         self.solvers = solver_state.NO_RUN
         self.solver: solver_state.Solver | None = None
         self.memory: History | None = None
+        self.begin: StepStart | None = None
         self.control: GapWatch | None = None
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
@@ -104,7 +108,7 @@ class AcceptedSteps:
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
         self._uses_memory = False
-        self._resumed: tuple[float, History | None] | None = None
+        self._resumed: tuple[float, History | None, StepStart | None] | None = None
         self._first: list[float] = []
 
     def accept(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> None:
@@ -119,12 +123,13 @@ class AcceptedSteps:
         if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
             resumed = self._begin_run(mbs, start, solvers)
         elif start < self.start:
-            self.memory = None
+            self.memory = self.begin = None
         if self._uses_memory and self.memory is None:
             self.start = start
             motion = self.film.motion(mbs, _START_OF_STEP)
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
         trial = self.film.look(mbs, start, _START_OF_STEP)
+        self.begin = self._begin_of_next(start, trial)
         if self.control is not None:
             self.control.start(trial.motion)
         row = self.film.row(start, trial)
@@ -158,9 +163,10 @@ class AcceptedSteps:
             self.memory = None
         state, self._resumed = self._resumed, None
         if state is not None and start == state[0]:
-            self.start, self.memory = state
+            self.start, self.memory, self.begin = state
             return True
         if not goes_on:
+            self.begin = None
             self._record.clear()
             if self.recorder is not None:
                 self.recorder.begin_anew()
@@ -174,6 +180,12 @@ class AcceptedSteps:
         """
         before, self._first = self._first, self.film.read(mbs, _START_OF_STEP)[0]
         return start > self._record.last_time and (self._first != before or self.film.seen == before)
+
+    def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
+        """Where the step after the state at hand begins, under solvers whose formulas are known."""
+        if not solver_state.is_implicit(self.solver) or not np.isfinite(trial.bodies.sum()):
+            return None
+        return next_start(self.begin, trial.bodies, time, self.film.model.bearing.radial_clearance)
 
     def _advance_memory(self, trial: Trial) -> None:
         if self._uses_memory:
@@ -216,24 +228,27 @@ class AcceptedSteps:
         time = mbs.systemData.GetTime(configuration)
         return time, self.film.look(mbs, time, configuration), configuration
 
-    def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, np.ndarray]:
-        """Time of the last accepted state, what the film remembers there, and the record up to it."""
+    def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
+        """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
         row, memory = self.film.row(time, trial), self.memory
+        begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             assert trial.evaluation is not None
             memory = trial.evaluation.history()
             self.film.forget()
-        return time, memory, self._record.rows(row)
+        return time, memory, begin, self._record.rows(row)
 
-    def resume(self, time: float, memory: History | None, rows: np.ndarray | None = None) -> None:
-        """Go on with ``memory`` and record, by default none, in a run that starts at ``time``."""
+    def resume(
+        self, time: float, memory: History | None, rows: np.ndarray | None = None, begin: StepStart | None = None
+    ) -> None:
+        """Go on with ``memory``, record and start of the next step, by default none, in a run from ``time`` on."""
         if rows is None:
             self._record.clear()
         else:
             self._record.restore(rows)
-        self._resumed = (time, memory)
-        self.memory, self.start = None, np.nan
+        self._resumed = (time, memory, begin)
+        self.memory, self.begin, self.start = None, None, np.nan
         self.film.forget()
         # the next run is a new one, whatever was run before
         self.solvers = solver_state.NO_RUN

@@ -69,7 +69,7 @@ class FilmElement:
         solvers = solver_state.stored_solvers(mbs)
         if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
             steps.accept(mbs, start, solvers)
-        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not steps.is_idle)
         if trial.status != Status.CONVERGED:
             self._refuse(t, trial)
             return np.full(len(q), np.nan)
@@ -81,7 +81,7 @@ class FilmElement:
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        trial = self._try(mbs, q, q_t, _CURRENT, t)
+        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
         if trial.status != Status.CONVERGED:
             self._refuse(t, trial)
             return np.full((len(q), len(q)), np.nan)
@@ -94,25 +94,42 @@ class FilmElement:
             raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(solver))
 
     def _try(
-        self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType, time: float
+        self,
+        mbs: exu.MainSystem,
+        q: list[float],
+        q_t: list[float],
+        configuration: exu.ConfigurationType,
+        time: float,
+        stepping: bool = True,
     ) -> Trial:
-        """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there."""
+        """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there.
+
+        ``stepping`` says that the state ends a step; else the film takes the velocities as they are (a linearisation
+        after a run).
+        """
         # a list compares as a whole; other callers than Exudyn may hand over arrays
         q, q_t = list(q), list(q_t)
         # before the start of the step (a linearisation about the initial state after a run) nothing is remembered
         memory = self.steps.memory if time >= self.steps.start else None
         step = 0.0 if memory is None else time - self.steps.start
+        begin = self.steps.begin if stepping else None
+        if begin is not None and not time > begin.time:
+            begin = None
         last = self._trial
-        if last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory:
+        known = last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory
+        if last is not None and known and last.begin is begin:
             return last
-        motion = self._move(mbs, q, q_t, configuration)
+        bodies = motion = self._move(mbs, q, q_t, configuration)
+        if begin is not None:
+            motion = begin.film_motion(bodies, time)
         self.seen = q
         evaluation = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
-            evaluation = self.model.evaluate(motion, memory, step, self._spin() if self.model.needs_spin else 0.0)
+            spin = self._spin() if self.model.needs_spin else 0.0
+            evaluation = self.model.evaluate(motion, memory, step, spin)
             self.evaluations += 1
-        self._trial = Trial(q, q_t, memory, step, motion, evaluation)
+        self._trial = Trial(q, q_t, memory, step, begin, bodies, motion, evaluation)
         return self._trial
 
     def _move(

@@ -96,7 +96,8 @@ class JointHistory(History, HistoryPictures):
     time : ndarray (n,)
         [s]; in a static solve Exudyn's load parameter.
     motion : ndarray (n, 10)
-        x, y [m], bx, by [rad], their rates, relative spin omega [rad/s], axial velocity w [m/s].
+        x, y [m], bx, by [rad], their rates as the film takes them (`exudyn_ehd.joint.step_rates`), relative spin omega
+        [rad/s], axial velocity w [m/s].
     eccentricity : ndarray (n, 2)
         Journal axis in the mid-plane [m].
     eccentricity_ratio : ndarray (n,)

@@ -9,7 +9,7 @@ import pathlib
 import zipfile
 import zlib
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeVar
 
 import exudyn as exu
 import numpy as np
@@ -20,10 +20,12 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 
-_FORMAT = "exudyn_ehd SystemState 1"
+_FORMAT = "exudyn_ehd SystemState 2"
+Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
 
 
@@ -42,6 +44,8 @@ class JointState:
         Oil content, wear, temperature and deflection at that time; None if the film remembers nothing.
     rows : (n, k) array
         The record of accepted steps up to it.
+    begin : StepStart or None
+        Where the next step begins, if its rates follow the positions.
     """
 
     name: str
@@ -49,6 +53,7 @@ class JointState:
     time: float
     memory: History | None
     rows: np.ndarray
+    begin: StepStart | None = None
 
 
 class Joint(Protocol):
@@ -160,11 +165,11 @@ class SystemState:
             heads.append(
                 {"name": joint.name, "bearing": joint.bearing, "time": joint.time, "memory": joint.memory is not None}
             )
-            if joint.memory is not None:
-                for field in dataclasses.fields(joint.memory):
-                    value = getattr(joint.memory, field.name)
+            for name, part in (("", joint.memory), ("begin ", joint.begin)):
+                for field in () if part is None else dataclasses.fields(part):
+                    value = getattr(part, field.name)
                     if value is not None:
-                        arrays[f"{k} {field.name}"] = np.asarray(value, dtype=float)
+                        arrays[f"{k} {name}{field.name}"] = np.asarray(value, dtype=float)
         with replacing(path, binary=True) as file:
             np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": heads}), **arrays)
 
@@ -217,15 +222,22 @@ def load_state(path: str | pathlib.Path) -> SystemState:
 
 
 def _joint(arrays: dict[str, np.ndarray], k: int, head: Data) -> JointState:
-    memory = None
-    if head["memory"]:
-        stored = {field.name: arrays.get(f"{k} {field.name}") for field in dataclasses.fields(History)}
+    def read(kind: type[Part], prefix: str) -> Part:
+        stored = {field.name: arrays.get(f"{k} {prefix}{field.name}") for field in dataclasses.fields(kind)}
         values: dict[str, Any] = {
             name: value if value is None or value.ndim else float(value) for name, value in stored.items()
         }
-        memory = History(**values)
+        return kind(**values)
+
+    memory = read(History, "") if head["memory"] else None
+    begin = read(StepStart, "begin ") if f"{k} begin time" in arrays else None
     return JointState(
-        name=head["name"], bearing=head["bearing"], time=head["time"], memory=memory, rows=arrays[f"{k} rows"]
+        name=head["name"],
+        bearing=head["bearing"],
+        time=head["time"],
+        memory=memory,
+        rows=arrays[f"{k} rows"],
+        begin=begin,
     )
 
 

@@ -41,6 +41,11 @@ def is_explicit(solver: Solver | None) -> bool:
     return isinstance(solver, exu.MainSolverExplicit)
 
 
+def is_implicit(solver: Solver | None) -> bool:
+    """Whether ``solver`` takes forces at the end of a step, and coordinates by a rule of second order."""
+    return isinstance(solver, exu.MainSolverImplicitSecondOrder)
+
+
 def is_finished(solver: Solver | None) -> bool:
     """Whether the run of ``solver`` has come to its end; a failed one never does."""
     return solver is None or bool(solver.output.finishedSuccessfully)

@@ -3,14 +3,14 @@
 Every vertex is either full (``P >= Pc``, fill = 1, unknown P) or cavitated (``P = Pc``, 0 <= fill <= 1, unknown fill).
 Its balance is
 
-    sum over links of [k (P - P_neighbour) + f fill_upstream] + area (fill H - (fill H)_old) / dt = 0,
+    sum over links of [k (P - P_neighbour) + f fill_upstream] + area (fill H - kept) / dt = 0,
 
-with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), backward
-Euler in the mass (fill H), whose old value is the film's history. Without a history the film is steady and the last
-term is ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth
-Newton method in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so
-that the film exists and is unique. Should the sets not converge, the steady film is approached through growing pseudo
-time steps, whose storage makes the matrices dominant enough.
+with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), and
+``kept`` by the film's history, `exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady
+and the last term is ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a
+semi-smooth Newton method in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever
+the sets, so that the film exists and is unique. Should the sets not converge, the steady film is approached through
+growing pseudo time steps, whose storage makes the matrices dominant enough.
 
 Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
 the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity, fronts

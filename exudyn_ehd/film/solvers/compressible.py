@@ -10,7 +10,7 @@ form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's 
 its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
 the whole film, cut off afterwards; the density answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 
-Storage. `ElrodAdams` with a history: backward Euler in the mass ``rho fill H``, exactly conserved. Without a history
+Storage. `ElrodAdams` with a history: backward Euler in the void, the gap less ``rho fill H``. Without a history
 there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
 the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H:
 1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
@@ -327,11 +327,6 @@ class CompressibleFilmSolver(FilmSolver):
         """Derivatives (5, n, m) of the links' mass flows with respect to their gaps and the speeds."""
         return super().link_derivatives(self.rho)
 
-    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
+    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
-        s, content = self.system, self.area * self.rho
-        if self.closure.conserves_mass:
-            content *= s.fill
-        if s.inverse_step > 0.0 and not self.instant:
-            return self.nothing, content * s.inverse_step
-        return (content if self.squeeze else self.nothing), self.nothing
+        return super().storage_weights(self.rho)

@@ -133,6 +133,8 @@ class FilmSolver:
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
         self.complementary = self.ruptures and not closure.clips
+        # derivative of what `keep` returned to the gap
+        self.follows = self.nothing
         coarse = grid.coarser()
         self.coarse: FilmSolver | None = None
         if coarse is not None and self.complementary:
@@ -227,6 +229,37 @@ class FilmSolver:
             s.inverse_step = 1.0 / step
             s.mass_old[:] = mass_old
 
+    def keep(self, void: np.ndarray, step: float) -> np.ndarray:
+        """What the content (n, m) at the start of a step is taken as, for the gaps and rates now stored: ``mass_old``.
+
+        ``void`` (n, m) is what the gap had of it more than oil. The gap is taken back along its rate, not to what it
+        was: the storage of a vertex is then
+
+            (fill H - kept) / h = dH/dt - (void - void_old) / h,
+
+        backward Euler in the void, while a full film is squeezed by its rate as under closures without a memory. The
+        difference quotient of the gap would be the mean of the rates at both ends of a step under Newmark's formulas:
+        rates that alternate from step to step are not felt by it, and not damped. What ``kept`` differs by from the
+        content that was, ``H - h dH/dt - H_old``, is the same for full and for cavitated vertices and adds up over
+        the steps to what rates and gap differ by: with rates that follow the gap it telescopes to
+        ``-h (dH/dt at the end - at the start) / 2``, bounded over any number of steps and vanishing with h.
+        """
+        before, slope = self._gap_before(step)
+        kept = before - void
+        # a gap that opens faster leaves nothing
+        self.follows = slope * (kept > 0.0)
+        return np.maximum(kept, 0.0, out=kept)
+
+    def stored(self, mass: np.ndarray | None, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Void at the end of the last solution's step, and the oil that flows have brought, ``mass`` at its start."""
+        content = self.content
+        known = mass is not None and step > 0.0
+        return self.H - content, mass + content - self.system.mass_old if known else content
+
+    def _gap_before(self, step: float) -> tuple[np.ndarray, np.ndarray]:
+        """Gap (n, m) at the start of a step as the rates at its end have it, and its derivative to the gap now."""
+        return self.H - step * self.H_t, self.ones
+
     def _guess_from_coarse(self, mass_old: np.ndarray | None, step: float) -> int:
         coarse = self.coarse
         assert coarse is not None
@@ -301,15 +334,18 @@ class FilmSolver:
         )
         return self.link_fields
 
-    def storage_weights(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H."""
-        s = self.system
-        if not self.closure.conserves_mass:
-            return (self.area if self.squeeze else self.nothing), self.nothing
-        content = self.area * s.fill
+    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (n, m) of every vertex's balance through the storage, with respect to H_t and to H.
+
+        ``rho`` (n, m) is the density ratio of a compressible film.
+        """
+        s, content = self.system, self.area if rho is None else self.area * rho
+        if self.closure.conserves_mass:
+            content = content * s.fill
         if s.inverse_step == 0.0 or self.instant:
             return (content if self.squeeze else self.nothing), self.nothing
-        return self.nothing, content * s.inverse_step
+        by_rate = self.area * self.follows
+        return by_rate, (content - by_rate) * s.inverse_step
 
     def inflow(self) -> np.ndarray:
         """Scaled volume flow that every prescribed vertex feeds into the film (n, m); zero elsewhere."""

@@ -241,6 +241,16 @@ class NonlinearFilmSolver(FilmSolver):
         shut = not self.ruptures or float(e.rigid[0].min()) + e.beta * e.cavity_load <= 0.0
         return Status.NO_FILM if shut else Status.NOT_CONVERGED
 
+    def _gap_before(self, step: float) -> tuple[np.ndarray, np.ndarray]:
+        before, slope = super()._gap_before(step)
+        if self.delta_old is not None:
+            before += self.delta_old
+        limiter = self.elements.limiter
+        if limiter is not None:
+            slope, *others = np.ones((5, *self.grid.shape))
+            limiter.limit(before, others[0], others[1], slope, others[2], others[3])
+        return before, slope
+
     def _set_times(self, mass_old: np.ndarray | None, step: float) -> None:
         """Which rates take part, and over which time."""
         e = self.elements

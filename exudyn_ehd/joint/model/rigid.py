@@ -168,9 +168,9 @@ class BearingModel:
         self._set_gap(self._journal(motion), None)
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
-        mass = self.solver.H.copy() if self.remembers_mass else None
+        void, mass = (self.solver.nothing, self.solver.H.copy()) if self.remembers_mass else (None, None)
         density = self.solver.ones if self.remembers_density else None
-        return History(mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
+        return History(void=void, mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
         """Scaled deflection of the steady film at this motion; None if there is no such film."""
@@ -181,10 +181,17 @@ class BearingModel:
         """History at the end of a solved film's step."""
         if not self.remembers:
             return None
-        p, effects = self.parts, self.effects
+        p, s, effects = self.parts, self.solver, self.effects
+        old = History() if film.history is None else film.history
+        void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
+        wear = None if effects.wear is None else worn_depth(effects.wear, film)
+        if void is not None and wear is not None and old.wear is not None:
+            # the film does not see the wear before the next step
+            void += wear - old.wear
         return History(
-            mass=self.solver.content if self.remembers_mass else None,
-            wear=None if effects.wear is None else worn_depth(effects.wear, film),
+            void=void,
+            mass=mass,
+            wear=wear,
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
@@ -348,11 +355,13 @@ class BearingModel:
         if p.supply is not None:
             fed = p.supply.pressures()
             p.supply.prescribe((fed if law is None else law.transform(fed)) / self.scales.pressure, P)
-        mass = history.mass if history is not None and self.remembers_mass else None
         if p.liner is not None:
             p.liner.delta_old = None if history is None else history.deflection
+        kept = None
+        if history is not None and history.void is not None:
+            kept = self.solver.keep(history.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
-        return self.solver.solve(0.5 * journal.omega, along, cavity, mass, step)
+        return self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0

@@ -58,10 +58,12 @@ def defect(balance):
 
 
 def run(model, motion=MOTION, steps=4):
-    """History after some steps, and the largest defect of the heat balance."""
-    history, worst = model.initial_history(motion), 0.0
-    for _ in range(steps):
-        evaluation = model.evaluate(motion, history, STEP)
+    """History after some steps that end at ``motion``, and the largest defect of the heat balance."""
+    back = np.zeros(10)
+    back[:4] = STEP * motion[4:8]
+    history, worst = model.initial_history(motion - steps * back), 0.0
+    for k in range(steps):
+        evaluation = model.evaluate(motion - (steps - 1 - k) * back, history, STEP)
         assert evaluation.status is ehd.Status.CONVERGED
         history = evaluation.history()
         worst = max(worst, defect(model.effects.thermal.balance(evaluation.film, history.temperature)))
@@ -110,7 +112,8 @@ def test_flows_are_the_mass_flows_of_the_solved_film(cavitation, step):
         assert out["leakage_upper"] == pytest.approx(lost[-1], rel=1e-9)
         if step:
             # the rate is that of the mass which the history keeps
-            np.testing.assert_allclose(flows.rate, (evaluation.history().mass - history.mass) / step, rtol=1e-12)
+            gain = (evaluation.history().mass - history.mass) / step
+            np.testing.assert_allclose(flows.rate, gain, atol=1e-15 * s.H.max() / step)
 
 
 def dissipation(film):
@@ -184,7 +187,7 @@ def test_vanishing_compressibility_recovers_the_incompressible_film(thermal, cav
     """Temperatures of a transient and of the settled film, with the first order in the coefficient."""
     plain, errors = make(thermal, None, cavitation=cavitation), []
     expected = run(plain)[0].temperature, settled_history(plain, REST).temperature
-    for a in (1e-11, 1e-12):
+    for a in (5e-12, 5e-13):
         model = make(thermal, ehd.DowsonHigginson(coefficient=a), cavitation=cavitation)
         found = run(model)[0].temperature, settled_history(model, REST).temperature
         errors.append([np.abs(np.asarray(f) - e).max() for f, e in zip(found, expected, strict=True)])

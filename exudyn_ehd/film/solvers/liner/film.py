@@ -277,7 +277,8 @@ class LinerFilm:
         if self.fills:
             content = content * self.u.fill
         if self.rates.own == 0.0:
-            return content * a.H_r * self.rates.mass, self.film.nothing
+            kept = self.film.area * self.film.follows
+            return (content * a.H_r - kept) * self.rates.mass, kept
         return content * a.rate_r, content * a.rate_t
 
     def flows_by_speed(self) -> np.ndarray:

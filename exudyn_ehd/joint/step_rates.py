@@ -1,0 +1,112 @@
+"""Rates of a step that agree with its positions.
+
+A film is squeezed by the rates v of its pose p (the journal's axis in the housing's frame, and the coordinates of a
+flexible bore). Exudyn ties coordinates and velocities by Newmark's formulas, but joint points of turning bodies leave
+the trapezoid of their velocities by some r (omega h)^3 / 12 a step: a film that takes the velocities at the end of a
+step as they are lets the journal drift by that, a film's thickness within a turn at steps of some degrees. What the
+velocities miss in a step h is known behind it,
+
+    d = (p1 - p0) / h - (v0 + v1) / 2,
+
+grows with h^2 and hardly changes from step to step. The rates of a step are its velocities and what the last three
+steps, of misses d_1 (the last one), d_2 and d_3, lead to expect at its end,
+
+    rate = v1 + (3 d_1 + d_2 - 2 d_3) / 2,
+
+each d_k times (h / h_k)^2. At steps of one size they add up to what the velocities do and the misses, but for those of
+the last steps: rates and pose differ by what telescopes. Of smooth motions they are the pose's own rate to second
+order.
+
+The weights are those that go on in a line for two steps, from the middle of d_1, d_2 to the end of the step, and do not
+see misses that alternate. With linear kinematics d is h (beta - gamma / 2) (a1 - a0) of Newmark's formulas; fed back by
+weights that see its alternation, as 5/2 and -3/2 of the last two, it throws stiff films into alternation at spectral
+radii below 0.4. These keep every mode within the unit circle at any spectral radius, and damp alternating rates as
+velocities alone do. They ask for no parameter of the integrator: it takes a rule of second order for the coordinates,
+and the film at the end of the step, as Exudyn's implicit solvers of second order have.
+
+Misses by which a journal would move less than a millionth of its clearance in a step are left out: nodes on Lie groups
+round rotations to some 1e-11 rad a step, which over short steps is no rate.
+
+The rates differ from the velocities by what is known before the step, so that tangents stay as they are, and the
+rounding of positions over h is no noise to Newton's method. It is in forms with the present d, such as those of
+``(p1 - p0) / h + (1 - g) (v1 - v0)``; where they halve a step it grows.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+_RATES, _BORE = slice(4, 8), 10
+# Of the misses of the last steps, the last one first, by how many there are.
+WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
+# Displacement by misses in a step that counts, share of the clearance.
+SMALLEST_MISS = 1e-6
+# Growth from step to step beyond which nothing is expected; Exudyn doubles steps.
+LARGEST_GROWTH = 4.0
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class StepStart:
+    """Where a step begins.
+
+    Attributes
+    ----------
+    time : float
+        s.
+    motion : (10 + 2 k,) array
+        Pose, velocities and bore.
+    step : float
+        Length of the step before, s; 0 if there was none.
+    misses : (n, 4 + k) array
+        What the velocities missed in the last steps, up to three, the last one first, over the square of the step.
+    clearance : float
+        m.
+    """
+
+    time: float
+    motion: np.ndarray
+    step: float
+    misses: np.ndarray
+    clearance: float
+
+    def film_motion(self, motion: np.ndarray, time: float) -> np.ndarray:
+        """Motion (10 + 2 k,) as given for the end of the step, with the rates that the film takes."""
+        step, known = time - self.time, len(self.misses)
+        if known == 0 or step > LARGEST_GROWTH * self.step:
+            return motion
+        expected = step**2 * (WEIGHTS[known] @ self.misses)
+        if step * np.abs(expected[:2]).max() < SMALLEST_MISS * self.clearance:
+            return motion
+        out = motion.copy()
+        out[_RATES] += expected[:4]
+        out[motion.size - expected.size + 4 :] += expected[4:]
+        return out
+
+
+def next_start(before: StepStart | None, motion: np.ndarray, time: float, clearance: float) -> StepStart:
+    """Where the step after an accepted state begins.
+
+    Parameters
+    ----------
+    before : StepStart or None
+        Where the step before it began, or another one that begins here.
+    motion : (10 + 2 k,) array
+        At the state, with the velocities.
+    time : float
+        s.
+    clearance : float
+        m.
+    """
+    k = (motion.size - _BORE) // 2
+    if before is None or before.time > time:
+        return StepStart(time, motion, 0.0, np.empty((0, 4 + k)), clearance)
+    if before.time == time:
+        return dataclasses.replace(before, motion=motion)
+    step = time - before.time
+    change, mean = (motion - before.motion) / step, 0.5 * (motion + before.motion)
+    place, rate = np.r_[:4, _BORE : _BORE + k], np.r_[4:8, _BORE + k : _BORE + 2 * k]
+    known = before.misses[:2] if step <= LARGEST_GROWTH * before.step else before.misses[:0]
+    misses = np.vstack(((change[place] - mean[rate]) / step**2, known))
+    return StepStart(time, motion, step, misses, clearance)
