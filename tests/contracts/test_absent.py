@@ -132,6 +132,7 @@ SHARED = {
     "heat.options",
     "banded.many_sides",
     "cavitation.cavity_transport",
+    "cavitation.pseudo_time",
     "surfaces.patir_cheng",
     "solvers.liner.parts",
     "surfaces.contact",

@@ -161,7 +161,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
     for target in ("ShearThinning.apply", "ShearThinning.factor"):
         monkeypatch.setattr(f"exudyn_ehd.film.lubricant.shear_thinning.{target}", forbidden)
     for target in (
-        "heat.temperature.viscosity_ratio",
+        "heat.temperature._Temperature.viscosity_ratio",
         "heat.oil_flows.film_flows",
         "model.loads.couette_integral_ratio",
         "static.steady_temperature._target",

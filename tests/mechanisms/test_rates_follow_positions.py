@@ -188,30 +188,53 @@ def test_memory_adds_no_ringing(planar_rotor, rho):
     assert found["elrod-adams"][1] < 1e-6
 
 
+WHIRL_SPEED, WHIRL_LOAD = 300.0 * math.pi, 1000.0
+
+
+def whirling(cavitation, **options):
+    """A bearing and its equilibrium."""
+    film = ehd.FiniteLength(n_theta=48, n_z=6)
+    bearing = pin(cavitation, journal_radius=0.025, length=0.025, radial_clearance=50e-6, film=film, **options)
+    return bearing, ehd.equilibrium(bearing, speed=WHIRL_SPEED, load=(0.0, -WHIRL_LOAD))
+
+
+def growth(planar_rotor, bearing, eq, ratio, steps):
+    """Growth per radian of a small whirl of a rotor of ``ratio`` times the critical mass, with steps per turn."""
+    turn = 2.0 * math.pi / WHIRL_SPEED
+    rotor = planar_rotor(bearing, mass=ratio * eq.critical_mass, speed=WHIRL_SPEED, load=(0.0, -WHIRL_LOAD))
+    # settled under a load that is a little less
+    rotor.joint.place_in_equilibrium(load=(0.0, -0.999 * WHIRL_LOAD))
+    history = rotor.run(16 * turn, turn / steps, spectral_radius=1.0)
+    x = (history.eccentricity - eq.position)[6 * steps :]
+    apart = steps // 5
+    modes = np.linalg.lstsq(x[:-apart], x[apart:], rcond=None)[0]
+    return np.log(np.abs(np.linalg.eigvals(modes)).max()) * steps / apart / (2.0 * math.pi)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["swift-stieber", "elrod-adams"])
 @pytest.mark.parametrize("ratio", [0.5, 0.9, 1.1])
 def test_growth_of_whirl_does_not_depend_on_the_step(planar_rotor, name, ratio):
-    """Growth per radian of a small whirl about the equilibrium, in shares of that with 480 steps a turn.
-
-    The mass is in terms of the film's own threshold: for a film with memory half of what `equilibrium` says.
-    """
-    speed, load, c = 300.0 * math.pi, 1000.0, 50e-6
-    bearing = pin(
-        CLOSURES[name], journal_radius=0.025, length=0.025, radial_clearance=c, film=ehd.FiniteLength(n_theta=48, n_z=6)
-    )
-    eq = ehd.equilibrium(bearing, speed=speed, load=(0.0, -load))
-    mass = ratio * eq.critical_mass * (1.0 if name == "swift-stieber" else 0.47)
-    turn, growth = 2.0 * math.pi / speed, {}
-    for steps in (60, 120, 480):
-        rotor = planar_rotor(bearing, mass=mass, speed=speed, load=(0.0, -load))
-        # settled under a load that is a little less
-        rotor.joint.place_in_equilibrium(load=(0.0, -0.999 * load))
-        history = rotor.run(16 * turn, turn / steps, spectral_radius=1.0)
-        x = (history.eccentricity - eq.position)[6 * steps :]
-        apart = steps // 5
-        modes = np.linalg.lstsq(x[:-apart], x[apart:], rcond=None)[0]
-        growth[steps] = np.log(np.abs(np.linalg.eigvals(modes)).max()) * steps / apart / (2.0 * math.pi)
+    """In shares of the growth with 480 steps a turn."""
+    bearing, eq = whirling(CLOSURES[name])
+    found = {steps: growth(planar_rotor, bearing, eq, ratio, steps) for steps in (60, 120, 480)}
     # or, next to the threshold, 1e-4 of the frequency; cavities that remember are of first order
     for steps, tolerance in ((60, 0.02 if name == "swift-stieber" else 0.08), (120, 0.05)):
-        assert growth[steps] == pytest.approx(growth[480], rel=tolerance, abs=2e-4)
+        assert found[steps] == pytest.approx(found[480], rel=tolerance, abs=2e-4)
+
+
+GROOVE = ehd.AxialGroove(angle=math.pi / 2, width_angle=0.5, length=0.02, pressure=1e5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("cavitation", "supply"),
+    [(ehd.SwiftStieber(), ()), (ehd.ElrodAdams(cavity_pressure=-1e5), ()), (ehd.ElrodAdams(), (GROOVE,))],
+    ids=["swift-stieber", "elrod-adams", "elrod-adams, groove"],
+)
+def test_threshold_of_the_equilibrium_is_that_of_the_run(planar_rotor, cavitation, supply):
+    """Within 1 % of the mass, from the growth next to it on either side."""
+    bearing, eq = whirling(cavitation, supply=supply)
+    light, heavy = (growth(planar_rotor, bearing, eq, ratio, 240) for ratio in (0.95, 1.05))
+    assert light < 0.0 < heavy
+    assert 0.95 - 0.1 * light / (heavy - light) == pytest.approx(1.0, abs=0.01)
