@@ -41,7 +41,7 @@ import numpy as np
 _RATES, _BORE = slice(4, 8), 10
 # Of the misses of the last steps, the last one first, by how many there are.
 WEIGHTS = tuple(np.array(w) for w in ((), (1.0,), (0.5, 0.5), (1.5, 0.5, -1.0)))
-# Displacement by misses in a step that counts, share of the clearance.
+# Displacement by misses in a step, share of the clearance: less changes no film, and may be rounding of positions.
 SMALLEST_MISS = 1e-6
 # Growth from step to step beyond which nothing is expected; Exudyn doubles steps.
 LARGEST_GROWTH = 4.0

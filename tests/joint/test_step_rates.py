@@ -117,6 +117,8 @@ def test_no_mode_grows_and_alternating_ones_are_damped(rho):
     # rigid motions have modulus 1; 1e-6: roots of a double eigenvalue
     assert largest < 1.0 + 1e-6
     by_velocities = modes(rho, np.zeros(3))[1]
+    # at small radii, where velocities alone damp most, less fast than by them:
+    # 0.64 for 0.57 at 0.5, 0.41 for 0.26 at 0.2
     assert alternating <= by_velocities + (2e-3 if rho >= 0.8 else 0.16)
 
 
