@@ -2,7 +2,7 @@
 
 A slider-crank at 3000 rpm with a gas pulse on the piston. The rod's big end is the housing and carries a steel bush of
 8 mm, the crank pin is the journal. Rigid bore against a modal bush: the elastic one lowers the pressure peak of the
-firing stroke and changes the smallest film.
+firing stroke and changes the minimum film thickness.
 
 Run ``python examples/elastic_big_end.py``; the picture is written to ``results``.
 """
@@ -121,7 +121,7 @@ def simulate(bearing: ehd.JournalBearing, *, turns: float, steps_per_turn: int) 
         "angle_deg": np.degrees(SPEED * history.time),
         "history": history,
         "peak_MPa": float(history.peak_pressure[later].max()) / 1e6,
-        "minimum_gap_um": float(history.minimum_gap[later].min()) * 1e6,
+        "minimum_film_thickness_um": float(history.minimum_gap[later].min()) * 1e6,
         "largest_force_kN": float(np.hypot(*history.force[later].T[:2]).max()) / 1e3,
         "mean_loss_W": float(history.power_loss[later].mean()),
         "milliseconds_per_step": 1e3 * (time.perf_counter() - start) / steps,
@@ -140,7 +140,7 @@ def draw(cases: dict, path: Path) -> None:
         axes[0, 1].plot(angle, 1e6 * h.minimum_gap, style)
         axes[1, 0].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, style)
         axes[1, 1].plot(h.eccentricity[:, 0] * 1e6, h.eccentricity[:, 1] * 1e6, style)
-    for a, label in zip(axes.ravel()[:3], ("peak pressure [MPa]", "smallest film [µm]", "force [kN]")):
+    for a, label in zip(axes.ravel()[:3], ("peak pressure [MPa]", "minimum film thickness [µm]", "force [kN]")):
         a.set(
             xlabel="crank angle [°]", ylabel=label, xlim=(0, angle[-1]), xticks=np.arange(0.0, angle[-1] + 1.0, 180.0)
         )

@@ -285,7 +285,7 @@ def figures(ideal: Run, run: Run, start_up: float) -> dict[str, float]:
         row |= {
             f"{name}_force_N": float(np.hypot(*h.force[kept].T[:2]).max()),
             f"{name}_eccentricity_ratio": float(h.eccentricity_ratio[kept].max()),
-            f"{name}_minimum_gap_um": 1e6 * float(h.minimum_gap[kept].min()),
+            f"{name}_minimum_film_thickness_um": 1e6 * float(h.minimum_gap[kept].min()),
             f"{name}_peak_pressure_MPa": 1e-6 * float(h.peak_pressure[kept].max()),
         }
     return row | {"milliseconds_per_step": run.milliseconds_per_step}
@@ -352,7 +352,7 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
         xlabel="x / c (along the rod) [-]", ylabel="y / c [-]", aspect="equal", title="pins in the rod's eyes"
     )
     axes[1, 1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False)
-    axes[1, 2].set(ylabel="minimum film [µm]", ylim=(0, None))
+    axes[1, 2].set(ylabel="minimum film thickness [µm]", ylim=(0, None))
     for ax in (*axes[0], axes[1, 0], axes[1, 2]):
         ax.set(
             xlabel="crank angle [°]",

@@ -161,7 +161,7 @@ def figures(cycle: Cycle, bearing: ehd.JournalBearing) -> dict[str, float]:
     reference = reference[reference[:, 0] >= 180.0]  # by then a short start-up is forgotten
     x, y = (np.interp(reference[:, 0], cycle.angle, h.eccentricity[:, k] / c) for k in (0, 1))
     return {
-        "minimum_film_um": 1e6 * float(h.minimum_gap[thinnest]),
+        "minimum_film_thickness_um": 1e6 * float(h.minimum_gap[thinnest]),
         "at_crank_angle_deg": float(cycle.angle[thinnest]),
         "largest_eccentricity_ratio": float(h.eccentricity_ratio.max()),
         "peak_pressure_MPa": 1e-6 * float(h.peak_pressure.max()),
@@ -183,7 +183,7 @@ def print_table(rows: dict[str, dict[str, float]]) -> None:
 
 @styled(10.0)
 def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None:
-    """Orbits with the reference, load, smallest film and peak pressure over the cycle."""
+    """Orbits with the reference, load, minimum film thickness and peak pressure over the cycle."""
     colours = dict(zip(cycles, ("black", "tab:blue", "tab:green", "tab:red", "tab:orange"), strict=True))
     styles = {"elastic": "--"}
     fig, axes = plt.subplots(2, 2, figsize=(12, 9), layout="constrained")
@@ -210,7 +210,7 @@ def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None
     axes[0, 1].plot(angles, 1e-3 * forces, "o-", ms=3, color="black")
     axes[0, 1].axhline(0.0, color="grey", lw=0.8)
     axes[0, 1].set(ylabel="load along the rod [kN]", title="load of the four-stroke cycle")
-    axes[1, 0].set(ylabel="smallest film [µm]", title="smallest film", ylim=(0, None))
+    axes[1, 0].set(ylabel="minimum film thickness [µm]", title="minimum film thickness", ylim=(0, None))
     axes[1, 1].set(ylabel="peak pressure [MPa]", title="peak pressure", ylim=(0, None))
     for ax in (axes[0, 1], axes[1, 0], axes[1, 1]):
         ax.set(xlabel="crank angle [°]", xlim=(0, 720), xticks=range(0, 721, 90))

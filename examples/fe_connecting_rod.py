@@ -224,7 +224,7 @@ def simulate(
         "angle_deg": np.degrees(SPEED * h.time),
         "history": h,
         "peak_MPa": float(h.peak_pressure[firing]) / 1e6,
-        "minimum_gap_um": float(h.minimum_gap[later].min()) * 1e6,
+        "minimum_film_thickness_um": float(h.minimum_gap[later].min()) * 1e6,
         "largest_force_kN": float(np.hypot(*h.force[later].T[:2]).max()) / 1e3,
         "mean_loss_W": float(h.power_loss[later].mean()),
         "milliseconds_per_step": 1e3 * spent / steps,
@@ -273,7 +273,7 @@ def draw(cases: dict, rods: dict, path: Path) -> None:
         axes["p"].plot(angle, h.peak_pressure / 1e6, label=name)
         axes["g"].plot(angle, 1e6 * h.minimum_gap, label=name)
         axes["f"].plot(angle, np.hypot(h.force[:, 0], h.force[:, 1]) / 1e3, label=name)
-    for a, label in zip("pgf", ("peak pressure [MPa]", "smallest film [µm]", "pin force [kN]")):
+    for a, label in zip("pgf", ("peak pressure [MPa]", "minimum film thickness [µm]", "pin force [kN]")):
         axes[a].set(
             xlabel="crank angle [°]", ylabel=label, xlim=(0, angle[-1]), xticks=np.arange(0.0, angle[-1] + 1.0, 60.0)
         )

@@ -330,7 +330,7 @@ def figures(ideal: Run, run: Run, start_up: float, *, elastic: bool = False) -> 
         "right_tilt_urad": 1e6 * float(tilt.max()),
         "beam_theory_off_by_urad": 1e6 * float(theory.max()),
         "right_eccentricity_ratio": float(right.eccentricity_ratio[kept].max()),
-        "right_minimum_gap_um": 1e6 * float(right.minimum_gap[kept].min()),
+        "right_minimum_film_thickness_um": 1e6 * float(right.minimum_gap[kept].min()),
         "right_peak_pressure_MPa": 1e-6 * float(right.peak_pressure[kept].max()),
     }
 
@@ -375,7 +375,7 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     labels = (
         "force in the right bearing [kN]",
         "tilt of the right journal [µrad]",
-        "smallest film, right bearing [µm]",
+        "minimum film thickness, right bearing [µm]",
         "tool's distance from the ideal path [µm]",
     )
     for ax, label in zip(axes.flat, labels, strict=True):
@@ -420,12 +420,12 @@ def main(
     kept = parallel.time >= start_up * 2.0 * math.pi / SPEED - 1e-9
     rows["same load, parallel axes"] = {
         "right_eccentricity_ratio": float(parallel.eccentricity_ratio[kept].max()),
-        "right_minimum_gap_um": 1e6 * float(parallel.minimum_gap[kept].min()),
+        "right_minimum_film_thickness_um": 1e6 * float(parallel.minimum_gap[kept].min()),
         "right_peak_pressure_MPa": 1e-6 * float(parallel.peak_pressure[kept].max()),
     }
-    print(f"\n{'after start-up':28s}" + "".join(f"{name:>26s}" for name in rows))
+    print(f"\n{'after start-up':33s}" + "".join(f"{name:>26s}" for name in rows))
     for key in rows[CASES[2]]:
-        print(f"{key:28s}" + "".join(f"{row[key]:26.4g}" if key in row else f"{'-':>26s}" for row in rows.values()))
+        print(f"{key:33s}" + "".join(f"{row[key]:26.4g}" if key in row else f"{'-':>26s}" for row in rows.values()))
     if output is not None:
         folder = pathlib.Path(output)
         folder.mkdir(parents=True, exist_ok=True)

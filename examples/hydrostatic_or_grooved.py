@@ -7,10 +7,10 @@ Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Ad
 1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gumbel are laid next to another
    finite-volume code on the same case.
 2. Where should the groove be? The load of 3 kN is fixed, the groove goes around. What flows in has to flow out: only
-the mass-conserving film knows,
-   and only it notices that a groove under the load starves the film until it can't carry.
+   the mass-conserving film knows, and only it notices that a groove under the load starves the film until it can't
+   carry.
 3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of
-it.
+   it.
 
 Run ``python examples/hydrostatic_or_grooved.py``; pictures are written to ``results/hydrostatic_or_grooved``.
 """
@@ -73,13 +73,13 @@ def at_a_position(film: ehd.FiniteLength) -> dict[tuple[str, str], ehd.SteadyRes
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """Smallest film in m, flow in and out in m3/s over the groove's angle from the load's direction (k,) in degrees.
+    """Minimum film thickness (m), flow in and out (m3/s) over the groove's angle from the load in degrees (k,).
 
     nan where the film can't carry.
     """
 
     angle: np.ndarray
-    minimum_gap: np.ndarray
+    minimum_film_thickness: np.ndarray
     supplied: np.ndarray
     leaked: np.ndarray
 
@@ -96,8 +96,8 @@ def around(closure: str, film: ehd.FiniteLength, *, step: float) -> Sweep:
             rows.append((state.minimum_gap, float(state.supply_flows.sum()), state.leakage))
         except ehd.FilmError:
             rows.append((math.nan, math.nan, math.nan))
-    gap, supplied, leaked = np.array(rows).T
-    return Sweep(angle=angles, minimum_gap=gap, supplied=supplied, leaked=leaked)
+    film_thickness, supplied, leaked = np.array(rows).T
+    return Sweep(angle=angles, minimum_film_thickness=film_thickness, supplied=supplied, leaked=leaked)
 
 
 def turning_load(
@@ -162,18 +162,22 @@ def figures(films, sweeps, runs) -> dict[str, float]:
         )
         rows["friction off the other code: " + ", ".join(key)] = abs(film.friction_torque_bush) / friction - 1.0
     for closure, sweep in sweeps.items():
-        best = int(np.nanargmax(sweep.minimum_gap))
+        best = int(np.nanargmax(sweep.minimum_film_thickness))
         rows[f"{closure}: best groove angle from the load [deg]"] = float(sweep.angle[best])
-        rows[f"{closure}: smallest film there [um]"] = 1e6 * float(sweep.minimum_gap[best])
+        rows[f"{closure}: minimum film thickness there [um]"] = 1e6 * float(sweep.minimum_film_thickness[best])
         under = int(np.argmin(np.abs(sweep.angle)))
-        rows[f"{closure}: smallest film, groove under the load [um]"] = 1e6 * float(sweep.minimum_gap[under])
+        rows[f"{closure}: minimum film thickness, groove under the load [um]"] = 1e6 * float(
+            sweep.minimum_film_thickness[under]
+        )
         rows[f"{closure}: oil out of nothing, share of the leakage"] = float(
             np.nanmax(np.abs(1.0 - sweep.supplied / sweep.leaked))
         )
     for closure, (angle, history) in runs.items():
         late = angle >= 0.0
         thinnest = int(np.argmin(history.minimum_gap[late]))
-        rows[f"{closure}: smallest film under the turning load [um]"] = 1e6 * float(history.minimum_gap[late][thinnest])
+        rows[f"{closure}: minimum film thickness under the turning load [um]"] = 1e6 * float(
+            history.minimum_gap[late][thinnest]
+        )
         rows[f"{closure}: load's angle from the groove then [deg]"] = float(angle[late][thinnest])
     return rows
 
@@ -186,10 +190,12 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
         getattr(films["Elrod-Adams", "tilted"], f"plot_{field}")(ax=ax)
         ax.set_title(f"{field} of the tilted film, Elrod-Adams")
     for closure, sweep in sweeps.items():
-        axes[1, 0].plot(sweep.angle, 1e6 * sweep.minimum_gap, "o-", ms=3, color=COLOURS[closure], label=closure)
+        axes[1, 0].plot(
+            sweep.angle, 1e6 * sweep.minimum_film_thickness, "o-", ms=3, color=COLOURS[closure], label=closure
+        )
     axes[1, 0].set(
         xlabel="groove's angle from the load [°]",
-        ylabel="smallest film [µm]",
+        ylabel="minimum film thickness [µm]",
         title="where to put the groove (load 3 kN)",
         xticks=range(-180, 181, 60),
         ylim=(0, 75),
@@ -199,7 +205,7 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
         axes[1, 1].plot(angle[late], 1e6 * history.minimum_gap[late], color=COLOURS[closure], label=closure)
     axes[1, 1].set(
         xlabel="load's angle from the groove [°]",
-        ylabel="smallest film [µm]",
+        ylabel="minimum film thickness [µm]",
         title="a load of 2 kN turns over the groove",
         xticks=range(-90, 361, 90),
         ylim=(0, 85),
@@ -235,7 +241,7 @@ def main(
     }
     rows = figures(films, sweeps, runs)
     for key, value in rows.items():
-        print(f"  {key:64s}{value:12.4g}")
+        print(f"  {key:68s}{value:12.4g}")
     if output is not None:
         folder = pathlib.Path(output)
         folder.mkdir(parents=True, exist_ok=True)

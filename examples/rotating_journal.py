@@ -57,7 +57,7 @@ def solve(bearing: ehd.JournalBearing, tilt: float) -> dict:
         "film": film,
         "peak_MPa": film.peak_pressure / 1e6,
         "load_kN": float(np.hypot(*film.force[:2])) / 1e3,
-        "minimum_gap_um": film.minimum_gap * 1e6,
+        "minimum_film_thickness_um": film.minimum_gap * 1e6,
         "extent_deg": 360.0 * float(np.mean(film.pressure[:, middle] > 1e3)),
         "asymmetry": float(np.abs(film.pressure - film.pressure[:, ::-1]).max() / film.peak_pressure),
         "solve_s": time.perf_counter() - start,
@@ -248,6 +248,6 @@ if __name__ == "__main__":
     print(f"{'':55s}{'MPa':>8s}{'kN':>8s}{'um':>11s}{'°':>8s}{'-':>11s}{'ms':>12s}{'s':>8s}")
     for (closure, name, label), case in outcome.items():
         print(
-            f"{closure:17s}{name:10s}{label:28s}{case['peak_MPa']:8.2f}{case['load_kN']:8.2f}{case['minimum_gap_um']:11.2f}"
+            f"{closure:17s}{name:10s}{label:28s}{case['peak_MPa']:8.2f}{case['load_kN']:8.2f}{case['minimum_film_thickness_um']:11.2f}"
             f"{case['extent_deg']:8.0f}{case['asymmetry']:11.1e}{case['evaluation_ms']:12.2f}{case['solve_s']:8.2f}"
         )

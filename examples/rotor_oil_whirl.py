@@ -22,7 +22,7 @@ threshold a whirl grows, first at the eigenvalue's
   near the shaft's first bending frequency, the whirl bends away from it and stays a few per cent below that frequency
   however fast the rotor turns: whip. It bends the shaft by fifty clearances. The journals stay on their films, but
   barely: at exactly half the spin a film has no wedge, so that it needs all of its eccentricity to hold a journal that
-  whirls close to it. The thinnest film is below a micrometre, where a real bearing rubs.
+  whirls close to it. The minimum film thickness is below a micrometre, where a real bearing rubs.
 
 K and C belong to small motions: the frequency of the limit cycle is not the eigenvalue's, and only the nonlinear film
 gives it. Gyroscopic moments are left out of the linear theory, since the disc in the middle does not tilt in the first
@@ -314,15 +314,15 @@ def free_whirl(linear: LinearRotor, speed: float, *, turns: float, steps_per_tur
 class RunUp:
     """The run-up on a uniform grid of times, with spectra of the left journal's forward motion.
 
-    ``speed`` (Hz), ``orbit`` x + i y of the journal and ``disc`` y + i z of the disc (m), ``gap`` smallest film (m);
-    ``spectrum_speed`` (k,) and ``frequency`` (n,) in Hz with ``amplitude`` (n, k) in m.
+    ``speed`` (Hz), ``orbit`` x + i y of the journal and ``disc`` y + i z of the disc (m), ``film`` minimum film
+    thickness (m); ``spectrum_speed`` (k,) and ``frequency`` (n,) in Hz with ``amplitude`` (n, k) in m.
     """
 
     time: np.ndarray
     speed: np.ndarray
     orbit: np.ndarray
     disc: np.ndarray
-    gap: np.ndarray
+    film: np.ndarray
     largest_ratio: float
     spectrum_speed: np.ndarray
     frequency: np.ndarray
@@ -375,7 +375,7 @@ def run_up(linear: LinearRotor, first: float, last: float, duration: float, step
         speed=first + (last - first) * t / duration,
         orbit=orbit,
         disc=at(disc[:, 1]) + 1j * at(disc[:, 2]),
-        gap=at(h.minimum_gap),
+        film=at(h.minimum_gap),
         largest_ratio=float(h.eccentricity_ratio.max()),
         spectrum_speed=first + (last - first) * centres / duration,
         frequency=frequency[kept],
@@ -409,7 +409,7 @@ def figures(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ri
         "quiet_amplitude_ratio": float(np.abs(ride.orbit - ride.orbit.mean())[ride.speed < threshold / HZ].max())
         / CLEARANCE,
         "largest_eccentricity_ratio": ride.largest_ratio,
-        "smallest_film_um": 1e6 * float(ride.gap.min()),
+        "minimum_film_thickness_um": 1e6 * float(ride.film.min()),
         "largest_disc_amplitude_mm": 1e3 * float(np.abs(ride.disc - ride.disc.mean()).max()),
         "milliseconds_per_step": ride.milliseconds_per_step,
     }

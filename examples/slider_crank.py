@@ -207,7 +207,7 @@ def figures(ideal: Run, run: Run, start_up: float) -> dict[str, float]:
     return {
         "clearance_um": 1e6 * c,
         "largest_eccentricity_ratio": float(h.eccentricity_ratio[kept].max()),
-        "minimum_gap_um": 1e6 * float(h.minimum_gap[kept].min()),
+        "minimum_film_thickness_um": 1e6 * float(h.minimum_gap[kept].min()),
         "peak_pressure_MPa": 1e-6 * float(h.peak_pressure[kept].max()),
         "largest_pin_force_N": float(force[late].max()),
         "largest_crank_moment_Nm": float(np.abs(run.moment[late]).max()),
@@ -301,7 +301,7 @@ def draw_bearing(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> N
         title="orbit of the pin in the rod's eye",
     )
     axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), frameon=False)
-    axes[1].set(ylabel="minimum gap / clearance [-]", title="minimum film")
+    axes[1].set(ylabel="minimum film thickness / clearance [-]", title="minimum film thickness")
     axes[2].set(ylabel="peak pressure [MPa]", title="peak pressure")
     _over_the_crank_angle(axes[1:], end, "both")
     fig.savefig(path, dpi=120)

@@ -177,7 +177,9 @@ def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     speed.legend(handles=[first, second], frameon=False, loc="upper center", ncols=2)
     axes[0, 1].semilogy(h.time, 1e6 * h.minimum_gap, color="black")
     axes[0, 1].axhline(2.0, color="grey", ls="--", lw=0.9, label="4 x composite roughness: asperities meet below")
-    axes[0, 1].set(xlabel="time [s]", ylabel="smallest nominal gap [µm]", title="smallest gap", ylim=(0.2, 30))
+    axes[0, 1].set(
+        xlabel="time [s]", ylabel="nominal film thickness [µm]", title="minimum film thickness", ylim=(0.2, 30)
+    )
     axes[0, 1].legend(frameon=False, loc="upper right")
     friction = friction_coefficient(h)
     up, down = (h.time <= MOTOR_TIME) & (spin > 0.1), (h.time > MOTOR_TIME) & (spin > 0.1)

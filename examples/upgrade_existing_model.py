@@ -140,7 +140,7 @@ def lost_in_films(histories: list[ehd.JointHistory], time: np.ndarray) -> np.nda
 
 @styled(10.0)
 def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
-    """Tip, energy, eccentricity and smallest film of both variants."""
+    """Tip, energy, eccentricity and minimum film thickness of both variants."""
     fig, axes = plt.subplots(2, 2, figsize=(11, 7.5), layout="constrained")
     t = oiled["time"]
     axes[0, 0].plot(ideal["time"], ideal["tip"][:, 1], color="black", label="before: ideal joints")
@@ -157,7 +157,7 @@ def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     axes[1, 0].set(
         ylabel="largest eccentricity ratio [-]", title="pins in their clearance (at the worse end)", ylim=(0, 1)
     )
-    axes[1, 1].set(ylabel="smallest film [µm]", title="smallest film")
+    axes[1, 1].set(ylabel="minimum film thickness [µm]", title="minimum film thickness")
     axes[1, 1].axhline(2.0, color="grey", lw=0.8, ls="--", label="the wall acts below")
     axes[1, 1].legend(frameon=False, loc="upper center", ncols=3)
     axes[1, 1].set_ylim(0.5, 150)
@@ -194,7 +194,7 @@ def main(*, quick: bool = False, output: str | pathlib.Path | None = "results/up
     }
     for name, h in zip(("shoulder", "elbow"), oiled["histories"], strict=True):
         rows[f"{name}_largest_eccentricity_ratio"] = float(h.largest_eccentricity_ratio.max())
-        rows[f"{name}_minimum_film_um"] = 1e6 * float(h.minimum_gap.min())
+        rows[f"{name}_minimum_film_thickness_um"] = 1e6 * float(h.minimum_gap.min())
         rows[f"{name}_peak_pressure_MPa"] = 1e-6 * float(h.peak_pressure.max())
         rows[f"{name}_largest_friction_torque_Nm"] = float(np.abs(h.friction_torque).max())
     print(f"\n{end:g} s of the tutorial")

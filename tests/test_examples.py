@@ -22,7 +22,7 @@ def test_slider_crank(example, tmp_path):
     assert play["largest_pin_force_N"] > 1.01 * real["largest_pin_force_N"]
     assert play["largest_crank_moment_Nm"] > 1.15 * real["largest_crank_moment_Nm"]
     assert play["largest_eccentricity_ratio"] > 0.98
-    assert real["minimum_gap_um"] == pytest.approx(8.4, abs=0.3)
+    assert real["minimum_film_thickness_um"] == pytest.approx(8.4, abs=0.3)
 
 
 def test_rotating_journal(example, tmp_path):
@@ -38,12 +38,12 @@ def test_rotating_journal(example, tmp_path):
                 assert elastic["peak_MPa"] < 0.9 * rigid["peak_MPa"]
                 assert elastic["extent_deg"] >= rigid["extent_deg"] + 360 / 64 - 1e-9
             for solid in (modal, nodal):
-                assert solid["minimum_gap_um"] > 1.02 * rigid["minimum_gap_um"]
+                assert solid["minimum_film_thickness_um"] > 1.02 * rigid["minimum_film_thickness_um"]
             # columns deflect too little at the ends and are none beyond them; the modes of tolerance 0.02 on a coarse
             # film grid
             assert liner["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.05)
             assert modal["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.015)
-            assert modal["minimum_gap_um"] == pytest.approx(nodal["minimum_gap_um"], rel=0.04)
+            assert modal["minimum_film_thickness_um"] == pytest.approx(nodal["minimum_film_thickness_um"], rel=0.04)
             # both halves of an aligned bearing are alike, to the rounding of a solve
             for case in (rigid, liner, modal, nodal):
                 assert case["asymmetry"] < 1e-9 if name == "aligned" else case["asymmetry"] > 0.5
@@ -71,7 +71,7 @@ def test_fe_connecting_rod(example, tmp_path):
         assert rod["iterations_per_step"] < 7.5
     assert rigid["iterations_per_step"] < 3.5
     assert narrow["peak_MPa"] > 1.15 * rigid["peak_MPa"]
-    assert narrow["minimum_gap_um"] < 0.5 * rigid["minimum_gap_um"]
+    assert narrow["minimum_film_thickness_um"] < 0.5 * rigid["minimum_film_thickness_um"]
     assert wide["peak_MPa"] < 0.95 * rigid["peak_MPa"]
 
 
@@ -98,14 +98,19 @@ def test_engine_big_end(example, tmp_path):
     short, finite, gumbel, balance, elastic = (
         rows[name] for name in ("short", "finite", "Gumbel", "oil balance", "elastic")
     )
-    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its smallest
-    # film
+    # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its minimum
+    # film thickness
     assert short["largest_distance_to_reference_orbit"] < 0.003
-    assert short["minimum_film_um"] == pytest.approx(6.448, abs=0.01)
-    # a short bearing is too stiff at L / D = 0.4, by 18 % in the smallest film; clipping makes it thinner, cavities
-    # that have to be refilled much more so
-    assert finite["minimum_film_um"] == pytest.approx(5.29, abs=0.03)
-    assert balance["minimum_film_um"] < gumbel["minimum_film_um"] < finite["minimum_film_um"] < short["minimum_film_um"]
+    assert short["minimum_film_thickness_um"] == pytest.approx(6.448, abs=0.01)
+    # a short bearing is too stiff at L / D = 0.4, by 18 % in the minimum film thickness; clipping makes it thinner,
+    # cavities that have to be refilled much more so
+    assert finite["minimum_film_thickness_um"] == pytest.approx(5.29, abs=0.03)
+    assert (
+        balance["minimum_film_thickness_um"]
+        < gumbel["minimum_film_thickness_um"]
+        < finite["minimum_film_thickness_um"]
+        < short["minimum_film_thickness_um"]
+    )
     # 5 MPa hardly deform a steel bush
     assert elastic["peak_pressure_MPa"] == pytest.approx(finite["peak_pressure_MPa"], rel=0.03)
     assert all(row["iterations_per_step"] < 3 for row in rows.values())
@@ -153,7 +158,9 @@ def test_elastic_slider_crank(example, tmp_path):
     assert rigid["gudgeon_pin_force_N"] == pytest.approx(0.14 * 523.6**2 * 0.05 * (1 + 0.05 / 0.12), rel=2e-3)
     for pin in ("crank_pin", "gudgeon_pin"):
         assert elastic[f"{pin}_force_N"] == pytest.approx(rigid[f"{pin}_force_N"], rel=3e-3)
-        assert elastic[f"{pin}_minimum_gap_um"] == pytest.approx(rigid[f"{pin}_minimum_gap_um"], rel=0.08)
+        assert elastic[f"{pin}_minimum_film_thickness_um"] == pytest.approx(
+            rigid[f"{pin}_minimum_film_thickness_um"], rel=0.08
+        )
 
 
 def test_start_stop(example, tmp_path):
@@ -189,7 +196,7 @@ def test_rotor_oil_whirl(example, tmp_path):
     assert n["whip_ratio"] < 0.485 and n["whip_change_per_Hz"] < 0.35
     # the shaft bends by many clearances of 0.1 mm, the journals stay on their films
     assert n["largest_disc_amplitude_mm"] > 1.0
-    assert n["largest_eccentricity_ratio"] < 0.99 and n["smallest_film_um"] > 1.0
+    assert n["largest_eccentricity_ratio"] < 0.99 and n["minimum_film_thickness_um"] > 1.0
 
 
 def test_four_bar_spatial(example, tmp_path):
@@ -207,8 +214,10 @@ def test_four_bar_spatial(example, tmp_path):
     assert elastic["beam_theory_off_by_urad"] < 5e-3 * elastic["right_tilt_urad"]
     # misalignment from elasticity: edge film and pressure against the bearing with parallel axes under the same load
     assert elastic["right_tilt_urad"] > 8 * rigid["right_tilt_urad"]
-    assert rigid["right_minimum_gap_um"] == pytest.approx(parallel["right_minimum_gap_um"], rel=0.1)
-    assert elastic["right_minimum_gap_um"] < 0.65 * parallel["right_minimum_gap_um"]
+    assert rigid["right_minimum_film_thickness_um"] == pytest.approx(
+        parallel["right_minimum_film_thickness_um"], rel=0.1
+    )
+    assert elastic["right_minimum_film_thickness_um"] < 0.65 * parallel["right_minimum_film_thickness_um"]
     assert elastic["right_peak_pressure_MPa"] > 1.1 * parallel["right_peak_pressure_MPa"]
     assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
 
@@ -223,10 +232,10 @@ def test_hydrostatic_or_grooved(example, tmp_path):
     for closure in ("Gumbel", "Swift-Stieber"):
         assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
         # and only it notices that a groove under the load starves the film
-        assert 20 < rows[f"{closure}: smallest film, groove under the load [um]"] < 30
-    assert math.isnan(rows["Elrod-Adams: smallest film, groove under the load [um]"])
-    # a load that moves on lets it survive: the thinnest film comes later, once the refilled cavity has passed
-    assert rows["Elrod-Adams: smallest film under the turning load [um]"] > 20
+        assert 20 < rows[f"{closure}: minimum film thickness, groove under the load [um]"] < 30
+    assert math.isnan(rows["Elrod-Adams: minimum film thickness, groove under the load [um]"])
+    # a load that moves on lets it survive: the minimum film thickness comes later, once the refilled cavity has passed
+    assert rows["Elrod-Adams: minimum film thickness under the turning load [um]"] > 20
     assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60
 
 
@@ -264,7 +273,8 @@ def test_rotating_journal_over_all_stiffnesses(example):
             for kind in ("liner", "modal", "nodal"):
                 ladder = [cases[closure, name, label] for label in ("rigid", *(f"{m}, {kind}" for m in materials))]
                 peaks, extents, films = (
-                    np.array([case[key] for case in ladder]) for key in ("peak_MPa", "extent_deg", "minimum_gap_um")
+                    np.array([case[key] for case in ladder])
+                    for key in ("peak_MPa", "extent_deg", "minimum_film_thickness_um")
                 )
                 assert (np.diff(peaks) < 0).all() and (np.diff(extents) >= 0).all()
                 # rims of columns don't give way
@@ -273,5 +283,5 @@ def test_rotating_journal_over_all_stiffnesses(example):
                 assert peaks[1] == pytest.approx(peaks[0], rel=0.022 if name == "aligned" else 0.055)
             for material in materials:
                 modal, nodal = (cases[closure, name, f"{material}, {kind}"] for kind in ("modal", "nodal"))
-                for key in ("peak_MPa", "minimum_gap_um"):
+                for key in ("peak_MPa", "minimum_film_thickness_um"):
                     assert modal[key] == pytest.approx(nodal[key], rel=0.01), (closure, name, material, key)

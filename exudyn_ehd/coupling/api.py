@@ -163,10 +163,10 @@ class LubricatedJoint(JointResults):
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects mattered in the accepted steps, which were left out, which were without effect.
 
-        The films at the worst recorded states (thinnest film, highest pressure, loss, speed, tilt, squeeze) are
-        evaluated again, on a model of their own: the joint is not touched. What the record holds counts as recorded;
-        what it takes a field for (cavitated share, grid, heat of a field) is that of a flexible bore settled under the
-        film.
+        The films at the worst recorded states (minimum film thickness, highest pressure, loss, speed, tilt, squeeze)
+        are evaluated again, on a model of their own: the joint is not touched. What the record holds counts as
+        recorded; what it takes a field for (cavitated share, grid, heat of a field) is that of a flexible bore settled
+        under the film.
 
         Parameters
         ----------

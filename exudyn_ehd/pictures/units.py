@@ -48,7 +48,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "time": ("time", "time"),
     "eccentricity_ratio": ("eccentricity ratio", "ratio"),
     "largest_eccentricity_ratio": ("largest eccentricity ratio", "ratio"),
-    "minimum_gap": ("minimum film", "length"),
+    "minimum_gap": ("minimum film thickness", "length"),
     "peak_pressure": ("peak pressure", "pressure"),
     "friction_torque": ("friction torque", "torque"),
     "power_loss": ("power loss", "power"),

@@ -1,7 +1,7 @@
 """Measured errors of film models over (eps, L/D, tilt, elasticity): what `recommend` rests on.
 
 All relative results of a plain bearing depend on four numbers: the eccentricity ratio eps, L/D, the tilt (share of
-the mid-plane's smallest gap that it takes at one end) and, where the bore deflects, on
+the mid-plane's minimum film thickness that it takes at one end) and, where the bore deflects, on
 
     kappa = a mu omega / (psi^2 c),    a = displacement of the bore per pressure,
 

@@ -109,7 +109,7 @@ def recommend(
     eccentricity_ratio : float or (lowest, highest)
         Where the bearing works; the worst of a range counts.
     tilt_ratio : float
-        Share of the mid-plane's smallest gap that the tilt takes at one end.
+        Share of the mid-plane's minimum film thickness that the tilt takes at one end.
     speed : float
         rad/s; only for a flexible bore.
     data : path

@@ -114,7 +114,7 @@ def test_vanishing_coefficient_recovers_the_incompressible_film(cavitation):
 
 @pytest.mark.parametrize("cavitation", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_oil_compressed_in_the_wedge_carries_more_behind_the_peak(cavitation):
-    """Pure rotation: the load grows, and turns towards the smallest gap.
+    """Pure rotation: the load grows, and turns towards the minimum film thickness.
 
     To first order in the compressibility ``h^3 dp1/dx = p0 q0 - q1`` with the mass flow q: p1 falls where p0 is small
     and rises where it is large, so that pressure is lost before the peak and won behind it, where the film is thinner.
@@ -125,7 +125,7 @@ def test_oil_compressed_in_the_wedge_carries_more_behind_the_peak(cavitation):
     for law in (SOFT, None):
         force = -make(law, cavitation=cavitation, end_pressures=(0.0, 0.0)).evaluate(motion).wrench[:2]
         loads.append(float(np.hypot(*force)))
-        # towards the smallest gap, and a quarter of a turn before it
+        # towards the minimum film thickness, and a quarter of a turn before it
         angles.append(np.arctan2(motion[0] * force[1] - motion[1] * force[0], motion[:2] @ force))
     assert loads[0] > 1.005 * loads[1]
     assert angles[1] + 0.01 < angles[0] < 0.0

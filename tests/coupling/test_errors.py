@@ -93,7 +93,7 @@ def test_newton_that_does_not_converge_is_explained():
     s.timeIntegration.newton.maxIterations = 2
     with pytest.raises(ehd.RunError) as caught:
         ehd.SolveDynamic(mbs, s)
-    for part in ("'big end'", "t = ", "eccentricity ratio", "minimum gap", "ConfigureSolver", "StepControl"):
+    for part in ("'big end'", "t = ", "eccentricity ratio", "minimum film thickness", "ConfigureSolver", "StepControl"):
         assert part in str(caught.value)
     assert joint.history.time.size >= 1
 

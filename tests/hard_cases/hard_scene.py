@@ -55,7 +55,7 @@ class Run:
 
     @property
     def minimum_gap(self) -> float:
-        """Smallest film of all joints and steps, m; negative where surfaces press into each other."""
+        """Minimum film thickness of all joints and steps, m; negative where surfaces press into each other."""
         return min(float(h.minimum_gap.min()) for h in self.histories)
 
 

@@ -65,7 +65,10 @@ def record_rows(states: int) -> tuple[list[str], bool]:
     return rows, good
 
 
-CASE_HEAD = ["| case | | smallest film, µm | steps | rejected | Newton / step | s |", "|---|---|---|---|---|---|---|"]
+CASE_HEAD = [
+    "| case | | minimum film thickness, µm | steps | rejected | Newton / step | s |",
+    "|---|---|---|---|---|---|---|",
+]
 RECORD_HEAD = [
     "| closure | states | failures | oil solid | worst | mean | balance | ms |",
     "|---|---|---|---|---|---|---|---|",

@@ -81,7 +81,7 @@ def four_bar(bearing, speed, control=None):
 
 
 def smallest_gap(bearing, steps, rho=0.9):
-    """Smallest gap, um, of the second turn at 1500 rpm."""
+    """Minimum film thickness, um, of the second turn at 1500 rpm."""
     speed = 50.0 * math.pi
     mbs, joint = four_bar(bearing, speed)
     turn = 2.0 * math.pi / speed

@@ -2,7 +2,7 @@
 
 ``H = 1 + eps cos + Cbar pbar``, L/D = 1, the film starts with p = 0 at the maximum gap, Swift-Stieber
 exit; Cbar = K_nu (mu omega / E) (R/c)^3 t/R. Sommerfeld number and attitude angle are compared within
-0.5 %. The columns of peak pressure and smallest gap are cell values of a coarse grid and are not compared.
+0.5 %. The columns of peak pressure and minimum film thickness are cell values of a coarse grid and are not compared.
 """
 
 import csv

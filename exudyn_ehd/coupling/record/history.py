@@ -107,11 +107,11 @@ class JointHistory(History, HistoryPictures):
     force, moment : ndarray (n, 3)
         [N], [N m].
     minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
-        [m], [Pa], [N m], [W], [m3/s], [N].
+        Minimum film thickness [m], [Pa], [N m], [W], [m3/s], [N].
     contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
         [N m], [m3/s], [K], [K].
     minimum_gap_angle, minimum_gap_z, peak_angle : ndarray (n,)
-        Place of the smallest gap [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
+        Place of the minimum film thickness [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
     bore_displacement : ndarray (n,)
         Largest displacement of a liner or of a flexible bore [m].
     radial_clearance, journal_radius, length : float
@@ -173,7 +173,7 @@ class JointHistory(History, HistoryPictures):
         write_csv(path, columns, more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
 
     def revolutions(self, *, period: float | None = None) -> Revolutions:
-        """Smallest film with its place, peak pressure, mean loss and leakage of every whole revolution.
+        """Minimum film thickness and its place, peak pressure, mean loss and leakage of every whole revolution.
 
         Print it for a table.
 

@@ -28,7 +28,7 @@ class Revolutions:
     start, end : (k,) arrays
         s.
     minimum_gap, minimum_gap_time, minimum_gap_angle, minimum_gap_z : (k,) arrays
-        Smallest film of the revolution (m), when (s) and where (rad, m).
+        Minimum film thickness of the revolution (m), when (s) and where (rad, m).
     peak_pressure, peak_pressure_time, peak_angle : (k,) arrays
         Largest pressure (Pa), when (s) and at which angle (rad).
     largest_eccentricity_ratio : (k,) array

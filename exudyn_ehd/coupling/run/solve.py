@@ -172,8 +172,8 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
         if not history.time.size:
             continue
         parts.append(
-            f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum gap "
-            f"{history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
+            f"LubricatedJoint '{joint.name}': eccentricity ratio {history.eccentricity_ratio[-1]:.6g}, minimum film "
+            f"thickness {history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
         )
     if static:
         parts.append(

@@ -48,9 +48,9 @@ class ImpedanceMap:
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
     Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
-    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum gap, but no pressure. `steady`
-    and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the cavity, the squeeze
-    term, a closed ring and no further effect.
+    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum film thickness, but no
+    pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the
+    cavity, the squeeze term, a closed ring and no further effect.
 
     Parameters
     ----------

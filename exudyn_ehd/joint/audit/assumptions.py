@@ -85,7 +85,7 @@ def time_step(case: Case) -> Finding | None:
         return None
     return finding(
         "time step",
-        "motion in a step / smallest gap",
+        "motion in a step / minimum film thickness",
         case.record.largest_advance(case.bearing.length),
         None,
         mattering="the journal crosses much of its gap in one step: take smaller steps.",

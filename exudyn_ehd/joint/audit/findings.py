@@ -19,16 +19,18 @@ class Limit(NamedTuple):
     below: bool = False
 
 
-# An effect matters where leaving it out would change load, peak pressure, friction or smallest gap by some 5 to 10 %.
+# An effect matters where leaving it out would change load, peak pressure, friction or film by some 5 to 10 %.
 # Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
 LIMITS = {
-    "misalignment": Limit(0.1, "of the mid-plane gap: that much of the smallest gap, 1 % of the peak pressure"),
-    "elasticity": Limit(0.1, "of the smallest gap: 6 % of the peak pressure at the same position"),
-    "profile": Limit(0.1, "of the smallest gap, as for elasticity"),
+    "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),
+    "elasticity": Limit(0.1, "of the minimum film thickness: 6 % of the peak pressure at the same position"),
+    "profile": Limit(0.1, "of the minimum film thickness, as for elasticity"),
     "piezoviscosity": Limit(0.1, "alpha p_max: 3 % of the load, 5 % of the peak pressure"),
     "heating": Limit(0.1, "change of the viscosity"),
     "shear thinning": Limit(1.0, "shear rate over the one at which a multigrade oil begins to thin"),
-    "roughness": Limit(3.0, "h_min / sigma: 6 % of the load by flow factors; below, asperities carry", below=True),
+    "roughness": Limit(
+        3.0, "film over roughness: 6 % of the load by flow factors; below, asperities carry", below=True
+    ),
     "contact": Limit(2e-3, "of the load: 5 % of the friction, where a film has 0.004 and asperities 0.1"),
     "wear": Limit(1e-4, "of the load: wear asks for less contact than friction"),
     "squeeze": Limit(0.05, "of the sources of the Reynolds equation"),
@@ -39,7 +41,7 @@ LIMITS = {
     "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
     "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
     "grid along": Limit(3.0, "intervals: as around", below=True),
-    "time step": Limit(0.2, "of the smallest gap"),
+    "time step": Limit(0.2, "of the minimum film thickness"),
     "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
 }
 

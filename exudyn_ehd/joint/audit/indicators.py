@@ -59,7 +59,7 @@ def elasticity(case: Case) -> Finding | None:
         value = max(case.liner.compliance * s.peak_pressure / gap(s) for s in case.samples)
     return finding(
         "elasticity",
-        "deflection / smallest gap",
+        "deflection / minimum film thickness",
         value,
         bush is not None,
         mattering="give the bearing bush=ElasticLiner(...), or a bush with a mesh.",
@@ -74,7 +74,7 @@ def shape(case: Case) -> Finding | None:
     value = max(s.shape / s.minimum_gap for s in case.samples)
     return finding(
         "profile",
-        "profile height / smallest gap",
+        "profile height / minimum film thickness",
         value,
         True,
         needless="the film is much thicker than the profile: profile=None.",
@@ -141,7 +141,7 @@ def shear_thinning(case: Case) -> Finding:
     rate = max(s.speed / s.minimum_gap for s in case.samples)
     return finding(
         "shear thinning",
-        f"U / h_min over its onset, {onset:g} 1/s",
+        f"U / minimum film thickness over its onset, {onset:g} 1/s",
         rate / onset,
         law is not None,
         mattering="for a multigrade oil: shear_law=CarreauShear(...); a plain mineral oil does not thin yet.",
@@ -163,7 +163,7 @@ def roughness(case: Case) -> Finding:
     """Flow factors: film thickness over roughness."""
     return finding(
         "roughness",
-        f"h_min / sigma, sigma = {_roughness_height(case.bearing):g} m",
+        f"minimum film thickness / sigma, sigma = {_roughness_height(case.bearing):g} m",
         _roughness_ratio(case),
         case.bearing.roughness is not None,
         mattering="give the bearing roughness=PatirCheng(composite_roughness=...).",
@@ -177,7 +177,7 @@ def contact(case: Case) -> Finding:
     if b.contact is None and b.asperity is None:
         return finding(
             "contact",
-            f"h_min / sigma, sigma = {_roughness_height(b):g} m",
+            f"minimum film thickness / sigma, sigma = {_roughness_height(b):g} m",
             _roughness_ratio(case),
             False,
             limit=LIMITS["roughness"],

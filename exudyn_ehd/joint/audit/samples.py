@@ -49,7 +49,7 @@ class RecordedSteps:
     def worst(self, bearing: JournalBearing) -> list[int]:
         """Steps, sorted, in which something is worst.
 
-        The thinnest film, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
+        Minimum film thickness, highest pressure, loss, contact load and speed, largest tilt and deflection, strongest
         squeeze.
         """
         tilt = np.array([tilt_loss(bearing, m) for m in self.motion])

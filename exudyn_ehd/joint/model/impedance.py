@@ -14,8 +14,8 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap, ImpedanceTable, impedance_table, impedance_wrench
 from exudyn_ehd.status import FilmError, Status
 
-# Tilt that counts as none: share of the smallest gap that it may take at the ends. Its effect on the force is of
-# second order.
+# Tilt that counts as none: share of the minimum film thickness that it may take at the ends. Its effect on the force
+# is of second order.
 NEGLIGIBLE_TILT = 0.01
 _TILTED = 4
 _OUTCOMES = (Status.CONVERGED, Status.NOT_FINITE, Status.OUTSIDE_MAP, Status.NO_FILM)

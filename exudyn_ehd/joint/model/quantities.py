@@ -113,7 +113,7 @@ def leakages(film: SolvedFilm) -> tuple[float, float]:
 
 
 def minimum_place(film: SolvedFilm) -> tuple[float, float]:
-    """theta (rad, 0 to 2 pi) and z (m) of the smallest gap.
+    """theta (rad, 0 to 2 pi) and z (m) of the minimum film thickness.
 
     Of rigid cylinders exactly, at one of the ends, or at z = 0 where the gap is the same along the bearing; with a
     profile, wear or an elastic bore the vertex of the smallest gap.

@@ -31,9 +31,9 @@ class StribeckResult:
     contact_load_share : (n,) array
         Contact load / load; above what the film leaves it the film pulls.
     eccentricity_ratio, minimum_gap : (n,) arrays
-        e/c; smallest nominal gap, m (negative where asperities are pressed flat).
+        e/c; minimum film thickness of the nominal surfaces, m (negative where asperities are pressed flat).
     film_ratio : (n,) array
-        lambda = smallest nominal gap / composite roughness; nan for smooth surfaces.
+        lambda = ``minimum_gap`` / composite roughness; nan for smooth surfaces.
     power_loss, contact_power_loss, leakage : (n,) arrays
         W, W, m3/s.
     hersey : (n,) array

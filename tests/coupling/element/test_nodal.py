@@ -194,7 +194,7 @@ def test_modal_bush_under_a_rotating_load(measured):
         peak = modal.peak_pressure[5:].max() / nodal.peak_pressure[5:].max()
         measured(f"peak pressure, tolerance {tolerance}", abs(peak - 1.0), limit)
         gap = modal.minimum_gap.min() / nodal.minimum_gap.min()
-        measured(f"smallest gap, tolerance {tolerance}", abs(gap - 1.0), limit)
+        measured(f"minimum film thickness, tolerance {tolerance}", abs(gap - 1.0), limit)
 
 
 def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():

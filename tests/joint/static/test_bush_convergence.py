@@ -1,6 +1,6 @@
 """Convergence of a tilted journal's steady film on a flexible bore: bush mesh, modes, film grid.
 
-And where its smallest gap is.
+And where its minimum film thickness is.
 """
 
 from __future__ import annotations

@@ -51,7 +51,7 @@ def steady_scene(eccentricity_ratio: float, tilt_ratio: float = 0.0) -> SteadySc
     """The paper's journal at 3000 rpm, held at an eccentricity."""
     tilted = "_tilted" if tilt_ratio > 0.0 else ""
     title = f"steady journal, eccentricity ratio {eccentricity_ratio:g}" + (
-        f", tilt takes {tilt_ratio:.0%} of the smallest gap" if tilt_ratio > 0.0 else ""
+        f", tilt takes {tilt_ratio:.0%} of the minimum film thickness" if tilt_ratio > 0.0 else ""
     )
     return SteadyScene(
         name=f"steady_{round(1000 * eccentricity_ratio):03d}{tilted}",

@@ -114,7 +114,7 @@ def at(history: JointHistory, instants: np.ndarray, name: str) -> np.ndarray:
 
 
 def extremes(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
-    """Smallest film, largest pressure and mean loss from the first instant on, and the path at the instants."""
+    """Minimum film thickness, peak pressure and mean loss from the first instant on, and the path at the instants."""
     kept = history.time >= instants[0] * (1.0 - 1e-9)
     span = history.time[kept]
     loss = np.trapezoid(history.power_loss[kept], span) / (span[-1] - span[0])
@@ -132,7 +132,7 @@ def extremes_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
         QuantityOfInterest(
             name="path", unit="m", scale=clearance, text="path of the journal, error over the clearance"
         ),
-        QuantityOfInterest(name="minimum film", unit="m", text="smallest film of the run"),
+        QuantityOfInterest(name="minimum film", unit="m", text="minimum film thickness of the run"),
         QuantityOfInterest(name="peak pressure", unit="Pa", text="largest pressure of the run"),
         QuantityOfInterest(name="mean loss", unit="W", text="mean friction loss"),
     )

@@ -31,7 +31,7 @@ QUANTITIES = (
     QuantityOfInterest(name="attitude", unit="rad", scale=1.0, text="direction of the film force, error in rad"),
     QuantityOfInterest(name="friction", unit="Nm", text="friction torque on the journal"),
     QuantityOfInterest(name="peak pressure", unit="Pa", text="peak pressure"),
-    QuantityOfInterest(name="minimum film", unit="m", text="smallest gap"),
+    QuantityOfInterest(name="minimum film", unit="m", text="minimum film thickness"),
     QuantityOfInterest(name="leakage", unit="m3/s", text="flow out of both ends"),
     QuantityOfInterest(name="stiffness", unit="N/m", text="stiffness, largest entry"),
     QuantityOfInterest(name="damping", unit="N s/m", text="damping, largest entry"),
@@ -58,8 +58,8 @@ class SteadyScene:
     eccentricity_ratio : float
         e/c at the mid-plane.
     tilt_ratio : float
-        Share of the mid-plane's smallest gap that the tilt takes at one end, 0 to 1; the journal tilts in the plane of
-        its eccentricity.
+        Share of the mid-plane's minimum film thickness that the tilt takes at one end, 0 to 1; the journal tilts in the
+        plane of its eccentricity.
     directions : int
         How many directions of the eccentricity, one degree apart.
     start_direction : float
@@ -119,7 +119,7 @@ def motion_at(
 ) -> np.ndarray:
     """Motion (10,) of a journal that only spins, eccentric and tilted towards ``direction``.
 
-    The tilt takes ``tilt_ratio`` of the smallest gap.
+    The tilt takes ``tilt_ratio`` of the minimum film thickness.
     """
     radial = np.array([math.cos(direction), math.sin(direction)])
     motion = np.zeros(10)
