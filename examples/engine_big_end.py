@@ -11,7 +11,7 @@ The same engine is driven through five bearings:
   independently for a massless journal in the short-bearing film (``data/four_stroke_orbit.csv``),
 * ``finite``: two-dimensional film with Swift-Stieber rupture, the default of the package. At L/D = 0.4 the short
   bearing is too stiff,
-* ``Gumbel``: the same with the linear pressure clipped,
+* ``Gümbel``: the same with the linear pressure clipped,
 * ``oil balance``: Elrod-Adams, with the oil of the cavities as history; fed by the ends and by a hole in the pin at
   3 bar,
 * ``elastic``: the default film on a steel bush 6 mm thick.
@@ -73,7 +73,7 @@ def bearings(*, quick: bool) -> dict[str, ehd.JournalBearing]:
     return {
         "short": dataclasses.replace(plain, film=ehd.ShortBearing(n_theta=192)),
         "finite": plain,
-        "Gumbel": dataclasses.replace(plain, cavitation=ehd.Gumbel()),
+        "Gümbel": dataclasses.replace(plain, cavitation=ehd.Gumbel()),
         "oil balance": dataclasses.replace(
             plain,
             cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),

@@ -271,7 +271,7 @@ def with_parallel_axes(history: ehd.JointHistory, bearing: ehd.JournalBearing) -
     """A journal that can't tilt, under the load and with the spin of a recorded one."""
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddObject(eii.ObjectGround())
-    # 1 g: its inertia is nothing beside the film's force
+    # 1 g: its inertia is nothing against the film's force
     node = mbs.AddNode(eii.NodeRigidBody2D(initialVelocities=[0, 0, history.motion[0, 8]]))
     journal = mbs.AddObject(eii.ObjectRigidBody2D(nodeNumber=node, mass=1e-3, inertia=1e-6))
     t, spin = history.time, history.motion[:, 8]

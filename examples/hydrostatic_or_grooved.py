@@ -1,13 +1,13 @@
 """Where the oil comes in: a bearing with a supply groove, with and without an oil balance.
 
 A bearing of 100 mm diameter and 80 mm length (radial clearance 150 um, 10 mPa s, 3000 rpm) is fed through one axial
-groove of 15 degrees x 60 mm at 0.7 bar. Three questions are asked with Gumbel's condition (negative pressure clipped),
+groove of 15 degrees x 60 mm at 0.7 bar. Three questions are asked with Gümbel's condition (negative pressure clipped),
 Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Adams' (mass conserving):
 
-1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gumbel are laid next to another
+1. What does the film do at a given position, aligned and tilted? Elrod-Adams and Gümbel are laid next to another
    finite-volume code on the same case.
-2. Where should the groove be? The load of 3 kN is fixed, the groove goes around. What flows in has to flow out: only
-   the mass-conserving film knows, and only it notices that a groove under the load starves the film until it can't
+2. Where should the groove be? The load of 3 kN is fixed, the groove's angle varies. What flows in has to flow out:
+   only the mass-conserving film knows, and only it notices that a groove under the load starves the film until it can't
    carry.
 3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of
    it.
@@ -33,15 +33,15 @@ from exudyn_ehd.pictures.style import styled
 SPEED = 100.0 * math.pi
 LOAD, TURNING_LOAD, LOAD_SPEED = 3000.0, 2000.0, 0.1 * SPEED
 MASS = 5.0
-CLOSURES = {"Gumbel": ehd.Gumbel(), "Swift-Stieber": ehd.SwiftStieber(), "Elrod-Adams": ehd.ElrodAdams()}
-COLOURS = {"Gumbel": "tab:green", "Swift-Stieber": "tab:blue", "Elrod-Adams": "tab:red"}
+CLOSURES = {"Gümbel": ehd.Gumbel(), "Swift-Stieber": ehd.SwiftStieber(), "Elrod-Adams": ehd.ElrodAdams()}
+COLOURS = {"Gümbel": "tab:green", "Swift-Stieber": "tab:blue", "Elrod-Adams": "tab:red"}
 # Another finite-volume code on the grid 200 x 52, force on the shell in N, friction in N m: eccentricity ratio 0.5
 # towards angle 0, the tilted rows with a tilt across the eccentricity that takes 30 % of the clearance at the ends.
 OTHER_CODE = {
     ("Elrod-Adams", "aligned"): (1058.30, -1386.73, 1.38092),
-    ("Gumbel", "aligned"): (811.49, -1396.89, 1.46715),
+    ("Gümbel", "aligned"): (811.49, -1396.89, 1.46715),
     ("Elrod-Adams", "tilted"): (1066.25, -1396.48, 1.39888),
-    ("Gumbel", "tilted"): (804.97, -1414.67, 1.49742),
+    ("Gümbel", "tilted"): (804.97, -1414.67, 1.49742),
 }
 
 

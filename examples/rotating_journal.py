@@ -5,7 +5,7 @@ Systems".
 
 Length 66 mm, clearance 30 um, eccentricity 24 um, 3000 rpm, 9 mPa s, bush 20 mm thick with its outer surface fixed; E =
 2.1e12 Pa as printed there, which is ten times steel, and steel, aluminium and a polymer. The paper leaves out the
-journal's radius; 30 mm assumed. Cavitation by Gumbel as in the paper and, beside it, mass conserving with a cavity 1
+journal's radius; 30 mm assumed. Cavitation by Gümbel as in the paper and, next to it, mass conserving with a cavity 1
 bar below the ends.
 
 The flexible bore widens the film and lowers the peak; the film gets thicker.
@@ -31,13 +31,13 @@ CLEARANCE, ECCENTRICITY = 30e-6, 24e-6
 TILT = 1e-4
 MODULI = {"E = 2.1e12 (paper)": 2.1e12, "steel": 2.1e11, "aluminium": 7e10, "polymer": 3e9}
 KINDS = {"liner": ehd.ElasticLiner, "modal": ehd.ModalBush, "nodal": ehd.ANCFBush}
-CLOSURES = {"Gumbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
+CLOSURES = {"Gümbel": ehd.Gumbel(), "mass conserving": ehd.ElrodAdams(cavity_pressure=-1e5)}
 
 
 def bush(
     modulus: float, kind: type, mesh: ehd.HollowCylinder, tilted: bool
 ) -> ehd.ElasticLiner | ehd.ModalBush | ehd.ANCFBush:
-    """Return a bush of one material: columns of its thickness, modal or nodal."""
+    """Return a bush of one material: liner, modal or nodal."""
     if kind is ehd.ElasticLiner:
         return ehd.ElasticLiner(thickness=mesh.thickness, youngs_modulus=modulus, poisson_ratio=0.3)
     material = ehd.SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.3, density=7800.0)
@@ -131,7 +131,7 @@ def draw(cases: dict, moduli: dict, folder: Path) -> list[Path]:
 def pressure_figure(cases: dict, moduli: dict) -> Figure:
     """Pressure over the angle at the mid-plane, as a map and as a surface."""
     figure = Figure(figsize=(13, 8), layout="constrained")
-    for column, (closure, title) in enumerate((("Gumbel", "Gumbel"), ("mass conserving", "mass conserving"))):
+    for column, closure in enumerate(CLOSURES):
         axes = figure.add_subplot(2, 3, 1 + 3 * column)
         for name in ("rigid", *(f"{m}, modal" for m in moduli)):
             film = cases[closure, "aligned", name]["film"]
@@ -139,36 +139,36 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
         axes.set(
             xlabel="angle [°]",
             ylabel="pressure at the mid-plane [MPa]",
-            title=f"aligned, {title}",
+            title=f"aligned, {closure}",
             xticks=range(0, 361, 60),
         )
         axes.legend()
     for column, name in enumerate(("aligned", "tilted")):
-        film = cases["Gumbel", name, "steel, modal"]["film"]
+        film = cases["Gümbel", name, "steel, modal"]["film"]
         axes = figure.add_subplot(2, 3, 2 + 3 * column)
         angle, pressure = np.degrees(around(film.theta, 2 * np.pi)), np.vstack((film.pressure, film.pressure[:1])) / 1e6
         picture = axes.contourf(angle, 1e3 * film.z, pressure.T, 24)
         figure.colorbar(picture, label="pressure [MPa]")
-        axes.set(xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gumbel", xticks=range(0, 361, 60))
+        axes.set(xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gümbel", xticks=range(0, 361, 60))
         view = figure.add_subplot(2, 3, 3 + 3 * column, projection="3d")
         T, Z = np.meshgrid(angle, 1e3 * film.z, indexing="ij")
         view.plot_surface(T, Z, pressure, cmap="viridis", rcount=97, ccount=17)
         view.set(
             xlabel="angle [°]",
             ylabel="z [mm]",
-            title=f"steel, {name}, Gumbel: pressure [MPa]",
+            title=f"steel, {name}, Gümbel: pressure [MPa]",
             xticks=range(0, 361, 90),
         )
     return figure
 
 
 def summary_figure(cases: dict, moduli: dict) -> Figure:
-    """Pressure and film thickness at the mid-plane, and the bore's shape there, aligned, Gumbel."""
+    """Pressure and film thickness at the mid-plane, and the bore's shape there, aligned, Gümbel."""
     figure = Figure(figsize=(12, 4), layout="constrained")
     pressure, gap = figure.add_subplot(1, 3, 1), figure.add_subplot(1, 3, 2)
     draw_bores(figure.add_subplot(1, 3, 3, projection="polar"), cases, moduli)
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gumbel", "aligned", name]["film"]
+        film = cases["Gümbel", "aligned", name]["film"]
         pressure.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
         gap.plot(*at_middle(film, 1e6 * film.gap))
     pressure.set(ylabel="pressure at the mid-plane [MPa]")
@@ -190,9 +190,9 @@ def at_middle(film: ehd.SteadyResult, field: np.ndarray) -> tuple[np.ndarray, np
 
 
 def draw_bores(polar: Axes, cases: dict, moduli: dict) -> None:
-    """Bore radius at the mid-plane, aligned, Gumbel, with the displacement enlarged."""
+    """Bore radius at the mid-plane, aligned, Gümbel, with the displacement enlarged."""
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gumbel", "aligned", name]["film"]
+        film = cases["Gümbel", "aligned", name]["film"]
         shift = np.zeros_like(film.gap) if film.bore_displacement is None else film.bore_displacement
         angle, shift = at_middle(film, 1e6 * shift)
         polar.plot(np.radians(angle), 30.0 + shift, label=name.split(",")[0])
@@ -206,17 +206,17 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
     gap = figure.add_subplot(1, 3, 2)
     draw_bores(polar, cases, moduli)
     for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gumbel", "aligned", name]["film"]
+        film = cases["Gümbel", "aligned", name]["film"]
         gap.plot(*at_middle(film, 1e6 * film.gap), label=name.split(",")[0])
     gap.set(
         xlabel="angle [°]",
         ylabel="film thickness at the mid-plane [µm]",
         ylim=(0, None),
-        title="aligned, Gumbel",
+        title="aligned, Gümbel",
         xticks=range(0, 361, 60),
     )
     gap.legend()
-    film = cases["Gumbel", "tilted", "steel, modal"]["film"]
+    film = cases["Gümbel", "tilted", "steel, modal"]["film"]
     axes = figure.add_subplot(1, 3, 3)
     assert film.bore_displacement is not None
     angle, shift = (

@@ -283,7 +283,7 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
 
 
 def _check_temperatures(bearing: JournalBearing) -> None:
-    """Refuse temperatures at which the lubricant's law gives no viscosity, as of degrees Celsius taken for kelvin."""
+    """Refuse temperatures at which the lubricant's law gives no viscosity, as for degrees Celsius given as kelvin."""
     law = bearing.lubricant.temperature_law
     if bearing.thermal is None or law is None:
         return

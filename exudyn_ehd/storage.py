@@ -29,7 +29,7 @@ Shapes = Mapping[str, tuple[int | str, ...]]
 
 @contextmanager
 def replacing(path: str | pathlib.Path, *, binary: bool = False) -> Iterator[Any]:
-    """Open a temporary file beside ``path`` that takes its place when the block ends, and vanishes if the block fails.
+    """Open a temporary file next to ``path`` that takes its place when the block ends, and vanishes if the block fails.
 
     Parameters
     ----------

@@ -28,7 +28,7 @@ def test_slider_crank(example, tmp_path):
 def test_rotating_journal(example, tmp_path):
     cases = example("rotating_journal").main(quick=True, results=tmp_path)
     assert all(path.stat().st_size > 10_000 for path in cases.pop("pictures"))
-    for closure in ("Gumbel", "mass conserving"):
+    for closure in ("Gümbel", "mass conserving"):
         for name in ("aligned", "tilted"):
             rigid = cases[closure, name, "rigid"]
             liner, modal, nodal = (cases[closure, name, f"steel, {kind}"] for kind in ("liner", "modal", "nodal"))
@@ -39,8 +39,8 @@ def test_rotating_journal(example, tmp_path):
                 assert elastic["extent_deg"] >= rigid["extent_deg"] + 360 / 64 - 1e-9
             for solid in (modal, nodal):
                 assert solid["minimum_film_thickness_um"] > 1.02 * rigid["minimum_film_thickness_um"]
-            # columns deflect too little at the ends and are none beyond them; the modes of tolerance 0.02 on a coarse
-            # film grid
+            # Winkler elements deflect too little at the ends and are none beyond them; the modes of tolerance 0.02 on
+            # a coarse film grid
             assert liner["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.05)
             assert modal["peak_MPa"] == pytest.approx(nodal["peak_MPa"], rel=0.015)
             assert modal["minimum_film_thickness_um"] == pytest.approx(nodal["minimum_film_thickness_um"], rel=0.04)
@@ -96,7 +96,7 @@ def test_engine_big_end(example, tmp_path):
     rows = example("engine_big_end").main(quick=True, output=tmp_path)
     assert (tmp_path / "engine_big_end.png").stat().st_size > 10_000
     short, finite, gumbel, balance, elastic = (
-        rows[name] for name in ("short", "finite", "Gumbel", "oil balance", "elastic")
+        rows[name] for name in ("short", "finite", "Gümbel", "oil balance", "elastic")
     )
     # the independent orbit of the short bearing, in units of the clearance, at steps of two degrees; and its minimum
     # film thickness
@@ -229,7 +229,7 @@ def test_hydrostatic_or_grooved(example, tmp_path):
     assert max(abs(value) for key, value in rows.items() if "off the other code" in key) < 5e-3
     # only the mass-conserving film gives back what it takes
     assert rows["Elrod-Adams: oil out of nothing, share of the leakage"] < 1e-9
-    for closure in ("Gumbel", "Swift-Stieber"):
+    for closure in ("Gümbel", "Swift-Stieber"):
         assert rows[f"{closure}: oil out of nothing, share of the leakage"] > 1.0
         # and only it notices that a groove under the load starves the film
         assert 20 < rows[f"{closure}: minimum film thickness, groove under the load [um]"] < 30
@@ -268,7 +268,7 @@ def test_rotating_journal_over_all_stiffnesses(example):
     """The full grid: the softer the bush, the lower the peak and the wider the film; bushes agree."""
     cases = example("rotating_journal").main()
     materials = ("E = 2.1e12 (paper)", "steel", "aluminium", "polymer")
-    for closure in ("Gumbel", "mass conserving"):
+    for closure in ("Gümbel", "mass conserving"):
         for name in ("aligned", "tilted"):
             for kind in ("liner", "modal", "nodal"):
                 ladder = [cases[closure, name, label] for label in ("rigid", *(f"{m}, {kind}" for m in materials))]
@@ -277,9 +277,9 @@ def test_rotating_journal_over_all_stiffnesses(example):
                     for key in ("peak_MPa", "extent_deg", "minimum_film_thickness_um")
                 )
                 assert (np.diff(peaks) < 0).all() and (np.diff(extents) >= 0).all()
-                # rims of columns don't give way
+                # at the ends Winkler elements don't deflect
                 assert (np.diff(films) > 0).all() if kind != "liner" else np.ptp(films) < 1e-6
-                # E of the paper, ten times steel, is rigid but for 2 % of the peak, 5 % at the edge of a tilted journal
+                # E of the paper, ten times steel, is rigid to 2 % of the peak, 5 % at the edge of a tilted journal
                 assert peaks[1] == pytest.approx(peaks[0], rel=0.022 if name == "aligned" else 0.055)
             for material in materials:
                 modal, nodal = (cases[closure, name, f"{material}, {kind}"] for kind in ("modal", "nodal"))

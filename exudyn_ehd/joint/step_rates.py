@@ -13,8 +13,8 @@ steps, of misses d_1 (the last one), d_2 and d_3, lead to expect at its end,
 
     rate = v1 + (3 d_1 + d_2 - 2 d_3) / 2,
 
-each d_k times (h / h_k)^2. At steps of one size they add up to what the velocities do and the misses, but for those of
-the last steps: rates and pose differ by what telescopes. Of smooth motions they are the pose's own rate to second
+each d_k times (h / h_k)^2. At steps of one size they add up to what the velocities do and the misses, except for those
+of the last steps: rates and pose differ by what telescopes. Of smooth motions they are the pose's own rate to second
 order.
 
 The weights are those that go on in a line for two steps, from the middle of d_1, d_2 to the end of the step, and do not

@@ -1,7 +1,7 @@
 """The bearing in space: pressure around the bore, with the journal in it.
 
-Clearance and pressure are far too small and too large to be drawn to scale beside the radius: the clearance is shown as
-a fixed share of the radius, the peak pressure as a hill of fixed height.
+Clearance and pressure are far too small and too large to be drawn to scale next to the radius: the clearance is shown
+as a fixed share of the radius, the peak pressure as a hill of fixed height.
 """
 
 from __future__ import annotations

@@ -43,12 +43,12 @@ _UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "ratio": ((0.0, Unit("-")),),
 }
 
-# Name of a quantity: what is written on an axis, and its kind.
+# Name of a quantity: what is written on an axis, in lines as long as a panel is high, and its kind.
 QUANTITIES: dict[str, tuple[str, str]] = {
     "time": ("time", "time"),
     "eccentricity_ratio": ("eccentricity ratio", "ratio"),
-    "largest_eccentricity_ratio": ("largest eccentricity ratio", "ratio"),
-    "minimum_gap": ("minimum film thickness", "length"),
+    "largest_eccentricity_ratio": ("largest eccentricity\nratio", "ratio"),
+    "minimum_gap": ("minimum film\nthickness", "length"),
     "peak_pressure": ("peak pressure", "pressure"),
     "friction_torque": ("friction torque", "torque"),
     "power_loss": ("power loss", "power"),

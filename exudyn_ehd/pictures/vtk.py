@@ -1,6 +1,6 @@
 """Film and bush as VTK files through the package meshio, an optional extra: ``pip install exudyn-ehd[vtk]``.
 
-A series is a ``.pvd`` file, which ParaView opens as one animation, beside a folder with a ``.vtu`` file per part and
+A series is a ``.pvd`` file, which ParaView opens as one animation, next to a folder with a ``.vtu`` file per part and
 instant. Everything stands in the joint frame, in SI units.
 """
 
@@ -54,7 +54,7 @@ def export_films(
     target = pathlib.Path(path)
     if target.suffix != ".pvd":
         raise InputError(
-            f"export_vtk: path must end in .pvd, got '{target}'; the .vtu files lie in a folder beside it."
+            f"export_vtk: path must end in .pvd, got '{target}'; the .vtu files lie in a folder next to it."
         )
     factor = require_number("export_vtk: magnification", magnification)
     folder = target.with_suffix("")

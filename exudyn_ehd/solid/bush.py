@@ -130,8 +130,9 @@ class ModalBush(_Solid):
         a rotation at that speed by 0.08 um. Gravity on the modes (0.1 nm) is left out.
     body_forces : bool
         With ``dynamics``, also modes of the mesh's static responses to accelerations and rotations of the housing, as
-        far as the others lack them: 4 or 5, with tilt up to 10. The bore's answer to them at rest is then the mesh's
-        within 0.5 %; without them it is within 5 to 20 %, 30 % for thin walls. A joint on ground leaves them out.
+        far as the others lack them: 4 or 5, with tilt up to 10. The bore's deflection under them at rest is then the
+        mesh's within 0.5 %; without them it is within 5 to 20 %, 30 % for thin walls. A joint on ground leaves them
+        out.
     """
 
     tolerance: float = 0.02

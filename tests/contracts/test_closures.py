@@ -167,7 +167,7 @@ def test_a_film_pushes_away_from_a_closing_wall(make_bearing, closure, film):
 
 @both_films
 def test_cavitation_orders_the_peak_pressure(make_bearing, film):
-    """Swift-Stieber's film is pointwise above Gumbel's: it is the smallest supersolution above the cavity pressure."""
+    """Swift-Stieber's film is pointwise above Gümbel's: it is the smallest supersolution above the cavity pressure."""
     models = [build_model(make_bearing(0.8, cavitation=k(), film=film)) for k in (ehd.Gumbel, ehd.SwiftStieber)]
     rng = np.random.default_rng(8)
     for _ in range(40):

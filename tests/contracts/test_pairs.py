@@ -41,7 +41,7 @@ CLOSURES = {
 }
 CLOSURES |= {c.__name__: by_itself(c) for c in CAVITATION if c not in map(type, CLOSURES.values())}
 
-# A liner's contact comes out of its film solve, so that everything that acts beside both meets another program.
+# A liner's contact comes out of its film solve, so that everything that acts besides meets another program.
 LINER_TRIPLES = [
     ("liner", contact, other) for contact in ("wall", "asperity") for other in ("groove", "profile", "lumped")
 ] + [

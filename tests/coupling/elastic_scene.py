@@ -49,7 +49,7 @@ class Nodes:
     """Inertia of a modal bush on a housing that moves, from sums over the mesh's nodes.
 
     x = r + A X are the points of the rigid bush, w = A u their displacement; only what goes beyond the rigid bush, in
-    the first order of w but for the modes' own kinetic energy.
+    the first order of w apart from the modes' own kinetic energy.
     """
 
     def __init__(self, modes, material):

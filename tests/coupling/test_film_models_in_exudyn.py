@@ -1,4 +1,4 @@
-"""Film models beside `FiniteLength` in an Exudyn run: a rotor dropped into its bearing, guided against tilt."""
+"""Film models other than `FiniteLength` in an Exudyn run: a rotor dropped into its bearing, guided against tilt."""
 
 from __future__ import annotations
 

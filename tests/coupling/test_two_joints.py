@@ -70,7 +70,7 @@ def test_two_joints_with_hooks_and_sensors_do_what_each_does_alone(measured):
         run(alone)
         difference = np.abs(joint.history.eccentricity - single.history.eccentricity).max() / CLEARANCE
         # Newton stops for both joints together: its tolerance times the film's stiffness
-        measured(f"{name} beside another", difference, 1e-8)
+        measured(f"{name} next to another", difference, 1e-8)
     fine, coarse = (joints[name].history.eccentricity for name in FILMS)
     assert np.abs(fine - coarse).max() > 1e-2 * CLEARANCE
     assert joints["fine"].history.time.size == STEPS + 1

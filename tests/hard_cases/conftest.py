@@ -1,4 +1,4 @@
-"""The hard cases are plain modules beside their tests, so that one command can run them too."""
+"""The hard cases are plain modules next to their tests, so that one command can run them too."""
 
 import sys
 from pathlib import Path

@@ -37,7 +37,7 @@ def settle(made, *, load=LOAD, end=0.05, step=2e-4, **options):
 
 @hard_case("very stiff bush, E = 2e12 Pa", newton=5.0)
 def very_stiff():
-    """Modes with 1e14 N/m beside a journal of 2 kg: the equations' stiffness spans ten decades."""
+    """Modes with 1e14 N/m and a journal of 2 kg: the equations' stiffness spans ten decades."""
     run, eq = settle(bearing(bush=ring(2e12)))
     rigid = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -LOAD))
     # no more than deflection over clearance, from the thick ring's p R / E of some 1e-8 m
@@ -92,7 +92,7 @@ def thin_shell():
     thickness = 5e-4
     made = bearing(bush=ring(2e9, thickness=thickness, radial=1))
     run, eq = settle(made, load=3000.0)
-    # thin and bonded: the liner's column of the same layer
+    # thin and bonded: the liner's Winkler element of the same layer
     liner = ehd.ElasticLiner(thickness=thickness, youngs_modulus=2e9, poisson_ratio=0.3)
     column = ehd.equilibrium(bearing(bush=liner), speed=SPEED, load=(0.0, -3000.0))
     rigid = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -3000.0))

@@ -25,11 +25,11 @@ def spinning_pair():
         mbs.AddObject(eii.ObjectJointRevolute2D(markerNumbers=pivot))
         return body
 
-    # a weight fixed in space: seen from the housing it turns backwards, and the film answers by squeeze
+    # a weight fixed in space: seen from the housing it turns backwards, and the film carries by squeeze
     rotor = Rotor(made, load=(0.0, -400.0), speed=None, spin=SPEED, housing=housing)
     run = rotor.run(0.06, 1e-4)
     h = run.history
-    # the pair keeps its common spin: relative spin stays zero but for the friction torque of nothing
+    # the pair keeps its common spin: relative spin stays zero apart from the friction torque of nothing
     assert np.abs(h.motion[:, 8]).max() < 1e-3 * SPEED
     # a housing that turns under a fixed load is a bearing whose journal turns backwards at twice the
     # wedge: So with the sum of both surface speeds relative to the load, 2 omega instead of omega
@@ -123,7 +123,7 @@ def two_joints():
     mbs, joints = shaft([made, made], [-0.1, 0.1], load=(0.0, -2000.0), load_z=0.05)
     run = solve(mbs, joints, settings(0.06, 2e-4))
     one, two = run.histories
-    # statics: 1/4 and 3/4 of the load, but for the moments that the tilted films take themselves
+    # statics: 1/4 and 3/4 of the load, apart from the moments that the tilted films take themselves
     share = two.force[-1, 1] / 2000.0
     assert abs(share - 0.75) < 0.01
     assert abs((one.force[-1, 1] + two.force[-1, 1]) / 2000.0 - 1.0) < 5e-3
@@ -150,7 +150,7 @@ def three_bearings():
     return run
 
 
-@hard_case("redundant beside an ideal joint")
+@hard_case("redundant next to an ideal joint")
 def redundant():
     """A film in the same place as an ideal joint: kinematically redundant, and
     nothing is left for the film to carry."""

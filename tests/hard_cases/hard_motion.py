@@ -65,7 +65,7 @@ def oscillating_rotation():
     assert h.eccentricity_ratio.max() < 0.97
     # the wedge of either direction pushes to its own side: over a period the journal stays below the centre
     assert abs(e[last, 0].mean()) < 0.02 * CLEARANCE
-    # torque and spin change sign together, but for the pressure's part while the spin passes zero
+    # torque and spin change sign together, apart from the pressure's part while the spin passes zero
     assert np.all(h.friction_torque * h.motion[:, 8] <= 1e-6 * h.power_loss.max())
     assert h.power_loss.min() >= 0.0
     assert rotor.momentum_error(h) < 1e-3

@@ -236,7 +236,7 @@ def balance_error(model):
     else:
         flow = np.maximum(flow, np.abs(y.area * y.H_t))
     # a closure stops at pressures right to 1e-13 of the peak; where the gap is
-    # wide, that is a flow beside which others vanish
+    # wide, that is a flow against which others vanish
     wide = y.kx + np.roll(y.kx, 1, axis=0) + y.kz
     wide[:, 1:] += y.kz[:, :-1]
     flow = np.maximum(flow, 1e-5 * wide * np.abs(P).max())

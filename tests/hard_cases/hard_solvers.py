@@ -15,7 +15,7 @@ import exudyn_ehd as ehd
 
 @hard_case("coarse steps", rejected=60)
 def coarse():
-    """Steps of 5 ms where the film answers within 0.05 ms: Newton would converge all the same, to another motion."""
+    """Steps of 5 ms where the film responds within 0.05 ms: Newton would converge all the same, to another motion."""
     made = bearing()
     load = (0.0, -5000.0)
     fine = Rotor(made, load=load).run(0.05, 2e-5)

@@ -104,7 +104,7 @@ class Balances:
         return out
 
     def check(self):
-        # the film's own accuracy 1e-11 and rounding, as of single effects
+        # the film's own accuracy 1e-11 and rounding, as with single effects
         assert self.oil < 1e-10 and self.heat < 1e-8 and self.momentum < 1e-10, vars(self)
 
 

@@ -12,7 +12,7 @@ import pytest
 import exudyn_ehd as ehd
 
 SPEED = 100.0
-# bearings shared by tests are a plain module beside them; importlib mode puts no test folder on the path
+# bearings shared by tests are a plain module next to them; importlib mode puts no test folder on the path
 sys.path.insert(0, str(Path(__file__).parent))
 
 

@@ -1,7 +1,7 @@
 """One short transient per effect in Exudyn: Newton's iterations are those of the plain film, and the physics shows.
 
 A rotor of 2 kg is dropped from the centre of its bearing under 600 N at 200 rad/s, in steps
-of 0.1 ms. Each effect runs beside the film without it (same closure, supply and end pressures). The
+of 0.1 ms. Each effect runs next to the film without it (same closure, supply and end pressures). The
 laws of the lubricant and the temperature field have such runs in tests/coupling/test_rheology_run.py,
 reduced films in tests/coupling/test_film_models_in_exudyn.py; here they get their physics.
 """
@@ -183,7 +183,7 @@ def test_liner_lowers_the_peak(compare):
     liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)
     on, off = compare(bearing(bush=liner), bearing(), 4 * LOAD)
     assert on.peak_pressure.max() < 0.97 * off.peak_pressure.max()
-    # the bore gives way: the axis goes further than in a rigid one
+    # the bore deflects: the axis goes further than in a rigid one
     assert on.eccentricity_ratio.max() > off.eccentricity_ratio.max()
 
 
@@ -217,7 +217,7 @@ LAWS_ON_LINERS = {
 
 @pytest.mark.parametrize("name", LAWS_ON_LINERS)
 def test_laws_on_a_liner(compare, name):
-    # hot oil carries less before the ends touch, which do not give way
+    # hot oil carries less before the ends touch, which do not deflect
     load = (4 if name == "energy" else 10) * LOAD
     on, off = compare(bearing(bush=BEDDED, **LAWS_ON_LINERS[name]), bearing(), load)
     assert on.force[-1, 1] == pytest.approx(off.force[-1, 1], rel=0.05)

@@ -53,7 +53,7 @@ def test_traces_over_time_and_angle(history):
     upper, lower = figure.axes
     np.testing.assert_allclose(upper.lines[0].get_data(), [1e3 * history.time, 1e6 * history.minimum_gap])
     np.testing.assert_allclose(lower.lines[0].get_data(), [1e3 * history.time, 1e-6 * history.peak_pressure])
-    assert [ax.get_ylabel() for ax in figure.axes] == ["minimum film thickness [µm]", "peak pressure [MPa]"]
+    assert [ax.get_ylabel() for ax in figure.axes] == ["minimum film\nthickness [µm]", "peak pressure [MPa]"]
     assert lower.get_xlabel() == "time [ms]"
     crank = 2.0 * np.pi * history.time / 0.02
     figure = plot_traces(history, ["peak_pressure"], angle=crank, angle_text="crank angle")

@@ -85,7 +85,7 @@ def test_lame_converges_at_the_element_s_order(rule):
 def test_fourier_compliance_of_the_bore(outer, layers, tolerance):
     """u_r at the bore per pressure cos(n theta), plane strain, n = 0..5 (free outer surface: without n = 1).
 
-    Target 1 % from 3 layers on (measured 0.7 %); reported beside it: 2 layers 2.0 %, 1 layer 10.1 %, both at n = 5 with
+    Target 1 % from 3 layers on (measured 0.7 %); reported besides: 2 layers 2.0 %, 1 layer 10.1 %, both at n = 5 with
     a free outer surface; with a fixed one 0.35, 1.0 and 3.6 %.
     """
     cases = [r for r in rows("annulus_plane_strain_fourier_compliance.csv") if r["outer"] == outer and int(r["n"]) <= 5]

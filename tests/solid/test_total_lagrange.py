@@ -71,7 +71,7 @@ def test_patch_of_distorted_elements_is_in_equilibrium_under_a_homogeneous_finit
     force = solid.force(u)
     inner = inner_nodes(mesh)
     assert len(inner) > 0
-    # constant stress: no force inside but rounding, beside forces of order one on the boundary
+    # constant stress: no force inside, to rounding of forces of order one on the boundary
     assert np.abs(force[inner]).max() < 1e-11 * np.abs(force).max()
     stress = StressRecovery(mesh=mesh, material=SOFT).cauchy_at_nodes(u)
     assert np.allclose(stress, stress[0], rtol=1e-9, atol=1e-9 * np.abs(stress).max())
@@ -92,7 +92,7 @@ def test_finite_rigid_motion_gives_no_stress_force_or_energy(rule):
     solid = TotalLagrange(mesh=SMALL, material=STEEL, quadrature=rule)
     turn = Rotation.from_rotvec([0.7, -1.9, 1.1]).as_matrix()
     u = SMALL.nodes @ turn.T + [3.0, -2.0, 1.0] - SMALL.nodes
-    # strains are rounding (1e-16 of F, amplified by |u|/element size ~ 100): beside E they leave 1e-13 of stress
+    # strains are rounding (1e-16 of F, amplified by |u|/element size ~ 100): against E they leave 1e-13 of stress
     assert np.abs(StressRecovery(mesh=SMALL, material=STEEL).cauchy_at_nodes(u)).max() < 1e-12 * STEEL.youngs_modulus
     unit = np.abs(solid.force(0.01 * SMALL.nodes)).max() / 0.01
     assert np.abs(solid.force(u)).max() < 1e-12 * unit

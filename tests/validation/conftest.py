@@ -1,4 +1,4 @@
-"""Reading of the tables beside these tests."""
+"""Reading of the tables next to these tests."""
 
 from __future__ import annotations
 

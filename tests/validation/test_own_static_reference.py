@@ -104,7 +104,7 @@ def test_documented_grids_in_any_direction(make_bearing, table, measured, n_thet
 
 def test_documented_differences_between_models(make_bearing):
     """Numbers that docstrings state: short bearing 19 % too high at L/D 0.25,
-    Gumbel 15 % below Swift-Stieber, eps 0.8."""
+    Gümbel 15 % below Swift-Stieber, eps 0.8."""
 
     def load(*args, **options):
         return ehd.steady(make_bearing(*args, **options), speed=SPEED, eccentricity_ratio=0.8).sommerfeld_number

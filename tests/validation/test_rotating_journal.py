@@ -42,7 +42,7 @@ def test_peak_load_attitude_and_friction(table, measured):
 
 
 def test_cutting_off_is_not_the_reynolds_condition(make_bearing):
-    # Gumbel's peak is 13 to 15 % below Swift-Stieber's here: the two closures must not be mixed up.
+    # Gümbel's peak is 13 to 15 % below Swift-Stieber's here: the two closures must not be mixed up.
     peaks = [
         ehd.steady(make_bearing(1.1, cavitation=k), speed=100.0, eccentricity_ratio=0.8).peak_pressure
         for k in (ehd.SwiftStieber(), ehd.Gumbel())

@@ -221,7 +221,7 @@ def test_cooled_film(measured, cooled, eps, rpm):
     """Walls held at 325 K, with the oil's conductivity: the profile that the model assumes is fully developed,
     while that of one cooled wall takes as long as the oil's whole way. 4 % of load and peak pressure with both
     walls cooled, 9 % with one; the mixed oil's largest temperature to 1.5 and 6 K, in rises over the supply of 13
-    to 27 K; an adiabatic bush beside a cooled journal is hotter than the mean by up to 8 K, and never colder."""
+    to 27 K; an adiabatic bush next to a cooled journal is hotter than the mean by up to 8 K, and never colder."""
     (load, peak, T), profile = both(eps, rpm, COOLED[cooled], CONDUCTIVITY)
     share, kelvin = (0.04, 1.5) if cooled == "both" else (0.09, 6.0)
     name = f"{cooled} cooled, eps {eps}"

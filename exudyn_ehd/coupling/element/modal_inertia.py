@@ -14,8 +14,8 @@ kept. Its Euler-Lagrange equations, with p = P q and accelerations in the frame'
     delta q_i:  P_i . a + Theta_i . alpha - Omega . K_i Omega + (M q_tt)_i,
 
 need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see
-`BoreModes.moments`. With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore answers to accelerations as
-the mesh does, else within 5 to 20 %.
+`BoreModes.moments`. With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore deflects under accelerations
+as the mesh does, else within 5 to 20 %.
 """
 
 from __future__ import annotations

@@ -12,11 +12,11 @@ and held by the tests, which compare whole runs. The Jacobian is assembled from 
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
-with their exact tangent costs one film solve. With J0 everything else and F the films, every iteration solves
-``(1 + F J0^-1) y = r``, d = J0^-1 y, by GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a
-thousandth of r. The bush answers a film's short waves weakly, so that some eight products do. Newton then takes the
-iterations it takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The
-matrix is put together in `system_matrix`.
+with their exact tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F
+J0^-1) y = r``, d = J0^-1 y, by GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r.
+The bush deflects little under a film's short waves, so that some eight products do. Newton then takes the iterations it
+takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The matrix is put
+together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused.
 """

@@ -3,7 +3,7 @@
 With a lubricant's ``density_law`` (compressible film), flows and contents are masses over the density at ambient
 pressure rho, so that c_p belongs to the mass. What heats the film is the dissipated power ``Phi``: shear, and the mass
 flow under pressure times the drop of ``integral of dp / (rho(p) / rho)``. Heat of compression ``alpha_T T dp/dt``
-(alpha_T thermal expansion) is left out, of compressible films as of others: it is reversible, oil that passes through a
+(alpha_T thermal expansion) is left out, in compressible films as in others: it is reversible, oil that passes through a
 pressure p is warmer there by ``alpha_T T p / (rho c_p)``, with 7e-4 1/K and 320 K by 1.3 K per 10 MPa, and cools down
 as it leaves. Nor does the density follow the temperature.
 """
@@ -70,8 +70,8 @@ class FilmEnergy:
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
     (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4
     %, rise at the bush to 7 %; with walls at given temperatures and a ``conductivity`` load to 4 % (both walls) and 9 %
-    (one), mean temperature to 1.5 and 6 K, while an adiabatic bush beside a cooled journal is up to 8 K hotter than the
-    mean. A constant 3 k/c instead of the conductivity: load to 14 %.
+    (one), mean temperature to 1.5 and 6 K, while an adiabatic bush next to a cooled journal is up to 8 K hotter than
+    the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
 
     Parameters
     ----------

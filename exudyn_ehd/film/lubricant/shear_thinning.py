@@ -11,7 +11,7 @@ Dien and H. G. Elrod, J. Lubrication Technology 105 (1983) 385). Hence, with s =
     r_t = r_inf + (1 - r_inf) b^(e-1) (1 + n s),                conductance along the sliding  H^3 / r_t,
 
 Couette flux H unchanged, wall shear r U / h. Only the circumferential sliding speed enters; axial sliding is slow
-beside it.
+in comparison.
 
 Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to the gap, _v to vx = U / (2 R).
 """

@@ -8,7 +8,7 @@ With the density ratio rho = rho(p) / rho_0 and the transformed pressure q of
 the compressible Reynolds equation (D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966) in the scaled
 form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's ends (second order) times the fill of
 its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
-the whole film, cut off afterwards; the density answers to the clipped pressure), `SwiftStieber` and `ElrodAdams`.
+the whole film, cut off afterwards; the density follows the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 
 Storage. `ElrodAdams` with a history: backward Euler in the void, the gap less ``rho fill H``. Without a history
 there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
@@ -302,7 +302,7 @@ class CompressibleFilmSolver(FilmSolver):
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as of `tiles.make_tiles`, in place."""
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
         w = self.work
         lower, upper = self._exact_factor()
         solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)

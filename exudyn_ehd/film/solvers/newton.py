@@ -1,4 +1,4 @@
-"""Newton's method for a film whose gap or density answers to its pressure, together with its sets.
+"""Newton's method for a film whose gap or density depends on its pressure, together with its sets.
 
 The chord method: a factor is reused while the sets stay and the steps contract, and the
 contraction also says what is left after a step (E. Hairer, G. Wanner, Solving Ordinary
@@ -52,7 +52,7 @@ class Step(NamedTuple):
 
 
 class Balance(Protocol):
-    """A film as the driver sees it: its balance beside its slopes, what a step may do, and its sets.
+    """A film as the driver sees it: its balance and its slopes, what a step may do, and its sets.
 
     Attributes
     ----------

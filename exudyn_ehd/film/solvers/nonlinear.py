@@ -38,8 +38,9 @@ vertices the unknown pressure takes part in the storage through liner and densit
 fill and the element rests under the cavity's pressure. `SwiftStieber` always has a film as long as the cavity's
 pressure leaves a gap: the balance is continuous and coercive on ``P >= Pc``, so that its complementarity problem has a
 solution (Ph. Hartman, G. Stampacchia, Acta Math. 115 (1966) 271). `Gumbel` keeps its linear pressure below the
-cavity's, but the liner answers to the clipped one; no theorem says that such a film exists, and of extreme steady ones
-some are not found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut (NO_FILM).
+cavity's, but the liner deflects under the clipped one; no theorem says that such a film exists, and of extreme steady
+ones some are not found. `FullSommerfeld` has none where surfaces part so fast that tension pulls the liner shut
+(NO_FILM).
 
 Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess; should it fail,
 pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`).
@@ -149,7 +150,7 @@ class NonlinearFilmSolver(FilmSolver):
     @property
     def gap_slopes(self) -> GapSlopes:
         """Derivatives of the gaps that the film sees, for the last solution."""
-        return self.elements.answer
+        return self.elements.gap_slopes
 
     @property
     def contact_pressure(self) -> np.ndarray:
@@ -159,18 +160,18 @@ class NonlinearFilmSolver(FilmSolver):
     @property
     def deflection_by_pressure(self) -> np.ndarray:
         """dD/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
-        return np.where(self.work.active, self.elements.answer.D_P, 0.0)
+        return np.where(self.work.active, self.elements.gap_slopes.D_P, 0.0)
 
     @property
     def gap_by_pressure(self) -> np.ndarray:
         """d(film gap)/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
-        return np.where(self.work.active, self.elements.answer.H_P, 0.0)
+        return np.where(self.work.active, self.elements.gap_slopes.H_P, 0.0)
 
     @property
     def contact_by_pressure(self) -> np.ndarray:
         """d(contact pressure)/dP, Pa, at the unknown pressures (n, m) of the last solution; zero elsewhere."""
         e = self.elements
-        return np.where(self.work.active, e.contact_G * e.scale * e.answer.D_P, 0.0)
+        return np.where(self.work.active, e.contact_G * e.scale * e.gap_slopes.D_P, 0.0)
 
     @property
     def rho(self) -> np.ndarray:
@@ -290,9 +291,9 @@ class NonlinearFilmSolver(FilmSolver):
             if self.instant:
                 s.mass_old -= self.rho * s.fill * self.H_t / e.rates.mass
         if self.closure.conserves_mass and self.deflection_inverse > 0.0:
-            self.H_t += e.answer.rate_t * (e.gaps.D - e.deflection_old) * self.deflection_inverse
+            self.H_t += e.gap_slopes.rate_t * (e.gaps.D - e.deflection_old) * self.deflection_inverse
         if e.contact is not None:
-            np.multiply(e.contact_G * e.scale, 1.0 + e.answer.D_r, out=self.contact_slope)
+            np.multiply(e.contact_G * e.scale, 1.0 + e.gap_slopes.D_r, out=self.contact_slope)
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
@@ -317,7 +318,7 @@ class NonlinearFilmSolver(FilmSolver):
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
         e = self.elements
-        a, by, by_v = e.answer, e.by.reshape(4, *self.grid.shape), e.flows_by_speed()
+        a, by, by_v = e.gap_slopes, e.by.reshape(4, *self.grid.shape), e.flows_by_speed()
         by_gap, by_rate = e.storage_gradients()
         along, across = np.roll(lam, -1, axis=1) - lam, np.zeros_like(lam)
         across[:, :, :-1] = lam[:, :, 1:] - lam[:, :, :-1]

@@ -147,7 +147,7 @@ class AsperityContact(AverageGap):
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         asperity_pressure(H, self.sigma, self.level, self.table, P_out, slope_out)
 
-    def settle(
+    def solve_gap(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
         """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `seams.Contact`."""

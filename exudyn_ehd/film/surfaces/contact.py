@@ -43,7 +43,7 @@ class Contact(Protocol):
     def pressure(self, H: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray) -> None:
         """Contact pressure, Pa, and its derivative with respect to the scaled gap H; overwrites both outputs."""
 
-    def settle(
+    def solve_gap(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
         """Solve ``G = X + compliance pressure(G) / scale`` for G (n, m), in place.

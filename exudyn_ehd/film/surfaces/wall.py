@@ -65,7 +65,7 @@ class WallContact:
         """Contact pressure in Pa and its derivative with respect to the scaled gap H (n, m)."""
         wall_pressure(H, self.onset, self.level, P_out, slope_out)
 
-    def settle(
+    def solve_gap(
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
         """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `joint.seams.Contact`."""

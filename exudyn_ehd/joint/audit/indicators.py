@@ -43,7 +43,7 @@ def misalignment(case: Case) -> Finding:
 
 
 def elasticity(case: Case) -> Finding | None:
-    """Deflection of a liner: measured, or by columns for one that is only asked about."""
+    """Deflection of a liner: measured, or by Winkler elements for one that is only asked about."""
     bush = case.bearing.bush
     if bush is None and case.liner is None:
         return None
@@ -107,8 +107,8 @@ def temperature_rise(case: Case) -> float:
         pairs = [(float(np.mean(r.power_loss)), float(np.mean(r.leakage)), speed)]
     rises = []
     for power, flow, speed in pairs:
-        carried = 0.5 * speed * b.radial_clearance * b.length
-        flow = flow if flow > 1e-2 * carried else carried
+        couette = 0.5 * speed * b.radial_clearance * b.length
+        flow = flow if flow > 1e-2 * couette else couette
         rises.append(power / (b.lubricant.density * b.lubricant.specific_heat * flow) if flow > 0.0 else 0.0)
     return max(0.0, *rises)
 

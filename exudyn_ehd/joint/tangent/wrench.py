@@ -171,7 +171,7 @@ def shape_rows(film: SolvedFilm) -> int:
 
 
 def _pressed_contact(film: SolvedFilm) -> bool:
-    """Whether a contact acts on a liner, and so answers to the film's pressure."""
+    """Whether a contact acts on a liner, and so depends on the film's pressure."""
     return film.parts.liner is not None and film.pressing is not None
 
 

@@ -90,7 +90,7 @@ def test_return_dict():
 def test_jacobian_of_the_real_film(cavitation):
     """Central differences of the element's force between two moving bodies, tilted, squeezing.
 
-    Steps of 1e-8 m beside 3e-5 m of gap: truncation (3e-4)^2 = 1e-7 times a constant, rounding 1e-17 / 1e-8 in
+    Steps of 1e-8 m against 3e-5 m of gap: truncation (3e-4)^2 = 1e-7 times a constant, rounding 1e-17 / 1e-8 in
     positions, but relative to a force that hardly changes when both bodies' common frame turns, hence 1e-6 of the
     largest entry of the same kind of coordinate (measured 3e-7).
     """

@@ -65,7 +65,7 @@ def test_shaft_floats_in_two_bearings():
 def test_jacobian_through_marker_jacobians(velocities):
     """Exact at any velocity: the spin of 100 rad/s and a squeezing and tilting motion on top.
 
-    Steps of 1e-9 m beside 4e-5 m of clearance: truncation (3e-5)^2, rounding 1e-17 / 1e-9; 1e-5 of the largest entry
+    Steps of 1e-9 m against 4e-5 m of clearance: truncation (3e-5)^2, rounding 1e-17 / 1e-9; 1e-5 of the largest entry
     allows for the stiff slopes.
     """
     mbs, (left, _) = shaft()

@@ -40,7 +40,7 @@ def test_free_journal_tilts_and_settles_into_the_period_of_its_load(bush, closur
     # a load 3 mm off the centre on a bearing of 66 mm tilts the journal
     last = history.time > end * (1.0 - 1.0 / periods)
     assert np.abs(history.motion[last, 2:4]).max() > 5e-5
-    # over a period the film carries the mean load, but for what is left of the transient
+    # over a period the film carries the mean load, apart from what is left of the transient
     mean = np.trapezoid(history.force[last, 1], history.time[last]) / np.ptp(history.time[last])
     assert mean == pytest.approx(LOAD, rel=0.02)
     if closure != "elrod":  # whose cavities take longer to fill and drain

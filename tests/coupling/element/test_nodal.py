@@ -190,7 +190,7 @@ def test_modal_bush_under_a_rotating_load(measured):
     for tolerance, limit in ((0.02, 0.01), (0.005, 0.001)):
         bush = ehd.ModalBush(mesh=mesh, material=STEEL, tolerance=tolerance, tilted=False)
         modal = under_rotating_load(bush, start)
-        # the nodes' inertia answers to the start for some steps
+        # the nodes' inertia responds to the start for some steps
         peak = modal.peak_pressure[5:].max() / nodal.peak_pressure[5:].max()
         measured(f"peak pressure, tolerance {tolerance}", abs(peak - 1.0), limit)
         gap = modal.minimum_gap.min() / nodal.minimum_gap.min()

@@ -87,8 +87,8 @@ AXES = [(kind, axis) for kind in JACOBIANS for axis in ((0, 0, 1), (1, 0, 0)) if
 def test_jacobian_is_the_derivative_of_the_force(kind, axis):
     """A moving journal with the toy's film against central differences through the assembled system.
 
-    Steps of 3e-8 m beside 1 mm of clearance: 1e-9 of truncation, 1e-16 / 3e-5 of rounding. The rotation between the
-    nodes of a geometrically exact beam turns at the interpolated angular velocity but for the square of their relative
+    Steps of 3e-8 m against 1 mm of clearance: 1e-9 of truncation, 1e-16 / 3e-5 of rounding. The rotation between the
+    nodes of a geometrically exact beam turns at the interpolated angular velocity to the square of their relative
     rotation (3e-5 here); modes of an FE body change its averaged rotation to second order.
     """
     make = JACOBIANS[kind]

@@ -54,7 +54,7 @@ def state(bush):
 
 
 # The averaged rotation of finite elements is linear in small displacements only, 1e-3 here; a geometrically exact beam
-# in space turns at its interpolated angular velocity but for the square of its nodes' relative rotation.
+# in space turns at its interpolated angular velocity to the square of its nodes' relative rotation.
 LOOSE = {"nodal FE body": 5e-3, "reduced FE body Rxyz": 3e-4, "reduced FE body EP": 3e-4, "exact beam element": 1e-4}
 
 
@@ -229,7 +229,7 @@ def held_by(kind, bush, steps=10):
     "kind", sample(["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"], 0, 3)
 )
 def test_flexible_bodies_carry_a_bush_under_a_film(kind, measured):
-    """The housing's load alone gives momentum, 2e-4 Ns beside a film force of 17 kN; as much as with a rigid
+    """The housing's load alone gives momentum, 2e-4 Ns against a film force of 17 kN; as much as with a rigid
     bearing."""
     gain, history, iterations = held_by(kind, ehd.ANCFBush(mesh=RING, material=STEEL))
     assert len(history.time) == 11

@@ -154,7 +154,7 @@ def moving():
 
 
 def test_jacobian_is_the_derivative_of_the_force():
-    """Steps of 1e-9 beside a gap of 2e-5 m: (5e-5)^2 of truncation, 1e-16 / 5e-5 of rounding, a film's kinks at its
+    """Steps of 1e-9 against a gap of 2e-5 m: (5e-5)^2 of truncation, 1e-16 / 5e-5 of rounding, a film's kinks at its
     rupture; 1e-4 of a coordinate's largest entry."""
     mbs, joint = moving()
     places = list(range(mbs.systemData.ODE2Size()))

@@ -150,7 +150,7 @@ def test_bush_and_film_in_vtk_files(kind, tmp_path):
     moved = np.einsum("ni,ni->n", u[bore, :2], mesh.nodes[bore, :2]) / np.hypot(*mesh.nodes[bore, :2].T)
     largest = np.abs(film.bore_displacement).max()
     assert moved.max() == pytest.approx(film.bore_displacement.max(), abs=0.1 * largest)
-    # fixed to the housing, but for rounding of the nodes' positions
+    # fixed to the housing, to rounding of the nodes' positions
     assert np.abs(u[mesh.outer.nodes]).max() < 1e-15
     stress = solid.point_data["von Mises stress [Pa]"]
     # of the order of the pressure that makes it

@@ -110,7 +110,7 @@ def test_revolutions_of_a_turning_journal(history):
     assert len(table) == 2
     np.testing.assert_allclose(table.start, [0.0, TURN], atol=1e-12)
     np.testing.assert_allclose(table.end, [TURN, 2.0 * TURN], rtol=1e-12)
-    # the cosine's minimum at phase 1.3 pi is met by step 32.5: both neighbours are equal but for the small trend
+    # the cosine's minimum at phase 1.3 pi is met by step 32.5: both neighbours are equal apart from the small trend
     np.testing.assert_allclose(table.minimum_gap_time, [32 * TURN / 50, 82 * TURN / 50], rtol=1e-12)
     np.testing.assert_allclose(table.minimum_gap, history.minimum_gap[[32, 82]], rtol=0)
     np.testing.assert_allclose(table.minimum_gap_angle, 2.0 * np.pi * 32 / 50, rtol=1e-9)

@@ -56,8 +56,8 @@ def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, state
 
 @pytest.mark.slow
 def test_iterations_and_factors_of_nodal_bores():
-    """`SolveDynamicSparse` keeps the mesh's factor while it serves: full Newton's iterations with a factor in every
-    other step."""
+    """`SolveDynamicSparse` keeps the mesh's factor while it is reusable: full Newton's iterations with a factor in
+    every other step."""
     rigid = counts("rigid, tilted", False, 20)[0]
     for name in ("`ANCFBush`, 4 x 1 x 24 elements", "`ANCFBush`, 4 x 2 x 40 elements"):
         iterations, factors = counts(name, False, 20)

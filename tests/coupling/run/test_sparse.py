@@ -1,4 +1,4 @@
-"""The own sparse factorisation serves a model with a film element beside a flexible bush."""
+"""The package's sparse factorisation on a model with a film element and a flexible bush."""
 
 import math
 

@@ -22,7 +22,7 @@ def make(cavitation, **options):
 
 
 def orbit(t, size=1.0):
-    """Pose and rates of a journal that goes round and in and out."""
+    """Pose and rates of a journal that circulates and moves in and out."""
     a, b, w = 0.5 * size * C, 0.2 * size * C, OMEGA
     slow, phase = 0.37 * w, 0.37 * w * t + 0.4
     x, y = a * math.cos(w * t) + b * math.cos(phase), 0.8 * a * math.sin(w * t)

@@ -46,7 +46,7 @@ def test_flow_work_is_the_integral():
     p = np.array([-1e8, 0.0, 1e5, 7e7, 4e8, 3e9])
     exact = [quad(lambda x: 1.0 / float(law.ratio(x)), 0.0, end, epsabs=0.0, epsrel=1e-13)[0] for end in p]
     np.testing.assert_allclose(law.flow_work(p), exact, rtol=1e-12)  # quad's own
-    # of oil that hardly gives way: p, without cancellation
+    # of oil that is hardly compressed: p, without cancellation
     np.testing.assert_allclose(ehd.DowsonHigginson(coefficient=1e-18).flow_work(p), p, rtol=1e-8)
 
 

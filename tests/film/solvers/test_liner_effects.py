@@ -207,7 +207,7 @@ def test_elements_settle(contact):
     scratch, p = np.empty_like(X), np.empty_like(X)
     for compliance, start in itertools.product((1e-12, 1e-9, 1e-7), (-5.0, 0.0, 1.0)):
         G = np.full(X.shape, start)
-        made.settle(X, compliance * SCALE, SCALE, G, p, scratch)
+        made.solve_gap(X, compliance * SCALE, SCALE, G, p, scratch)
         settled = p.copy(), SCALE * scratch
         made.pressure(G, p, scratch)
         for a, b in zip(settled, (p, scratch), strict=True):
@@ -215,9 +215,9 @@ def test_elements_settle(contact):
         np.testing.assert_allclose(G - X, compliance * p, atol=1e-14 * (1.0 + np.abs(X).max()))
         assert np.all(np.diff(G.ravel()) > 0.0) and np.all(G >= X)
     G, up, down = X.copy(), X.copy(), X.copy()
-    made.settle(X, 1e-9, 1.0, G, p, scratch)
-    made.settle(X + 1e-5, 1e-9, 1.0, up, p, scratch)
-    made.settle(X - 1e-5, 1e-9, 1.0, down, p, scratch)
+    made.solve_gap(X, 1e-9, 1.0, G, p, scratch)
+    made.solve_gap(X + 1e-5, 1e-9, 1.0, up, p, scratch)
+    made.solve_gap(X - 1e-5, 1e-9, 1.0, down, p, scratch)
     made.pressure(G, p, scratch)
     np.testing.assert_allclose((up - down) / 2e-5, 1.0 / (1.0 - 1e-9 * scratch), atol=1e-5)
 
@@ -259,7 +259,7 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     slopes = e.matrix[0]
     count, width = number_cells(~SMALL.fixed, e.metric[0], w.order, w.number)
     film_slopes(*(e._sides(e.u)[1:]), None, None, e.terms, slopes)
-    add_gap_slopes(*e._sides(e.u), None, e.terms, e.answer, e.load, e.rates, e.beta, e.by, slopes)
+    add_gap_slopes(*e._sides(e.u), None, e.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
     assemble(e.metric[0], e.metric[1], slopes, w.number, w.order, count, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):

@@ -167,7 +167,7 @@ def test_refused_values(option, value):
 
 @pytest.mark.parametrize("closure", CLOSURES[1:], ids=lambda c: type(c).__name__)
 def test_a_film_at_rest_carries_nothing(closure):
-    """A soft liner, nearly touched, without speed or rate: no pressure beside
+    """A soft liner, nearly touched, without speed or rate: no pressure against
     the one that would open it to its clearance, 1 / beta."""
     solver = NonlinearFilmSolver(GRID, closure)
     solver.beta = 0.1
@@ -242,7 +242,7 @@ def test_a_journal_that_only_slides_along_meets_no_pressure(closure):
 
 def test_suction_that_is_cut_off_spoils_no_balance():
     """A linear film 1e5 times deeper below the cavity pressure than above it:
-    the balance of what presses holds to 1e-9 of its flows."""
+    the balance of the pressures holds to 1e-9 of its flows."""
     model = bearing_on_liner(ehd.Gumbel(), 7e10, 0.04, 64, 10)
     model.evaluate(
         np.array([-2.08374301e-06, -1.98784312e-05, 0, 0, -2.16895329e-05, 2.79668814e-05, -2.7e-03, -1.4e-04, 0, 0])

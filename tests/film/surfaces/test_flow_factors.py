@@ -183,7 +183,7 @@ def test_tangential_force_of_ridges_across_the_motion(share):
     shared between the moving and the resting surface.
 
     Reynolds' equation of two sinusoidal surfaces, averaged over their relative position: shear plus pressure
-    on the slopes of the resting surface. Amplitudes of 1 % leave terms of the order 1e-8 beside v = 1e-4 / 2.
+    on the slopes of the resting surface. Amplitudes of 1 % leave terms of the order 1e-8 against v = 1e-4 / 2.
     """
     x = np.linspace(0.0, 2.0 * np.pi, 256, endpoint=False)
     moving, resting = 0.01 * math.sqrt(share), 0.01 * math.sqrt(1.0 - share)

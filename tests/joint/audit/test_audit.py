@@ -128,7 +128,7 @@ def test_elasticity_of_a_liner_given_and_asked_about():
     assert not audit(bearing(), eps=0.8, liner=stiff)["elasticity"].matters
     named = audit(bearing(bush=soft), eps=0.8)
     assert named["elasticity"].matters and named["elasticity"].on and not named["elasticity"].advice
-    # a soft liner lowers the peak and widens the gap: columns under the rigid film's pressure overestimate
+    # a soft liner lowers the peak and widens the gap: Winkler elements under the rigid film's pressure overestimate
     assert 0.1 < named["elasticity"].value < asked["elasticity"].value
     assert audit(bearing(bush=stiff), eps=0.5)["elasticity"].unneeded
     with pytest.raises(ehd.InputError, match="liner must be ElasticLiner"):

@@ -54,7 +54,7 @@ def test_a_stiff_bush_tends_to_the_rigid_bore_at_first_order(effect):
         )
         for film in (solve(modal(E), EFFECTS[effect]) for E in (2.1e13, 2.1e14))
     ]
-    # ratio 10 but for the next order, 1 % of the softer bush
+    # ratio 10 to the next order, 1 % of the softer bush
     assert np.allclose(changes[0] / changes[1], 10.0, rtol=0.05)
 
 

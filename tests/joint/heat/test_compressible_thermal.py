@@ -136,7 +136,7 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
     Second order in the grid, first where the rupture line is not resolved.
 
     High end pressures, so that the elastic energy counts: without it 4 % would be left on any grid. On the coarser
-    one 1 % is left (Gumbel 1.2 %), as much as of incompressible oil.
+    one 1 % is left (Gümbel 1.2 %), as much as with incompressible oil.
     """
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):

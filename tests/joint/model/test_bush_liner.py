@@ -49,11 +49,11 @@ def test_thin_solid_bush_is_a_liner():
     rigid = solve(None)
     peak, gap = [], []
     for t in (8e-3, 4e-3, 2e-3):
-        columns, mesh = solve(liner(t)), solve(solid(t))
+        winkler, mesh = solve(liner(t)), solve(solid(t))
         # a layer that matters
-        assert 0.8 < columns.peak_pressure / rigid.peak_pressure < 0.85
-        peak.append(mesh.peak_pressure / columns.peak_pressure - 1.0)
-        gap.append(mesh.minimum_gap / columns.minimum_gap - 1.0)
+        assert 0.8 < winkler.peak_pressure / rigid.peak_pressure < 0.85
+        peak.append(mesh.peak_pressure / winkler.peak_pressure - 1.0)
+        gap.append(mesh.minimum_gap / winkler.minimum_gap - 1.0)
     # measured 2.0, 0.8, 0.3 % in the gap; the peak's 0.3 % goes down to what film grid and modes leave, 0.1 %
     assert 0.01 < gap[0] < 0.03
     assert gap[1] < 0.5 * gap[0] and gap[2] < 0.5 * gap[1]
@@ -62,7 +62,7 @@ def test_thin_solid_bush_is_a_liner():
 
 
 def test_long_bush_has_the_fourier_compliances_of_plane_strain():
-    """p = cos(n theta) (1 - zeta^2) on 0.6 m: plane strain at the mid-plane but for (t / L)^2."""
+    """p = cos(n theta) (1 - zeta^2) on 0.6 m: plane strain at the mid-plane to (t / L)^2."""
     mesh = ehd.HollowCylinder(inner_radius=R, thickness=0.02, length=0.6, axial=8, radial=2, circumferential=32)
     material = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=NU, density=7800.0)
     modes = bore_modes(ehd.ModalBush(mesh=mesh, material=material, tolerance=0.02, tilted=False))

@@ -156,7 +156,7 @@ def test_thick_oil_opens_its_gap():
             oil = ehd.Lubricant(viscosity=MU, pressure_law=law)
             model = build_model(bearing(bush=bush, lubricant=oil))
             peak = model.evaluate(motion(0.8)).quantities()["peak_pressure"]
-            # the gap at mid-length: at the ends a liner does not give way
+            # the gap at mid-length: at the ends a liner does not deflect
             found[bush is LINER, law is BARUS] = peak, model.solver.H[:, 4].min()
             if bush is None and law is BARUS:
                 assert model.evaluate(motion(0.95)).status is ehd.Status.NO_PRESSURE

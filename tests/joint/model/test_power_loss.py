@@ -21,7 +21,7 @@ BORES = {
     "nodal": ehd.ANCFBush(mesh=CYLINDER, material=STEEL),
 }
 # What is left on 48 x 8 and what the finer grid leaves of it: second order; first order where the rupture line is not
-# resolved (Gumbel cuts it off, Elrod-Adams moves the fill upwind).
+# resolved (Gümbel cuts it off, Elrod-Adams moves the fill upwind).
 CLOSURES = {
     "swift": (ehd.SwiftStieber(), 0.011, 0.3),
     "swift under tension": (ehd.SwiftStieber(cavity_pressure=-3e5), 0.011, 0.3),
@@ -106,7 +106,7 @@ def test_power_loss_is_the_heat_of_the_flows_and_the_work_on_the_oil(closure, bo
 def test_power_into_a_liner_by_contact(contact):
     """A journal pressed into its liner through next to no oil.
 
-    What it puts in beside what the liner stores is the contact's own energy.
+    What it puts in besides what the liner stores is the contact's own energy.
 
     The contact's energy over the step from its pressure at both ends and the middle of the gap's change (Simpson).
     The liner's share is backward Euler: first order in the step, halved with it, and many times larger than what is

@@ -148,7 +148,7 @@ def test_damping_at_rest_is_the_whole_film_s(make_bearing, make_motion, closure)
 
     A slow motion of a concentric journal meets half of it.
 
-    With Gumbel's condition exactly half; Swift-Stieber's film reaches beyond the closing half (7 % more at L/D = 1).
+    With Gümbel's condition exactly half; Swift-Stieber's film reaches beyond the closing half (7 % more at L/D = 1).
     """
 
     def model(cavitation):

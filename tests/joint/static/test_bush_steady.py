@@ -23,7 +23,7 @@ CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, a
 # to compare.
 FINE = dataclasses.replace(CYLINDER, circumferential=40)
 FINE_FILM = ehd.FiniteLength(n_theta=96, n_z=12)
-# Soft bores give way next to their ends within an interval of the former.
+# Soft bores deflect next to their ends within an interval of the former.
 FINER_FILM = ehd.FiniteLength(n_theta=144, n_z=16)
 
 

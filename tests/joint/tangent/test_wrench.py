@@ -116,7 +116,7 @@ def test_squeeze_off_has_no_damping(make_bearing, make_motion):
 @pytest.mark.parametrize("closure", ("full", "swift"))
 def test_damping_is_symmetric_and_positive(make_bearing, make_motion, closure):
     """The rates enter through the same weights that collect the load; the damping matrix is symmetric
-    (not for Gumbel's film, which collects the load over a part of it only).
+    (not for Gümbel's film, which collects the load over a part of it only).
 
     For the generalised force (Fx, Fy, My, -Mx) of the rates (x', y', bx', by'); the load's quadrature in z differs
     from the control volumes' area, which leaves a few per mille.

@@ -2,8 +2,8 @@
 
 Module map
 ----------
-elements      Winkler elements: what presses on them, how far they deflect
-gap_response  what flows answer to gaps that follow the pressure
+elements      Winkler elements: pressure on them, deflection
+gap_response  derivatives of flows over gaps that follow the pressure
 kernels       balance as kernels
 film          the film on them: gaps, links, balance, derivatives
 balance       the film as Newton's method sees it

@@ -71,7 +71,7 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
         abs(film.film.vx) + abs(film.film.vz) + float(np.max(np.abs(film.rigid[2]))) + rates.liner + rates.mass + 1e-300
     )
     start = tuple(field.copy() for field in film.u)
-    film.settle(film.u.P)
+    film.update_elements(film.u.P)
 
     def attempt(extra: float) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
@@ -83,15 +83,15 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
         for field, other in zip(taken, given, strict=True):
             field[:] = other
         if not ok:
-            film.settle(film.u.P)
+            film.update_elements(film.u.P)
         return ok, steps
 
     return pseudo_time(attempt, rate)
 
 
 def _stored(film: LinerBalance, start: tuple[np.ndarray, ...]) -> np.ndarray:
-    """What pseudo time counts of the settled elements under the state at hand:
-    mass, or the deflection by what presses, cut off or not."""
+    """What pseudo time counts of the elements at the present state: mass, or the
+    deflection by film and contact pressure, cut off or not."""
     P, fill, _ = start
     if not film.fills:
         return film.beta * (film.load.p + (P - film.load.drive))

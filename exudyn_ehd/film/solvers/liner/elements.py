@@ -1,5 +1,5 @@
-"""Winkler elements of an elastic liner: what presses on them, how far they
-deflect, how the film answers; see `exudyn_ehd.film.solvers.nonlinear`.
+"""Winkler elements of an elastic liner: pressure on them, deflection, the gap
+that the film sees, and derivatives; see `exudyn_ehd.film.solvers.nonlinear`.
 
 Symbols, all scaled: P unknown of the film, p the pressure on the elements (P itself, or p(P) of
 an oil whose viscosity or density follows its pressure), pc cavity pressure in P, beta compliance;
@@ -272,7 +272,7 @@ def _difference(a, b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _turn(turned, s, inverse, yields, own, out):
-    """What the rate answers to a change that deflects by ``yields``;
+    """Derivative of the rate to a change that deflects by ``yields``;
     ``own`` = 1: of the undeformed gap, which turns the film gap itself."""
     for c in range(out.size):
         out[c] = (turned[c] + s[c] * inverse) * yields[c] + own * turned[c]

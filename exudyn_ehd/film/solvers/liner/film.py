@@ -68,12 +68,12 @@ class LinerFilm:
         self.rigid_film, self.mass_old, self.pseudo_old = self.known
         self.true_gap, self.pressed = np.ones(shape), np.ones(shape)
         self.contact_pressure, self.contact_G, self.bend = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-        # whether contact_pressure, contact_G, bend and the slopes in answer are those of surfaces apart
+        # whether contact_pressure, contact_G, bend and gap_slopes are those of surfaces apart
         self.apart = True
         self.gap_fields, self.slope_fields, self.load_fields = (np.zeros((k, *shape)) for k in (5, 9, 4))
-        self.gaps, self.answer = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
+        self.gaps, self.gap_slopes = Gaps(*self.gap_fields), GapSlopes(*self.slope_fields)
         self.load = Load(*self.load_fields)
-        for field in (self.gaps.H, self.gaps.HF, self.answer.link, self.answer.rate_t, self.load.slope):
+        for field in (self.gaps.H, self.gaps.HF, self.gap_slopes.link, self.gap_slopes.rate_t, self.load.slope):
             field[:] = 1.0
         # the cavity's pressure on the elements
         self.cavity_load = 0.0
@@ -92,7 +92,7 @@ class LinerFilm:
         fill = s.fill if closure.conserves_mass else np.ones(shape)
         self.u = FilmState(s.linear_pressure, fill, np.ones(shape, dtype=np.bool_))
         self.known_slopes = False
-        # whether only the liner answers to the film; with effects on the links it does not stay so
+        # whether only the liner depends on the film; with effects on the links it does not stay so
         self.plain = contact is None and limiter is None and oil is None and not film.flux_effects
         self.smallest = 1.0
 
@@ -137,7 +137,7 @@ class LinerFilm:
             density_of_load(self.load_fields, P, self.scale, table.a, table.b, self.rho, self.rho_P)
         return True
 
-    def settle(self, P: np.ndarray) -> bool:
+    def update_elements(self, P: np.ndarray) -> bool:
         """Every element under the film of the unknown P, with the gaps that the
         film sees; False where the oil has no pressure."""
         f, contact = self.film, self.contact
@@ -165,7 +165,7 @@ class LinerFilm:
                 self._touch(contact, smallest)
             on_links = move_elements(self.rigid, self.true_gap, self.deflection_old, self.rates.liner, self.gap_fields)
         if self.limiter is not None and (not self.apart or min(smallest, on_links) < self.limiter.limits_below):
-            self.limiter.limit(f.H, f.HF, f.H_t, self.answer.rate_t, self.bend, self.answer.link)
+            self.limiter.limit(f.H, f.HF, f.H_t, self.gap_slopes.rate_t, self.bend, self.gap_slopes.link)
             self.apart = False
             self.smallest = float(smallest_of(self.gap_fields))
         else:
@@ -175,21 +175,21 @@ class LinerFilm:
     def _touch(self, contact: Contact, smallest: float) -> None:
         """Gaps of elements that the contact presses as well."""
         if smallest < contact.presses_below:
-            contact.settle(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
+            contact.solve_gap(self.pressed, self.beta, self.scale, self.true_gap, self.contact_pressure, self.contact_G)
             self.apart = False
             return
         self.true_gap[:] = self.pressed
         if not self.apart:
             for field in (self.contact_pressure, self.contact_G, self.bend):
                 field[:] = 0.0
-            self.answer.rate_t[:] = self.answer.link[:] = 1.0
+            self.gap_slopes.rate_t[:] = self.gap_slopes.link[:] = 1.0
             self.apart = True
 
     def balance(self, state: FilmState) -> tuple[float, float]:
         """Norm of what does not hold, and the smallest film gap; (inf, -1) where the oil has no pressure."""
         if self.plain and not self.fills:
             return self._plain_balance(state.P)
-        if not self.settle(state.P):
+        if not self.update_elements(state.P):
             return np.inf, -1.0
         if not self.smallest > 0.0:
             return np.inf, self.smallest
@@ -242,7 +242,7 @@ class LinerFilm:
         return self.film.complementary and not self.fills
 
     def gradients(self) -> None:
-        """Derivatives of gaps and of the links' flows at the present state, into ``answer`` and ``by``."""
+        """Derivatives of gaps and of the links' flows at the present state, into ``gap_slopes`` and ``by``."""
         f, u = self.film, self.u
         element_slopes(
             u.P,
@@ -271,7 +271,7 @@ class LinerFilm:
 
     def storage_gradients(self) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n, m) of the storage to the undeformed gap and rate."""
-        a, content = self.answer, self.film.area
+        a, content = self.gap_slopes, self.film.area
         if self.rho is not None:
             content = content * self.rho
         if self.fills:
@@ -282,7 +282,7 @@ class LinerFilm:
         return content * a.rate_r, content * a.rate_t
 
     def flows_by_speed(self) -> np.ndarray:
-        """Derivatives (3, n, m) of the links' flows, as of `speed_gradients`."""
+        """Derivatives (3, n, m) of the links' flows, as returned by `speed_gradients`."""
         by = np.empty((3, *self.u.P.shape))
         fill = self.u.fill if self.fills else None
         speed_gradients(

@@ -1,4 +1,4 @@
-"""What flows over links answer to gaps that follow the pressure: Newton's
+"""Derivatives of the flows over links whose gaps follow the pressure: Newton's
 matrix and the gradients of a film on an elastic liner.
 
 Symbols of `exudyn_ehd.film.solvers.liner.elements`; a, b ends of a link, h its gap and d half the
@@ -31,8 +31,8 @@ def of_axis(links, axis):
 
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
-    """What the pressure flow over links with the gaps ``mean`` and half
-    differences ``lean`` of E answers to h and d."""
+    """Derivatives to h and d of the pressure flow over links with the gaps
+    ``mean`` and half differences ``lean`` of E."""
     for c in range(by_d.size):
         by_d[c] = -2.0 * k[c] * (P_b[c] - P_a[c]) * lean[c] / (mean[c] * mean[c] + lean[c] * lean[c])
     if g is None:
@@ -45,7 +45,7 @@ def _conductance_gradients(P_a, P_b, k, mean, lean, g, g_h, by_h, by_d):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_carriers(f, v, linked, carrier_h, fill_a, fill_b, rho_a, rho_b, by_h):
-    """Add what the Couette flow answers to h."""
+    """Add the Couette flow's derivative to h."""
     for c in range(f.size):
         up = v * linked[c]
         if carrier_h is not None:
@@ -157,8 +157,8 @@ def speed_gradients(P, fill, rho, terms, fixed, gap_fields, links, metric, by):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_end(by_h, by_d, side, steep, lean, full, out):
-    """Add what a link's flow answers to the unknown at one of its ends, which
-    bends it (side 1: b) or its other end (-1: a)."""
+    """Add the derivative of a link's flow to the unknown at one of its ends,
+    which bends it (side 1: b) or its other end (-1: a)."""
     for c in range(out.size):
         slope = 0.5 * (by_h[c] * steep[c] + side * by_d[c] * lean[c])
         if full is not None:
@@ -174,7 +174,7 @@ def _product(a, b, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
-    """What the storage answers through the gap."""
+    """Derivative of the storage through the gap."""
     for c in range(out.size):
         by = rate_P[c]
         if fill is not None:
@@ -188,19 +188,24 @@ def _add_storage(area, fill, full, rho, H_P, rate_P, rates, out):
 
 @njit(cache=True, fastmath=_FAST)
 def _add_pseudo(area, P, drive, slope, factor, out):
-    """What the pseudo storage answers of a film that keeps no mass."""
+    """Derivative of the pseudo storage of a film that keeps no mass."""
     for c in range(out.size):
         out[c] += area[c] * factor * (slope[c] if P[c] == drive[c] else 1.0)
 
 
 @njit(cache=True)
-def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slopes):
-    """Add what the flows and the storage answer through the gap to ``slopes``
+def add_gap_slopes(P, fill, full, rho, film, gap_slopes, load, rates, beta, by, slopes):
+    """Add the derivatives of flows and storage through the gap to ``slopes``
     of `balance.film_slopes`; ``by`` of `link_gradients`."""
     n, m = P.shape
     size = n * m
     last, e = size - m, size - 1
-    D, H, link, area = answer.D_P.reshape(-1), answer.H_P.reshape(-1), answer.link.reshape(-1), film.area.reshape(-1)
+    D, H, link, area = (
+        gap_slopes.D_P.reshape(-1),
+        gap_slopes.H_P.reshape(-1),
+        gap_slopes.link.reshape(-1),
+        film.area.reshape(-1),
+    )
     face = np.empty(size)
     _product(by[0], link, face)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
@@ -216,7 +221,7 @@ def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slop
         part(full, 0, size),
         part(rho, 0, size),
         H,
-        answer.rate_P.reshape(-1),
+        gap_slopes.rate_P.reshape(-1),
         rates,
         slopes[4],
     )
@@ -226,7 +231,7 @@ def add_gap_slopes(P, fill, full, rho, film, answer, load, rates, beta, by, slop
 
 @njit(cache=True, fastmath=_FAST)
 def _end_gain(by_h, by_d, side, yields, bends, out):
-    """What a link's flow answers to the undeformed gap at one of its ends, b (side 1) or a (-1)."""
+    """Derivative of a link's flow to the undeformed gap at one of its ends, b (side 1) or a (-1)."""
     for c in range(out.size):
         out[c] = 0.5 * (by_h[c] * yields[c] + side * by_d[c] * bends[c])
 
@@ -239,11 +244,11 @@ def gap_columns(order, count, by, by_v, slope_fields, gain_t, gain_r, at, out):
     storage to the undeformed rate and gap; ``at``: `Directions`.
     """
     _, n, m = by_v.shape
-    size, answer = n * m, slopes_of(slope_fields.reshape(9, n * m))
+    size, gap_slopes = n * m, slopes_of(slope_fields.reshape(9, n * m))
     last, e = size - m, size - 1
-    D, E, H = answer.D_r, answer.E_r, answer.H_r
+    D, E, H = gap_slopes.D_r, gap_slopes.E_r, gap_slopes.H_r
     face, one, two, low, high = np.empty(size), np.empty(size), np.empty(size), np.empty(size), np.empty(size)
-    _product(by[0], answer.link, face)
+    _product(by[0], gap_slopes.link, face)
     _end_gain(face, by[1], -1.0, D, E, one)
     _end_gain(face[:last], by[1, :last], 1.0, D[m:], E[m:], two[:last])
     _end_gain(face[last:], by[1, last:], 1.0, D[:m], E[:m], two[last:])

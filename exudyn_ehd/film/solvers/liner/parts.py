@@ -15,7 +15,7 @@ class LinerParts(NamedTuple):
     Attributes
     ----------
     contact : Contact or None
-        What presses on the liner besides the film.
+        Its pressure acts on the liner, as the film's does.
     limiter : GapLimiter or None
         Of the gap that the film sees; goes with the contact or with flow factors.
     oil : PressureLaw or None

@@ -148,7 +148,7 @@ def short_label(row: Row) -> str:
 
 
 def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
-    """Write every label beside its point where it covers neither a label nor a point; far ones get a thin line."""
+    """Write every label next to its point where it covers neither a label nor a point; far ones get a thin line."""
     to_screen, scale, size = axes.transData.transform, axes.figure.dpi / 72.0, 5.5
     place = np.array([to_screen((row.seconds, _error(row))) for row in points])
     taken = [(x - 3 * scale, y - 3 * scale, x + 3 * scale, y + 3 * scale) for x, y in place]
