@@ -241,7 +241,7 @@ def impact():
     return run
 
 
-@hard_case("bouncing to rest", rejected=80)
+@hard_case("bouncing to rest", rejected=80, slow=True)
 def bouncing():
     """Impacts follow each other ever faster until the journal lies still: the
     contact's time scale is far below the step."""

@@ -92,7 +92,7 @@ def wide():
     return settles(made, mass=0.05, load=10.0, end=0.3, step=5e-4)[0]
 
 
-@hard_case("30 m/s surface speed")
+@hard_case("30 m/s surface speed", slow=True)
 def fast():
     """30 m/s on a clearance of 50 um: shear of 6e5 1/s, strong cross-coupling;
     heated, thinned and supplied at one end."""

@@ -42,7 +42,7 @@ def starved():
     return run
 
 
-@hard_case("groove passes under the load")
+@hard_case("groove passes under the load", slow=True)
 def groove_under_load():
     """A feed hole in the turning journal passes the loaded side once a turn and
     lets the pressure there collapse to its own."""

@@ -246,7 +246,7 @@ def fast_crank():
     return run
 
 
-@hard_case("crank at steps of two degrees", rejected=3)
+@hard_case("crank at steps of two degrees", rejected=3, slow=True)
 def coarse_crank():
     """The crank's end leaves its tangent by 30 um in a step, more than the
     clearance: Newton has to start where the accelerations lead."""

@@ -165,7 +165,7 @@ def whip(first, last, duration, end, step):
     return rotor.run(end, step), natural
 
 
-@hard_case("run-up through whirl into whip", rejected=4)
+@hard_case("run-up through whirl into whip", rejected=4, slow=True)
 def run_up():
     """A flexible rotor passes its critical speed, starts to whirl at half its
     speed and locks to its own frequency: a limit cycle."""

@@ -29,7 +29,7 @@ class HardCase:
     newton : float
         Largest number of Newton iterations per accepted step.
     slow : bool
-        Longer than a few seconds.
+        Longer than a second.
     """
 
     name: str

@@ -13,7 +13,7 @@ from hard_scene import CLEARANCE, SPEED, Rotor, bearing
 import exudyn_ehd as ehd
 
 
-@hard_case("coarse steps", rejected=60)
+@hard_case("coarse steps", rejected=60, slow=True)
 def coarse():
     """Steps of 5 ms where the film responds within 0.05 ms: Newton would converge all the same, to another motion."""
     made = bearing()
@@ -49,7 +49,7 @@ def fine():
     return coarse, fine
 
 
-@hard_case("explicit solver", newton=2.0)
+@hard_case("explicit solver", newton=2.0, slow=True)
 def explicit():
     """RK44 has no Newton and no second try: the force alone must be smooth and unique."""
     made = bearing()

@@ -30,7 +30,7 @@ def run(name, states):
 
 @pytest.mark.parametrize("name", hard_random.CAMPAIGNS)
 def test_random_states(name):
-    run(name, count(name, 1))
+    run(name, count(name, 0.25))
 
 
 @pytest.mark.slow
