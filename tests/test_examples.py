@@ -1,4 +1,5 @@
-"""Every example runs headless in its quick mode and gives the figures that it is there to show."""
+"""Every example runs headless in its quick mode and gives the figures that it is there to show; the longer ones among
+the slow tests."""
 
 import math
 
@@ -25,6 +26,7 @@ def test_slider_crank(example, tmp_path):
     assert real["minimum_film_thickness_um"] == pytest.approx(8.4, abs=0.3)
 
 
+@pytest.mark.slow
 def test_rotating_journal(example, tmp_path):
     cases = example("rotating_journal").main(quick=True, results=tmp_path)
     assert all(path.stat().st_size > 10_000 for path in cases.pop("pictures"))
@@ -59,6 +61,7 @@ def test_elastic_big_end(example, tmp_path):
     assert abs(elastic["iterations_per_step"] - rigid["iterations_per_step"]) < 2
 
 
+@pytest.mark.slow
 def test_fe_connecting_rod(example, tmp_path):
     module = example("fe_connecting_rod")
     cases = module.main(quick=True, results=tmp_path)
@@ -116,6 +119,7 @@ def test_engine_big_end(example, tmp_path):
     assert all(row["iterations_per_step"] < 3 for row in rows.values())
 
 
+@pytest.mark.slow
 def test_upgrade_existing_model(example, tmp_path):
     upgrade = example("upgrade_existing_model")
     rows = upgrade.main(quick=True, output=tmp_path)
@@ -132,6 +136,7 @@ def test_upgrade_existing_model(example, tmp_path):
     assert 0.1 < rows["shoulder_largest_friction_torque_Nm"] < 1.0
 
 
+@pytest.mark.slow
 def test_elastic_slider_crank(example, tmp_path):
     rows = example("elastic_slider_crank").main(quick=True, output=tmp_path)
     assert (tmp_path / "elastic_slider_crank.png").stat().st_size > 10_000
@@ -180,6 +185,7 @@ def test_start_stop(example, tmp_path):
     assert rows["iterations_per_step"] < 3
 
 
+@pytest.mark.slow
 def test_rotor_oil_whirl(example, tmp_path):
     n = example("rotor_oil_whirl").main(quick=True, output=tmp_path)
     assert (tmp_path / "rotor_oil_whirl.png").stat().st_size > 10_000
