@@ -8,6 +8,7 @@ import pytest
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 STEPS = 400
 
@@ -40,6 +41,7 @@ def _run(make_bearing, **options):
     return np.array(position) / bearing.radial_clearance, mbs.sys["dynamicSolver"].it.newtonStepsCount / STEPS
 
 
+@pytest.mark.slow
 def test_impedance_map_runs_as_its_film(make_bearing, measured):
     mapped, steps = _run(make_bearing, film=ehd.ImpedanceMap())
     film, film_steps = _run(make_bearing, film=ehd.FiniteLength(n_theta=320))
@@ -50,11 +52,14 @@ def test_impedance_map_runs_as_its_film(make_bearing, measured):
 
 @pytest.mark.parametrize(
     "options",
-    [
-        {"film": ehd.ClassicSOR(n_theta=64, n_z=12, tolerance=1e-10), "cavitation": ehd.Gumbel()},
-        {"cavitation": ehd.ElrodAdams(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3, pressure=1e5),)},
-        {"supply": (ehd.CircumferentialGroove(width=0.008, pressure=1e5),)},
-    ],
+    sample(
+        [
+            {"film": ehd.ClassicSOR(n_theta=64, n_z=12, tolerance=1e-10), "cavitation": ehd.Gumbel()},
+            {"cavitation": ehd.ElrodAdams(), "supply": (ehd.AxialGroove(angle=0.0, width_angle=0.3, pressure=1e5),)},
+            {"supply": (ehd.CircumferentialGroove(width=0.008, pressure=1e5),)},
+        ],
+        1,
+    ),
     ids=["classic", "mass-conserving with groove", "circumferential groove"],
 )
 def test_newton_needs_as_few_steps_as_the_plain_film(make_bearing, measured, options):

@@ -221,7 +221,8 @@ def test_own_factorisation_gives_the_solution_of_exudyn_s_solver(damping, radius
     assert np.allclose(shapes[0], shapes[1], atol=1e-8 * np.abs(shapes[0]).max())
 
 
-@pytest.mark.parametrize("kind", sample(ADDITIVE, 0))
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ADDITIVE)
 def test_own_factorisation_serves_bodies_joints_and_constraints_too(kind):
     """Carried bush, housing on a spherical joint with an inactive-axes generic joint, a spring to a mass point."""
     shapes = []

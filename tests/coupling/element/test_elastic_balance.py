@@ -47,11 +47,11 @@ def slow(*case):
         ("modal", True, 40, 3.0),
         slow("dynamic", False, 40, 3.0),
         slow("dynamic", True, 40, 3.0),
-        ("nodal", False, 40, 3.0),
+        slow("nodal", False, 40, 3.0),
         slow("nodal", True, 40, 3.0),
         slow("damped", True, 40, 3.0),
         # the liner's own rate is backward Euler: a half, once its relaxation within some microseconds is resolved
-        ("liner", False, 640, 1.6),
+        slow("liner", False, 640, 1.6),
         slow("liner", True, 640, 1.5),
     ],
 )

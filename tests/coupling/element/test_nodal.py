@@ -128,6 +128,7 @@ def test_operator_is_the_jacobian(housing):
         operator(change)
 
 
+@pytest.mark.slow
 def test_nodal_and_modal_bush_agree_in_a_run():
     histories = []
     mesh = dataclasses.replace(CYLINDER, axial=4, circumferential=24)
@@ -197,6 +198,7 @@ def test_modal_bush_under_a_rotating_load(measured):
         measured(f"minimum film thickness, tolerance {tolerance}", abs(gap - 1.0), limit)
 
 
+@pytest.mark.slow
 def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():
     motions, steps = [], 8
     for own in (False, True):

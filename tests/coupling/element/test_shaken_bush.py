@@ -8,6 +8,7 @@ import dataclasses
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+import pytest
 import scenes
 from elastic_scene import CYLINDER, HOUSING, JOURNAL, STEEL, bearing
 from exudyn.rigidBodyUtilities import RigidBodyInertia
@@ -81,6 +82,7 @@ def shaken(bush):
     return np.array(rows)
 
 
+@pytest.mark.slow
 def test_bore_of_a_shaken_housing_is_that_of_the_mesh(measured):
     """Root mean square over the bore, over its largest one in the run."""
     mesh = shaken(ehd.ANCFBush(mesh=CYLINDER, material=STEEL))

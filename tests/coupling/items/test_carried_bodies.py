@@ -132,6 +132,7 @@ def run(housing, steps=20, end=1e-3):
     return joint.history, momentum, abs(rest[-1, 5] - rest[0, 5] + lost - work) / lost
 
 
+@pytest.mark.slow
 def test_a_planar_housing_and_a_link_of_a_tree_carry_the_bush_like_a_body_in_space(measured):
     """The same equations in other coordinates, Newton to 1e-9 of a step's first residual."""
     expected, *_ = run("space")
@@ -200,7 +201,9 @@ def held(kind, bush):
 
 
 @pytest.mark.parametrize("dynamics", sample([False, True], 0), ids=["quasi-static", "dynamic"])
-@pytest.mark.parametrize("kind", JACOBIANS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=pytest.mark.slow if kind == "nodal FE body" else ()) for kind in JACOBIANS]
+)
 def test_modal_bushes_start_in_equilibrium_on_every_body(kind, dynamics, measured):
     # lighter than the beams
     material = dataclasses.replace(STEEL, density=100.0)

@@ -22,7 +22,6 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.items.object_mass import as_sparse
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from tests.sampling import sample
 
 SPEED, LOAD, PERIODS = 314.0, 4000.0, 3
 PERIOD = 2.0 * np.pi / SPEED
@@ -149,7 +148,8 @@ def test_periods_of_a_turning_load(kind, measured):
     measured("energy", energy, ENERGY.get(kind, 5e-3))
 
 
-@pytest.mark.parametrize("kind", sample(["ANCF beam", "reduced FE body"], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["ANCF beam", "reduced FE body"])
 def test_sparse_solver_takes_bodies_that_exudyn_differentiates_numerically(kind, measured):
     """The same steps and the same motion as with Exudyn's own Newton method, in hardly more iterations."""
     paths, iterations = [], []

@@ -12,6 +12,7 @@ import exudyn_ehd as ehd
 from tests.sampling import sample
 
 SPEED = 300.0
+SMALL_MAP = ehd.ImpedanceMap(n_theta=64, n_z=8, n_eccentricity=12, n_direction=17, largest_eccentricity_ratio=0.9)
 
 
 @pytest.fixture(autouse=True)
@@ -57,7 +58,7 @@ def test_a_joint_without_steps_says_so():
     "options",
     [
         {},
-        {"film": ehd.ImpedanceMap()},
+        {"film": SMALL_MAP},
         {"film": ehd.ShortBearing()},
         {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
         {"asperity": ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=2e10)},
@@ -136,7 +137,6 @@ FLEXIBLE = {
             for closure in (ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5))
         ],
         1,
-        2,
     ),
     ids=[f"{kind}-{closure}" for kind in FLEXIBLE for closure in ("swift", "elrod")],
 )

@@ -8,7 +8,6 @@ import pytest
 
 import exudyn_ehd as ehd
 from tests.benchmarks.accuracy.costs import bushes
-from tests.sampling import sample
 
 # iterations and Jacobians per step, as the guide gives them
 FULL = {
@@ -41,7 +40,8 @@ def counts(name, modified, steps=60):
     return done.newtonStepsCount / steps, done.newtonJacobiCount / steps
 
 
-@pytest.mark.parametrize(("modified", "stated"), sample([(False, FULL), (True, MODIFIED)], 0), ids=["full", "modified"])
+@pytest.mark.slow
+@pytest.mark.parametrize(("modified", "stated"), [(False, FULL), (True, MODIFIED)], ids=["full", "modified"])
 def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, stated):
     found = {name: counts(name, modified) for name in stated}
     for name, (iterations, jacobians) in found.items():

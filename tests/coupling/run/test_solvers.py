@@ -10,7 +10,6 @@ import toy
 from exudyn_ehd.coupling import api
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 from exudyn_ehd.status import InputError
-from tests.sampling import sample
 
 GRAVITY = [0.0, -9.81, 0.0]
 
@@ -59,7 +58,8 @@ def test_planar_body_moves_as_the_spatial_one():
     assert np.abs(results[0].motion[:, [2, 3, 9]]).max() == 0.0
 
 
-@pytest.mark.parametrize("node", sample(["Rxyz", "RotVec", "2D"], 0))
+@pytest.mark.slow
+@pytest.mark.parametrize("node", ["Rxyz", "RotVec", "2D"])
 def test_implicit_and_explicit_agree(node):
     results = []
     for solver, steps in ((exu.DynamicSolverType.RK44, 1000), (exu.DynamicSolverType.GeneralizedAlpha, 4000)):

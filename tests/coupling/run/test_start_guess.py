@@ -105,6 +105,7 @@ def test_newmark_and_index_2(newmark):
     assert less < 0.8 * more
 
 
+@pytest.mark.slow
 def test_coarse_steps_of_a_crank_don_t_chatter():
     """From zero accelerations steps of 1.5 degrees start farther from the solution than the film is thick."""
     settings, fine = turn(240), turn(1440)
