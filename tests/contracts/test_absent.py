@@ -28,6 +28,7 @@ CLOSURES = {
 }
 HOT = ehd.Lubricant(temperature_law=ehd.ReynoldsTemperature(point=(325.0, 0.02), coefficient=0.03), temperature=325.0)
 ASPERITY = ehd.GreenwoodTripp(composite_roughness=3e-6, composite_modulus=1e9)
+SMALL_MAP = ehd.ImpedanceMap(n_theta=64, n_z=8, n_eccentricity=12, n_direction=17, largest_eccentricity_ratio=0.9)
 LINER = ehd.ElasticLiner(thickness=2e-3, youngs_modulus=1e10)
 
 
@@ -95,7 +96,7 @@ EFFECTS = {
     "classic": (("film.solvers.sor",), {"film": ehd.ClassicSOR(n_theta=32, n_z=6), "cavitation": ehd.Gumbel()}),
     "impedance map": (
         ("film.solvers.impedance_map", "joint.model.impedance"),
-        {"film": ehd.ImpedanceMap(), "end_pressures": (0.0, 0.0)},
+        {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "mass conservation": (
         ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),

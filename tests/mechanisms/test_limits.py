@@ -23,6 +23,7 @@ def _bearing(**options):
     )
 
 
+@pytest.mark.slow
 def test_slider_crank_converges_to_the_ideal_joint(example):
     """With viscosity proportional to clearance the film's scale of force grows
     as 1/c, so that e = eps c falls as c^2."""

@@ -10,6 +10,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.step_rates import next_start
+from tests.sampling import sample
 
 CLOSURES = {
     "full": ehd.FullSommerfeld(), "gumbel": ehd.Gumbel(), "swift-stieber": ehd.SwiftStieber(),
@@ -100,7 +101,7 @@ def pin(cavitation, **options):
     return ehd.JournalBearing(cavitation=cavitation, **(values | options))
 
 
-@pytest.mark.parametrize("rho", [0.9, 0.5])
+@pytest.mark.parametrize("rho", sample([0.9, 0.5], 0))
 def test_gap_of_a_four_bar_at_coarse_steps(rho):
     """8.894 um with 2880 steps a turn; a film that takes the velocities has 4.66 and 3.20 with 100 steps.
 
@@ -110,6 +111,7 @@ def test_gap_of_a_four_bar_at_coarse_steps(rho):
         assert smallest_gap(pin(ehd.SwiftStieber()), steps, rho) == pytest.approx(8.894, rel=tolerance)
 
 
+@pytest.mark.slow
 def test_gap_of_a_four_bar_with_cavities_that_remember():
     """7.636 um with 2880 steps a turn; backward Euler in the void is of first order in the step."""
     for steps, tolerance in ((100, 0.015), (200, 4e-3), (360, 2e-3)):

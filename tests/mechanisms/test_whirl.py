@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from tests.sampling import sample
 
 SPEED = 300.0
 CLEARANCE = 50e-6
@@ -46,7 +45,8 @@ def _free_vibration(planar_rotor, bearing, mass_ratio):
     return eq, growth / SPEED, frequency / SPEED
 
 
-@pytest.mark.parametrize("film", sample([ehd.FiniteLength(), ehd.ShortBearing()], 0))
+@pytest.mark.slow
+@pytest.mark.parametrize("film", [ehd.FiniteLength(), ehd.ShortBearing()])
 def test_threshold(planar_rotor, film):
     bearing = _bearing(film)
     growth = {}

@@ -18,6 +18,7 @@ from exudyn_ehd.pictures.style import TYPE_SIZE, styled
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.report.pictures import summary_figure, work_precision
 from tests.benchmarks.accuracy.table import DATA, Row, read_table
+from tests.sampling import sample
 
 ROWS, _ = read_table(DATA / "steady_800_film.csv", Row)
 
@@ -63,7 +64,7 @@ def pixels(figure):
     return np.frombuffer(file.getvalue(), np.uint8)
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", sample(list(PICTURES), *range(7), 8))
 def test_pictures_do_not_take_over_type_that_others_left(name, film, history):
     expected = pixels(PICTURES[name](film, history))
     with matplotlib.rc_context(LEFT_BEHIND):

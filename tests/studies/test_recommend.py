@@ -80,6 +80,7 @@ def _solid(ratio, kappa, kind=ehd.ModalBush, **options):
     return _bearing(ratio, bush=bush)
 
 
+@pytest.mark.slow
 def test_random_bearings():
     # the fine grid is good to a tenth of the smallest error asked for
     rng = np.random.default_rng(7)

@@ -39,6 +39,7 @@ def test_steady_scene():
         advice_for_scene(scene, 0.01, "colour")
 
 
+@pytest.mark.slow
 def test_moving_scene():
     """Film and steps from their own tables; the run with both keeps the error."""
     scene = measured.step_load_orbit()

@@ -41,6 +41,7 @@ def solve(bush):
     return ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.6)
 
 
+@pytest.mark.slow
 def test_thin_solid_bush_is_a_liner():
     """Columns leave out what neighbours do, at the edges and where the pressure bends.
 

@@ -21,7 +21,6 @@ from exudyn_ehd.film.solvers.impedance_map import (
     interpolate,
 )
 from exudyn_ehd.joint.model.build import build_model
-from tests.sampling import sample
 
 SMALL = ehd.ImpedanceMap(n_theta=64, n_z=8, n_eccentricity=12, n_direction=17, largest_eccentricity_ratio=0.9)
 C = 25e-6
@@ -45,7 +44,8 @@ def _motion(rng, largest=0.98, speed=150.0):
     return motion
 
 
-@pytest.mark.parametrize("closure", sample([ehd.SwiftStieber(), ehd.Gumbel()], 0), ids=lambda c: type(c).__name__)
+@pytest.mark.slow
+@pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.Gumbel()], ids=lambda c: type(c).__name__)
 def test_default_map_within_one_percent_of_the_film(make_bearing, measured, closure):
     """Relative to the force at the very state: rotation, squeeze and both, any orientation of the grid."""
     model = build_model(make_bearing(film=ehd.ImpedanceMap(), cavitation=closure))

@@ -55,7 +55,7 @@ def solve(bush, ratio=0.8, tilt=(0.0, 0.0), **options):
     return ehd.steady(make_bearing(bush, **options), speed=SPEED, eccentricity_ratio=ratio, tilt=tilt)
 
 
-@pytest.mark.parametrize("make", [modal, nodal], ids=["modal", "nodal"])
+@pytest.mark.parametrize("make", sample([modal, nodal], 1), ids=["modal", "nodal"])
 def test_rigid_limit_is_reached_at_first_order_in_the_compliance(make):
     rigid = solve(None)
     loss = [1.0 - solve(make(E)).peak_pressure / rigid.peak_pressure for E in (2.1e13, 2.1e14, 2.1e15)]
@@ -111,7 +111,7 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     [pytest.param(ehd.SwiftStieber(), id="swift"), pytest.param(ehd.Gumbel(), id="gumbel", marks=pytest.mark.slow)],
 )
 @pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9], 2), ids=["steel", "aluminium", "polymer"])
-@pytest.mark.parametrize("tilt", [(0.0, 0.0), (0.0, 1e-4)], ids=["aligned", "tilted"])
+@pytest.mark.parametrize("tilt", sample([((0.0, 0.0),), ((0.0, 1e-4),)], 0), ids=["aligned", "tilted"])
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
     reduced, full = (solve(b, tilt=tilt, film=FINER_FILM, cavitation=cavitation) for b in bushes)
@@ -120,7 +120,8 @@ def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavit
     assert np.hypot(*reduced.force[:2]) == pytest.approx(np.hypot(*full.force[:2]), rel=0.01)
 
 
-@pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9], 0), ids=["steel", "aluminium", "polymer"])
+@pytest.mark.slow
+@pytest.mark.parametrize("modulus", [2.1e11, 7e10, 3e9], ids=["steel", "aluminium", "polymer"])
 def test_default_modes_suit_the_default_film(modulus):
     """Within half a per cent of a converged film on fine modes, where finer modes on the same film are not."""
     default = ehd.FiniteLength()
@@ -134,9 +135,8 @@ def test_default_modes_suit_the_default_film(modulus):
     assert abs(finer.minimum_gap - truth.minimum_gap) > abs(got.minimum_gap - truth.minimum_gap)
 
 
-@pytest.mark.parametrize(
-    ("modulus", "tilt"), sample([(2.1e10, 0.0), (2.1e11, 1e-4)], 1), ids=["soft, aligned", "steel, tilted"]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("modulus", "tilt"), [(2.1e10, 0.0), (2.1e11, 1e-4)], ids=["soft, aligned", "steel, tilted"])
 def test_many_modes_are_within_a_thousandth_of_the_nodes(modulus, tilt):
     bushes = modal(modulus, FINE, tolerance=5e-3, tilted=tilt > 0.0), nodal(modulus, FINE)
     reduced, full = (solve(b, film=FINE_FILM, tilt=(0.0, tilt)) for b in bushes)
@@ -180,7 +180,7 @@ def test_bore_settles_in_few_newton_steps():
     assert np.allclose(evaluation.bore_load, held, rtol=0, atol=1e-6)
 
 
-@pytest.mark.parametrize("make", [modal, nodal], ids=["modal", "nodal"])
+@pytest.mark.parametrize("make", sample([modal, nodal], 0), ids=["modal", "nodal"])
 def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
     bearing = make_bearing(make())
     load = (0.0, -20e3)

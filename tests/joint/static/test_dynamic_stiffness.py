@@ -67,7 +67,7 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scene", sample(list(SCENES), 0, 1, 4))
+@pytest.mark.parametrize("scene", sample(list(SCENES), 4))
 def test_response_is_that_of_the_film_in_time(scene):
     """Backward Euler's error is of first order in the step: extrapolated, it leaves some thousandths."""
     made = bearing(**SCENES[scene])

@@ -83,6 +83,7 @@ def test_effects_of_some_names(monkeypatch):
     assert 2.0 < step / evaluation < 4.0
 
 
+@pytest.mark.slow
 def test_bushes():
     cases = {name: bushes.CASES[name] for name in (bushes.RIGID, "`ElasticLiner`", "`ModalBush`")}
     # a liner as soft as rubber is pressed through its film

@@ -10,6 +10,7 @@ from tests.benchmarks.accuracy.__main__ import main
 from tests.benchmarks.accuracy.report import pictures
 from tests.benchmarks.accuracy.report.front import cheapest
 from tests.benchmarks.accuracy.table import DATA, Cost, Row, read_table
+from tests.sampling import sample
 
 
 def _block(name, quantity):
@@ -17,7 +18,8 @@ def _block(name, quantity):
 
 
 @pytest.mark.parametrize(
-    ("name", "quantity"), [("steady_800_film", "load"), ("orbit_film", "path"), ("orbit_integration", "path")]
+    ("name", "quantity"),
+    sample([("steady_800_film", "load"), ("orbit_film", "path"), ("orbit_integration", "path")], 0),
 )
 def test_every_point_is_labelled_apart(name, quantity):
     rows = _block(name, quantity)
@@ -51,9 +53,13 @@ def test_summary():
     assert len(lines) == 7
 
 
-def test_command_line(tmp_path, capsys):
+def test_scenes_are_listed(capsys):
     main(["--list"])
     assert "orbit_film" in capsys.readouterr().out
+
+
+@pytest.mark.slow
+def test_pictures_are_drawn_from_the_command_line(tmp_path):
     main(["--draw", "--only", "steady_800_film", "--results", str(tmp_path)])
     assert (tmp_path / "steady_800_film_load.png").stat().st_size > 10_000
     assert (tmp_path / "summary.png").stat().st_size > 10_000
