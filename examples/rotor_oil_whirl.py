@@ -10,19 +10,19 @@ shaft's bend. The bearings' journals are the end nodes themselves.
 Three things are compared.
 
 * Linear theory: `equilibrium` gives position, K and C of a bearing at each speed; with the mass and stiffness matrices
-of the shaft (from Exudyn's
-  ``ComputeLinearizedSystem``) they make the rotor's eigenvalues. Where the largest real part changes sign, whirl
-  begins. Beside it the textbook's rotor of one mass on a massless shaft, for which the threshold needs only the
-  critical mass and whirl ratio that `equilibrium` reports: journals' mass + disc's mass / (1 - (nu / omega_n)^2) =
-  critical mass (J. W. Lund, J. Tribology 109 (1987) 37, with the shaft in series).
+  of the shaft (from Exudyn's ``ComputeLinearizedSystem``) they make the rotor's eigenvalues. Where the largest real
+  part changes sign, whirl begins. Next to it the textbook's rotor of one mass on a massless shaft, for which the
+  threshold needs only the critical mass and whirl ratio that `equilibrium` reports: journals' mass + disc's mass / (1 -
+  (nu / omega_n)^2) = critical mass (J. W. Lund, J. Tribology 109 (1987) 37, with the shaft in series).
 * Free vibration in time, started in the whirling mode at two speeds about the threshold: growth and frequency against
-the eigenvalue. * The run-up. A light tap on the disc every 0.2 s is what an instability can grow from. Beyond the
-threshold a whirl grows, first at the eigenvalue's
-  frequency; when it fills the clearance it jumps to half the spin, the mean speed of the oil. When half the spin comes
-  near the shaft's first bending frequency, the whirl bends away from it and stays a few per cent below that frequency
-  however fast the rotor turns: whip. It bends the shaft by fifty clearances. The journals stay on their films, but
-  barely: at exactly half the spin a film has no wedge, so that it needs all of its eccentricity to hold a journal that
-  whirls close to it. The minimum film thickness is below a micrometre, where a real bearing rubs.
+  the eigenvalue.
+* The run-up. A light tap on the disc every 0.2 s is what an instability can grow from. Beyond the threshold a whirl
+  grows, first at the eigenvalue's frequency; when it fills the clearance it jumps to half the spin, the mean speed of
+  the oil. When half the spin comes near the shaft's first bending frequency, the whirl bends away from it and stays a
+  few per cent below that frequency however fast the rotor turns: whip. It bends the shaft by fifty clearances. The
+  journals stay on their films, but barely: at exactly half the spin a film has no wedge, so that it needs all of its
+  eccentricity to hold a journal that whirls close to it. The minimum film thickness is below a micrometre, where a real
+  bearing rubs.
 
 K and C belong to small motions: the frequency of the limit cycle is not the eigenvalue's, and only the nonlinear film
 gives it. Gyroscopic moments are left out of the linear theory, since the disc in the middle does not tilt in the first

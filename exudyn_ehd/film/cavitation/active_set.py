@@ -186,7 +186,7 @@ def solve_active_set(kx, kz, b, fixed, pc, active, order, old_order, number, ban
 
 @njit(cache=True)
 def clip_pressure(linear, fixed, pc, P_out, active_out):
-    """Gumbel: P = max(linear, pc) at free vertices; active marks where nothing was cut."""
+    """Gümbel: P = max(linear, pc) at free vertices; active marks where nothing was cut."""
     n, m = linear.shape
     for i in range(n):
         for j in range(m):

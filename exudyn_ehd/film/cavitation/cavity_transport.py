@@ -1,4 +1,4 @@
-"""The mass-conserving film with its cavity as what it is: oil carried along one way, by the film's own motion.
+"""The mass-conserving film with its cavity as what it is: oil convected one way, by the film's own motion.
 
 With the pressures P of the full vertices and the fills of the cavitated ones the balance of
 `exudyn_ehd.film.cavitation.elrod_adams` reads
@@ -6,8 +6,8 @@ With the pressures P of the full vertices and the fills of the cavitated ones th
     A P - E w = b,    D fill = U fill + K (P - Pc) + c,    w = R fill.
 
 A is the symmetric matrix of the Poiseuille conductances between full vertices; they end at the cavity, where the ring
-is cut. D (diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K what the pressure
-drives in from full neighbours, and w, one number per vertex of the reformation front, what the front receives from the
+is cut. D (diagonal) is what leaves a cavitated vertex, U what its neighbours upstream hand on, K the pressure-driven
+inflow from full neighbours, and w, one number per vertex of the reformation front, what the front receives from the
 cavity. As the carriers in theta and in z have one sign each, the fills follow from each other along the flow,
 ``fill = T (K (P - Pc) + c)`` with ``T = (D - U)^-1``, and
 

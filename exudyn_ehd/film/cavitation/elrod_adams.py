@@ -13,8 +13,8 @@ the sets, so that the film exists and is unique. Should the sets not converge, t
 growing pseudo time steps, whose storage makes the matrices dominant enough.
 
 Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
-the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity, fronts
-longer than a few columns) a band of the folded ring. The sets alone decide which.
+the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity,
+reformation fronts longer than a few columns) a band of the folded ring. The sets alone decide which.
 
 Sources: H. G. Elrod, J. Lubrication Technology 103 (1981) 350; the one-unknown form after F. M. Alakhramsing, R. van
 Ostayen, R. Eling, Lubricants 3 (2015) 256, and T. Woloszynski, P. Podsiadlo, G. W. Stachowiak, Tribology Letters 58
