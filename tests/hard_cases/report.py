@@ -1,6 +1,6 @@
 """Run the hard cases and the film solver's record, and print their tables.
 
-    python tests/hard_cases/report.py                       # all cases, 2000 random states per closure (what CI runs)
+    python tests/hard_cases/report.py                       # all cases, 2000 random states per closure
     python tests/hard_cases/report.py --states 100000       # the long record
     python tests/hard_cases/report.py --states 100000 --write README.md
 
