@@ -71,7 +71,7 @@ def very_soft():
     return run
 
 
-@hard_case("soft bush under a step load", rejected=20, newton=6.0)
+@hard_case("soft bush under a step load", rejected=20, newton=6.0, slow=True)
 def soft_step():
     """E = 1e7 Pa and 150 N at once: the journal runs ahead of its film into a
     wall that yields; eccentricity above the clearance."""

@@ -6,7 +6,6 @@ import pytest
 from exudyn.utilities import InertiaCuboid
 
 import exudyn_ehd as ehd
-from tests.sampling import sample
 
 CLEARANCE = 50e-6
 SPEED = 200.0
@@ -63,7 +62,8 @@ def test_node_types(reference, node):
     assert np.allclose(got.force, reference.force, atol=1e-4 * np.abs(reference.force).max())
 
 
-@pytest.mark.parametrize("node", sample([exu.NodeType.RotationRxyz, exu.NodeType.RotationRotationVector], 1))
+@pytest.mark.slow
+@pytest.mark.parametrize("node", [exu.NodeType.RotationRxyz, exu.NodeType.RotationRotationVector])
 def test_explicit_and_implicit_solvers(node):
     implicit = _history(node, steps=400)
     explicit = _history(node, steps=2000, solver=exu.DynamicSolverType.RK44)

@@ -55,6 +55,7 @@ def test_orbit_at_the_listed_times(planar_rotor, film):
     assert history.time[k] == pytest.approx(0.014, abs=5e-4)
 
 
+@pytest.mark.slow
 def test_orbit_is_converged_in_grid_and_step(planar_rotor):
     reference = _orbit(planar_rotor, ehd.FiniteLength(n_theta=192, n_z=16), 2.5e-5, 0.01)
     plain = _orbit(planar_rotor, ehd.FiniteLength(), 5e-5, 0.01)

@@ -11,6 +11,7 @@ import math
 import pytest
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 SPEED = 100.0
 INLET = {0.0: ehd.Periodic(), 1.0: ehd.MaximumGap()}
@@ -70,13 +71,17 @@ def test_the_inlet_matters(make_bearing):
 
 @pytest.mark.parametrize(
     ("n_theta", "n_z", "moderate", "high"),
-    [
-        (48, 6, 0.009, 0.033),
-        (64, 8, 0.005, 0.017),
-        (96, 10, 0.002, 0.007),
-        (128, 12, 0.001, 0.004),
-        (192, 16, 0.0005, 0.0015),
-    ],
+    sample(
+        [
+            (48, 6, 0.009, 0.033),
+            (64, 8, 0.005, 0.017),
+            (96, 10, 0.002, 0.007),
+            (128, 12, 0.001, 0.004),
+            (192, 16, 0.0005, 0.0015),
+        ],
+        0,
+        3,
+    ),
 )
 def test_documented_grids_in_any_direction(make_bearing, table, measured, n_theta, n_z, moderate, high):
     """The table in the docstring of `FiniteLength`: largest error of So, whatever L/D and wherever the journal points.

@@ -341,6 +341,7 @@ def energy_errors(steps_per_period, periods, **options):
     return np.array(history) / start - 1, before, bush.momentum()
 
 
+@pytest.mark.slow
 def test_energy_error_of_a_free_undamped_cylinder_falls_at_second_order():
     largest = [np.abs(energy_errors(n, 2, amplitude=0.02)[0]).max() for n in (40, 80, 160)]
     rates = np.log2(np.array(largest[:-1]) / largest[1:])

@@ -63,6 +63,7 @@ def run(bush, end, steps, radius=0.9, **options):
     return scene
 
 
+@pytest.mark.slow
 def test_slow_load_finds_the_quasi_static_bush():
     """The journal's path differs by the square of the load's frequency over the bush's: in proportion to the
     density."""

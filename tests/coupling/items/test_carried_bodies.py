@@ -229,7 +229,7 @@ def held_by(kind, bush, steps=10):
 
 
 @pytest.mark.parametrize(
-    "kind", sample(["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"], 0, 3)
+    "kind", sample(["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"], 0)
 )
 def test_flexible_bodies_carry_a_bush_under_a_film(kind, measured):
     """The housing's load alone gives momentum, 2e-4 Ns against a film force of 17 kN; as much as with a rigid

@@ -256,6 +256,7 @@ def test_suction_that_is_cut_off_spoils_no_balance():
     assert np.abs(e.residual[~model.grid.fixed]).max() < 1e-9 * flow
 
 
+@pytest.mark.slow
 def test_suction_that_runs_away_is_balanced_or_refused():
     """Nearly touched on a very soft liner, sliding along: Newton's linear pressure may run away where it is cut off."""
     model = bearing_on_liner(ehd.Gumbel(), 22720070.59878464, 0.02, 64, 16)

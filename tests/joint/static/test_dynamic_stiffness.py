@@ -7,7 +7,6 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_study_model
-from tests.sampling import sample
 
 R, L, C, SPEED, VISCOSITY = 0.025, 0.025, 25e-6, 300.0, 0.02
 ELROD = ehd.ElrodAdams(cavity_pressure=-1e5)
@@ -67,7 +66,8 @@ SCENES = {
 }
 
 
-@pytest.mark.parametrize("scene", sample(list(SCENES), 4))
+@pytest.mark.slow
+@pytest.mark.parametrize("scene", SCENES)
 def test_response_is_that_of_the_film_in_time(scene):
     """Backward Euler's error is of first order in the step: extrapolated, it leaves some thousandths."""
     made = bearing(**SCENES[scene])
