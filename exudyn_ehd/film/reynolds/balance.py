@@ -1,4 +1,4 @@
-"""Mass balance of a film and its derivatives, for every film whose gap or density answers to the pressure.
+"""Mass balance of a film and its derivatives, for every film whose gap or density follows the pressure.
 
 The film at one state is a set of coefficients, `FilmTerms`. With the mean
 density rho of a link's ends and the fill of its upstream end,
@@ -7,8 +7,8 @@ density rho of a link's ends and the fill of its upstream end,
     storage of a vertex          area (rho (grow fill + known) + kept),
 
 the balance is what leaves a vertex and what it stores. Its derivatives to the unknowns (P
-where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: what
-the density answers here, what the gap answers in `exudyn_ehd.film.solvers.liner.gap_response`.
+where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: those
+through the density here, those through the gap in `exudyn_ehd.film.solvers.liner.gap_response`.
 """
 
 from __future__ import annotations

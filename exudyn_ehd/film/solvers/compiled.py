@@ -1,5 +1,5 @@
 """`newton.newton` compiled as a whole for two films so fast that calls from Python would cost half as much again: one
-that only a liner answers to, and one between rigid surfaces whose density does."""
+on a liner without further effects, and one between rigid surfaces whose density follows its pressure."""
 
 from __future__ import annotations
 

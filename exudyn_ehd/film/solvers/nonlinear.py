@@ -308,7 +308,7 @@ class NonlinearFilmSolver(FilmSolver):
         solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
 
     def motion_columns(self, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
-        """Derivatives (10, count) of the balances at the unknowns to the motion of a rigid journal, as of
+        """Derivatives (10, count) of the balances at the unknowns to the motion of a rigid journal, as for
         `exudyn_ehd.film.sensitivity.rigid.motion_columns`."""
         w, e = self.work, self.elements
         by_gap, by_rate = e.storage_gradients()

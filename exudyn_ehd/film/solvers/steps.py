@@ -43,11 +43,11 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
-def factor_film(u, density, terms, fixed, answers, matrix, active):
+def factor_film(u, density, terms, fixed, liner, matrix, active):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 
-    ``density``: (rho, drho/dP), None of a constant one; ``answers``: (gap slopes, load, rates, beta,
-    by) of a liner, ``by`` of `link_gradients`.
+    ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by)
+    of one, ``by`` of `link_gradients`.
     """
     P, fill, full = u
     rho, rho_P = density
@@ -56,8 +56,8 @@ def factor_film(u, density, terms, fixed, answers, matrix, active):
     film = terms_of(terms, fixed)
     count, width = number_cells(active, film.kx, order, number)
     film_slopes(fill, full, rho, rho_P, film, slopes)
-    if answers is not None:
-        gap_slopes, load, rates, beta, by = answers
+    if liner is not None:
+        gap_slopes, load, rates, beta, by = liner
         add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
     assemble(film.kx, film.kz, slopes, number, order, count, L, U)
@@ -148,13 +148,13 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
 
     All in pressures on the elements, the cavity's among them, the peak at least the least one.
     What a film that clips cuts off may lie far below pc and drops over the bent gaps, so that
-    its steps are small by what presses and by ``opening``, the pressure that opens the smallest
+    its steps are small by the pressure and by ``opening``, the pressure that opens the smallest
     gap. Infinite for steps that are not finite.
 
     Parameters
     ----------
     elements : (load, gaps, gap slopes), as fields
-    end, kinds : as of `take_step`; (clips, whether vertices at pc are no unknowns)
+    end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
     """
     clips, chooses = kinds

@@ -19,7 +19,8 @@ class Limit(NamedTuple):
     below: bool = False
 
 
-# An effect matters where leaving it out would change load, peak pressure, friction or film by some 5 to 10 %.
+# An effect matters where leaving it out would change load, peak pressure, friction or minimum film thickness by some 5
+# to 10 %.
 # Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),

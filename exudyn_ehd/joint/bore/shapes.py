@@ -69,9 +69,9 @@ class Bore(Protocol):
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """``X^T B S`` (size, k) for the first columns X of the tiles ``fields`` and the stencil B.
 
-        As of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`.
+        B is that of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`.
 
-        B has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
+        It has five weights at five flat vertices per row, both (count, 5), the first of which is the row's own.
         """
 
     def product(self, field: np.ndarray) -> np.ndarray:

@@ -55,7 +55,7 @@ def test_slight_films_rupture_without_turning_in_circles(contact):
     found = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(motion)
     near = motion.copy()
     near[0] *= 1.001
-    beside = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(near)
-    assert found.status is beside.status is ehd.Status.CONVERGED
-    assert max(found.iterations, beside.iterations) < 40
-    assert np.allclose(found.wrench, beside.wrench, rtol=1e-2, atol=1e-3 * np.abs(beside.wrench).max())
+    other = build_model(bearing(ehd.ElrodAdams(), contact=contact)).evaluate_steady(near)
+    assert found.status is other.status is ehd.Status.CONVERGED
+    assert max(found.iterations, other.iterations) < 40
+    assert np.allclose(found.wrench, other.wrench, rtol=1e-2, atol=1e-3 * np.abs(other.wrench).max())

@@ -45,7 +45,7 @@ def liner_residual(
 def plain_residual(
     P, fixed, numbers, kinds, load_fields, rigid, G, delta_old, gap_fields, metric, terms, known, rates, out
 ):  # fmt: skip
-    """Balance of a film that only the liner answers to; returns (norm of what does not hold, smallest gap).
+    """Balance of a film on a liner without further effects; returns (norm of what does not hold, smallest gap).
 
     ``numbers``: (pc, vx, vz, beta); ``kinds``: (clips, whether vertices at pc are no unknowns).
     """
