@@ -216,6 +216,7 @@ class OilFields(NamedTuple):
     P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
     ratio : viscosity over the reference; None where that is one
     ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
+    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line
     """
 
     P: np.ndarray
@@ -224,6 +225,7 @@ class OilFields(NamedTuple):
     ratio_q: np.ndarray | None = None
     ratio_h: np.ndarray | None = None
     ratio_v: np.ndarray | None = None
+    beyond: bool = False
 
 
 class Loads(NamedTuple):

@@ -217,9 +217,18 @@ def test_finite_over_the_range_of_states(speed, eccentricity):
 
 
 def test_no_pressure_in_a_bearing_is_a_status():
-    e = make(pressure=ehd.BarusPressure(coefficient=1e-5)).evaluate(MOTION)
+    """With the loads of a law that goes on in a line, and their exact tangent: Newton's method comes back by them."""
+    model = make(pressure=ehd.BarusPressure(coefficient=1e-5))
+    e = model.evaluate(MOTION)
     assert e.status is ehd.Status.NO_PRESSURE
-    assert np.all(np.isnan(e.wrench)) and np.all(np.isnan(e.tangent()))
+    tangent = e.tangent()
+    for k, h in ((0, 1e-12), (4, 1e-7)):
+        ends = [model.evaluate(MOTION + sign * h * np.eye(10)[k]) for sign in (1.0, -1.0)]
+        assert all(end.status is ehd.Status.NO_PRESSURE for end in ends)
+        difference = (ends[0].wrench - ends[1].wrench) / (2.0 * h)
+        np.testing.assert_allclose(tangent[:2, k], difference[:2], rtol=1e-5)
+    with pytest.raises(ehd.FilmError, match="NO_PRESSURE"):
+        ehd.steady(model.bearing, speed=MOTION[8], eccentricity_ratio=0.5)
 
 
 def test_couette_kernel_equals_its_twin():

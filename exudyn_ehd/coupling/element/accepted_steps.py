@@ -25,6 +25,7 @@ from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.steady_temperature import is_too_hot
 from exudyn_ehd.joint.step_rates import StepStart, next_start
+from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -196,6 +197,8 @@ class AcceptedSteps:
     def _check(self, start: float, trial: Trial, step: float, has_film: bool) -> None:
         """Raise `FilmError` for a film that can't go on, warn of forces that ring."""
         failures = self.film.failures
+        if trial.status == Status.NO_PRESSURE and (step > 0.0 or solver_state.is_implicit(self.solver)):
+            raise failures.no_film(start, trial, explicit=False)
         if has_film and (through := failures.pressed_through(start, trial)) is not None:
             raise through
         temperature = getattr(self.memory, "temperature", None)

@@ -27,6 +27,8 @@ from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
+# Iterates in a row behind the end of a pressure law; two lead back, and with more Newton's method may converge there.
+MOST_BEYOND = 3
 
 
 class FilmElement:
@@ -59,6 +61,7 @@ class FilmElement:
         self.seen: list[float] = []
         self.steps = AcceptedSteps(self)
         self._trial: Trial | None = None
+        self._beyond = 0
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -70,8 +73,7 @@ class FilmElement:
         if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
             steps.accept(mbs, start, solvers)
         trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not steps.is_idle)
-        if trial.status != Status.CONVERGED:
-            self._refuse(t, trial)
+        if self._refuses(t, trial):
             return np.full(len(q), np.nan)
         if steps.control is not None and t > start and steps.control.rejects(trial.motion, steps.solver):
             return np.full(len(q), np.nan)
@@ -82,16 +84,23 @@ class FilmElement:
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
         trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
-        if trial.status != Status.CONVERGED:
-            self._refuse(t, trial)
+        if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
         return self._jacobian(mbs, trial, f_q, f_qt)
 
-    def _refuse(self, t: float, trial: Trial) -> None:
-        """Return if the solver can still reject the step, else raise."""
+    def _refuses(self, t: float, trial: Trial) -> bool:
+        """Whether the solver shall reject the step; raise if there is no film and it can't.
+
+        A film behind the end of a pressure law has forces that lead Newton's method back: where cavities have closed
+        since the last step, its first iterate may be too fast for the oil however short the step.
+        """
+        if trial.status == Status.CONVERGED:
+            return False
         solver = self.steps.solver
         if not solver_state.can_reject_step(solver):
             raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(solver))
+        known = trial.evaluation is not None and np.isfinite(trial.evaluation.wrench.sum())
+        return self._beyond > MOST_BEYOND or not known
 
     def _try(
         self,
@@ -130,6 +139,7 @@ class FilmElement:
             evaluation = self.model.evaluate(motion, memory, step, spin)
             self.evaluations += 1
         self._trial = Trial(q, q_t, memory, step, begin, bodies, motion, evaluation)
+        self._beyond = self._beyond + 1 if self._trial.status == Status.NO_PRESSURE else 0
         return self._trial
 
     def _move(
@@ -204,6 +214,11 @@ class FilmElement:
         journal.geometric(mbs, q[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
         relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
         return stiffness, damping, motion_q, motion_qt
+
+    def require_pressure(self, time: float) -> None:
+        """Raise if the run has ended behind the end of a pressure law."""
+        if self._trial is not None and self._trial.status == Status.NO_PRESSURE:
+            raise self.failures.no_film(time, self._trial, explicit=False)
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""

@@ -144,6 +144,8 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     """Turn Exudyn's errors into this package's; errors of other user functions pass."""
     try:
         yield
+        for joint in joints_of(mbs):
+            joint.element.require_pressure(mbs.systemData.GetTime())
     except exu.ExudynError as error:
         cause: BaseException = error
         while cause.__cause__ is not None:

@@ -27,6 +27,9 @@ TABLE_INTERVALS = 4096
 # The table ends where the oil is this much thicker (a solid, for a film), or at this pressure.
 LARGEST_RATIO = 1e7
 LARGEST_PRESSURE = 5e9
+# Slope dp/dq of the line behind a law's end: steep enough for Newton's method to come back with its next step to where
+# the law is steep, and no steeper.
+BEYOND = 1e3
 _unsigned = np.uint64
 _ONE, _ROW = _unsigned(1), _unsigned(7)
 _GAUSS_X, _GAUSS_W = np.polynomial.legendre.leggauss(8)
@@ -49,7 +52,7 @@ class PressureLaw(Protocol):
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
         """p(q), mu(p)/mu_0 (= dp/dq of an incompressible film) and its derivative to q (1/Pa).
 
-        False where q has no p.
+        False where q has no p: there p goes on in a line, for iterations that have gone too far.
         """
 
 
@@ -115,7 +118,7 @@ class BarusPressure:
         return -np.expm1(-self.coefficient * p) / self.coefficient
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p."""
+        """p(q), r = dp/dq and dr/dq (1/Pa) for fields (n, m); False where q has no p and goes on in a line."""
         return bool(barus_inverse(q, self.coefficient, p_out, ratio_out, ratio_q_out))
 
 
@@ -254,8 +257,9 @@ class RoelandsTable(HermiteTable):
 
 @njit(cache=True)
 def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
-    """p, r and dr/dq of Barus' law; False if q >= 1 / alpha anywhere."""
+    """p, r and dr/dq of Barus' law; False if q >= 1 / alpha anywhere, where p is on the tangent of slope BEYOND."""
     n, m = q.shape
+    inside = True
     for i in range(n):
         for j in range(m):
             if q[i, j] == 0.0:
@@ -265,17 +269,22 @@ def barus_inverse(q, alpha, p_out, ratio_out, ratio_q_out):
                 continue
             s = 1.0 - alpha * q[i, j]
             if not s > 0.0:
-                return False
+                inside = False
+                p_out[i, j] = (np.log(BEYOND) + 1.0 - BEYOND * s) / alpha
+                ratio_out[i, j] = BEYOND
+                ratio_q_out[i, j] = 0.0
+                continue
             r = 1.0 / s
             p_out[i, j] = -np.log1p(-alpha * q[i, j]) / alpha
             ratio_out[i, j] = r
             ratio_q_out[i, j] = alpha * r * r
-    return True
+    return inside
 
 
 @njit(cache=True)
 def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio_out, ratio_q_out):
-    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table.
+    """p(q) by quintic Hermite interpolation, with its two derivatives; Barus' law for q <= 0; False beyond the table,
+    where p goes on with the slope BEYOND.
 
     ``table`` (intervals, 7): 1 / width and the six coefficients in t = (q - q_k) / width; ``bucket`` (b + 1,): interval
     at the start of each of b equal parts of q.
@@ -284,6 +293,7 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
     c = table.reshape(-1)
     end = q_table[-1]
     last = _unsigned(bucket.size - 2)
+    inside = True
     for k in range(x.size):
         v = x[k]
         if v == 0.0:
@@ -310,8 +320,9 @@ def hermite_inverse(q, alpha, q_table, table, bucket, bucket_scale, p_out, ratio
             r[k] = w * (c2 + t * (2.0 * c3 + t * (3.0 * c4 + t * (4.0 * c5 + t * 5.0 * c6))))
             r_q[k] = w * w * (2.0 * c3 + t * (6.0 * c4 + t * (12.0 * c5 + t * 20.0 * c6)))
         else:
-            return False
-    return True
+            inside = False
+            p[k], r[k], r_q[k] = table[-1, 1:].sum() + BEYOND * (v - end), BEYOND, 0.0
+    return inside
 
 
 @njit(cache=True, inline="always")

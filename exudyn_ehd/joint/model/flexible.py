@@ -275,6 +275,6 @@ class ElasticBearingModel(BearingModel):
         """
         start = self._coordinates.copy()
         evaluation, found, steps = bore_equilibrium(self, motion, (history, step, spin), start)
-        if not found and evaluation.film is not None:
+        if not found and evaluation.status is Status.CONVERGED:
             return dataclasses.replace(evaluation, status=Status.NOT_CONVERGED, film=None, settling_steps=steps)
         return dataclasses.replace(evaluation, settling_steps=steps)

@@ -43,7 +43,7 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
         shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
         return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v)
     P, ratio, ratio_q = np.empty(shape), np.empty(shape), np.empty(shape)
-    P_q = ratio
+    P_q, beyond = ratio, False
     if film is not None:
         P_q = np.empty(shape)
         if film.law is not None and film.law.viscosity is None and shear is None:
@@ -51,18 +51,17 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
         if not film.viscosity(P, ratio, ratio_q, P_q):
             return None
     elif law is not None:
-        if not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q):
-            return None
+        beyond = not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
         P /= pressure_scale
         ratio_q *= pressure_scale
     if shear is None:
-        return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing)
+        return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing, beyond)
     factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
     shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
     ratio_h *= ratio
     ratio_v *= ratio
     ratio_q *= factor
-    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v)
+    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond)
 
 
 def film_loads(

@@ -47,14 +47,14 @@ class Evaluation:
     status : Status
     motion : (10,) array
     wrench : (6,) array
-        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film.
+        Force (N) and moment about O (Nm) on the journal, joint frame; nan if there is no film at all.
     iterations : int
         Linear solves spent.
     minimum_gap : float
         m; nan if the motion is not finite.
     film : SolvedFilm or None
-        None with a ``status`` other than CONVERGED. What is asked of it raises RuntimeError if the model has
-        evaluated another state since.
+        None with a ``status`` other than CONVERGED, but for films behind the end of a pressure law. What is asked of
+        it raises RuntimeError if the model has evaluated another state since.
     """
 
     status: Status
@@ -217,7 +217,8 @@ class BearingModel:
         Returns
         -------
         Evaluation
-            With ``status`` other than CONVERGED the wrench is nan.
+            With ``status`` other than CONVERGED the wrench is nan, or with NO_PRESSURE that of a pressure law that
+            goes on behind its end: no solution, but a way back for Newton's method.
         """
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations.count += 1
@@ -233,8 +234,8 @@ class BearingModel:
             return self._result(Status.NO_FILM, journal, _no_wrench(), 0, c * smallest, None)
         status, iterations = self._solve(journal, history, step)
         oil = oil_fields(p, self.effects, self.scales.pressure) if status is Status.CONVERGED else None
+        status = Status.NO_PRESSURE if status is Status.CONVERGED and (oil is None or oil.beyond) else status
         if oil is None:
-            status = Status.NO_PRESSURE if status is Status.CONVERGED else status
             return self._result(status, journal, _no_wrench(), iterations, c * smallest, None)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()

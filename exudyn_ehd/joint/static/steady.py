@@ -195,7 +195,7 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History |
 def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Evaluation, SolvedFilm]:
     """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
     evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
-    if evaluation.film is None:
+    if evaluation.film is None or evaluation.status is not Status.CONVERGED:
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
             f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "

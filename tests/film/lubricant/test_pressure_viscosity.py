@@ -7,7 +7,13 @@ import pytest
 from scipy.integrate import quad
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, RoelandsPressure, barus_inverse, hermite_inverse
+from exudyn_ehd.film.lubricant.pressure_viscosity import (
+    BEYOND,
+    BarusPressure,
+    RoelandsPressure,
+    barus_inverse,
+    hermite_inverse,
+)
 
 ALPHA = 2e-8
 MU = 0.04
@@ -81,6 +87,19 @@ def test_pressures_that_do_not_exist():
     table = RoelandsPressure(coefficient=ALPHA).bound(MU)
     assert not table.inverse(np.full((1, 1), 1.01 * table.q[-1]), *out)
     assert not table.inverse(np.full((1, 1), np.nan), *out)
+
+
+@pytest.mark.parametrize("law", [BarusPressure(coefficient=ALPHA), RoelandsPressure(coefficient=ALPHA).bound(MU)])
+def test_laws_go_on_in_a_line(law):
+    """Where they have ended: on Barus' tangent of that slope, from the end of the table."""
+    end = 1.0 / ALPHA if isinstance(law, BarusPressure) else law.q[-1]
+    q = end * np.array([[1.0, 1.2]])
+    p, ratio, slope = (np.empty((1, 2)) for _ in range(3))
+    assert not law.inverse(q, p, ratio, slope)
+    first = (math.log(BEYOND) + 1.0) / ALPHA if isinstance(law, BarusPressure) else law.largest_pressure
+    np.testing.assert_allclose(p, first + BEYOND * (q - end), rtol=1e-12)
+    np.testing.assert_array_equal(ratio, BEYOND)
+    np.testing.assert_array_equal(slope, 0.0)
 
 
 def test_kernels_equal_their_readable_twins():
