@@ -26,12 +26,10 @@ def ConfigureSolver(
     - Newton's relative tolerance 1e-6 in place of 1e-8: a film's force is the result of a solve of its own and carries
       rounding noise of about 1e-10, so that residuals can't always fall by eight orders.
     - Newton's absolute tolerance 1e-8 in place of 1e-10, where it is tighter: next to a wall of 1e11 N/m the rounding
-    of a position alone makes 1e-9 N, so that a journal
-      at rest on it would never pass and be refused.
-    - Newton's tolerance relative to its first residual only (``adaptInitialResidual`` off): where a first iterate lands
-    deep in a contact,
-      its residual is millions of times the step's forces, and a tolerance relative to it accepts any state on the way
-      back.
+      of a position alone makes 1e-9 N, so that a journal at rest on it would never pass and be refused.
+    - Newton's tolerance relative to its first residual only (``adaptInitialResidual`` off): where a first iterate
+      lands deep in a contact, its residual is millions of times the step's forces, and a tolerance relative to it
+      accepts any state on the way back.
     - Full Newton: the Jacobian of the film is exact and cheap (one tangent from the factor the force has left), and
       saves film evaluations. Set ``useModifiedNewton=True`` for models with large flexible bodies, where a new
       factorisation costs more than several film evaluations.
