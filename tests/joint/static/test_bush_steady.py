@@ -286,8 +286,7 @@ def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
 
 def test_the_audit_takes_the_profile_from_the_undeformed_bore():
     """A soft bush deflects by more than its crown's height: the profile's indicator is that of a rigid bush with the
-    same crown, for
-    the minimum film thickness at hand; without a crown there is none."""
+    same crown, for the minimum film thickness at hand; without a crown there is none."""
     crown = ehd.Crown(drop=1e-6)
     film = solve(modal(2.1e10), profile=crown)
     value = film.audit()["profile"].value
