@@ -1,14 +1,17 @@
-"""Film-averaged energy equation on the film grid: heat sources, flows, and the upwind system.
+"""Film-averaged energy equation on the film grid: heat sources, flows, and the system of the temperatures.
 
 Scaled: flows in units of c R^2 (1/s), heat in kelvin per second of such a flow, that is divided by rho c_p c R^2. The
 content m = fill H of a control volume changes by its flows and by what enters from outside, ``S = out - in + A dm/dt``
 (ends, supplies, and the oil that a cavitation model which does not conserve mass finds or loses). Energy minus T times
 mass:
 
-    A m* (T - T_old)/dt + sum over inflows F (T - T_upstream) + S+ (T - T_source) + A walls (T - T_wall) = heat,
+    A m* (T - T_old)/dt + sum over inflows F (T - T_link) + sum over outflows F (T_link - T)
+        + S+ (T - T_source) + A walls (T - T_wall) = heat,
 
-an M-matrix, so that the temperature has no wiggles and stays above its sources'. m* is the old content, or the present
-one where the old one is not kept.
+m* the old content, or the present one where the old one is not kept. In theta T_link is the temperature upstream. In
+z, where oil that turns with the journal borders on oil that the ends suck in, that would leak as much heat to the sides
+as the bearing gives off: there it is of second order, by a limiter that makes no extrema. What a link carries leaves
+one side and reaches the other, so that the balance holds.
 
 Symbols: P true and q transformed scaled pressure, kx / kz conductances and fx / fz Couette fluxes with their metric, A
 areas.
@@ -24,9 +27,7 @@ from numba import njit
 def film_heat(P, q, kx, kz, couette, heat_out):
     """Heat of the film: ``couette`` (n, m) plus the pressure flow's, half of it at either vertex of a link."""
     n, m = P.shape
-    for i in range(n):
-        for j in range(m):
-            heat_out[i, j] = couette[i, j]
+    heat_out[:] = couette
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
@@ -43,21 +44,17 @@ def film_heat(P, q, kx, kz, couette, heat_out):
 def film_flows(q, fill, kx, kz, fx, fz, area, rate, qx_out, qz_out, source_out):
     """Flows over the links i -> i+1 and j -> j+1, and the source S of every vertex; ``rate`` = dm/dt (n, m)."""
     n, m = q.shape
-    for i in range(n):
-        for j in range(m):
-            source_out[i, j] = area[i, j] * rate[i, j]
+    source_out[:] = area * rate
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            up = fill[i, j] if fx[i, j] >= 0.0 else fill[nxt, j]
-            f = kx[i, j] * (q[i, j] - q[nxt, j]) + fx[i, j] * up
+            f = _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
             qx_out[i, j] = f
             source_out[i, j] += f
             source_out[nxt, j] -= f
             qz_out[i, j] = 0.0
             if j + 1 < m:
-                up = fill[i, j] if fz[i, j] >= 0.0 else fill[i, j + 1]
-                f = kz[i, j] * (q[i, j] - q[i, j + 1]) + fz[i, j] * up
+                f = _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
                 qz_out[i, j] = f
                 source_out[i, j] += f
                 source_out[i, j + 1] -= f
@@ -152,7 +149,7 @@ def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
     if squeeze and cavity != 0.0:
-        work += _cavity_work(H_t, area, cavity)
+        work += cavity * np.sum(area * H_t)
     return leaving, work
 
 
@@ -180,33 +177,47 @@ def exchange_sums_fill(P, q, fill, mass_old, inverse_step, squeeze, film, cavity
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
     if squeeze and cavity != 0.0:
-        work += _cavity_work(H_t, area, cavity)
+        work += cavity * np.sum(area * H_t)
     return leaving, work
 
 
 @njit(cache=True)
-def _cavity_work(H_t, area, cavity):
-    """``cavity sum area dH/dt``."""
-    n, m = H_t.shape
-    closing = 0.0
-    for i in range(n):
-        for j in range(m):
-            closing += area[i, j] * H_t[i, j]
-    return cavity * closing
+def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
+    """Derivatives (5, n m) as `exudyn_ehd.film.banded.assemble` takes them, of the energy equation's system.
 
+    The heat over a link is its flow times the temperature upstream and, in z, a share of the difference to the one
+    downstream. Of the flows out of a vertex less those into it, times its own temperature, the energy less T times the
+    mass is free: they are taken off ``diagonal`` (n, m), which holds everything but the inflows from neighbours. ``qz``
+    is zero at the end, where there is no link.
 
-def upwind_slopes(qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray) -> np.ndarray:
-    """Derivatives (5, n m) as `exudyn_ehd.film.banded.assemble` takes them, of the upwind system.
-
-    The heat over a link is its flow times the temperature upstream. Of the flows out of a vertex less those into it,
-    times its own temperature, the energy less T times the mass is free: they are taken off ``diagonal`` (n, m), which
-    holds everything but the inflows from neighbours. ``qz`` is zero at the end, where there is no link.
+    The shares are a limiter's at the temperatures ``T`` (n, m), those at the start of a step. With any up to a half the
+    system's fields do not grow. Of flows that renew more than what a step has ``held`` (n, m) upstream, its storage
+    term, only that much counts: in longer steps shares and temperatures would throw each other to and fro.
     """
-    out = np.empty((5, *qx.shape))
-    for k, flow in ((0, qx), (2, qz)):
-        np.maximum(flow, 0.0, out=out[k])
-        np.minimum(flow, 0.0, out=out[k + 1])
-    leaving = qx + qz - np.roll(qx, 1, axis=0)
-    leaving[:, 1:] -= qz[:, :-1]
-    np.subtract(diagonal, leaving, out=out[4])
-    return out.reshape(5, -1)
+    n, m = qx.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        for j in range(m):
+            k = i * m + j
+            at = j + 1 if qz[i, j] < 0.0 else j
+            share = _downstream_weight(T[i], link_z, j, qz[i, j]) * min(abs(qz[i, j]), held[i, at])
+            slopes_out[0, k], slopes_out[1, k] = max(qx[i, j], 0.0), min(qx[i, j], 0.0)
+            slopes_out[2, k], slopes_out[3, k] = max(qz[i, j], 0.0) - share, min(qz[i, j], 0.0) + share
+            into = qx[prv, j] + (qz[i, j - 1] if j > 0 else 0.0)
+            slopes_out[4, k] = diagonal[i, j] - (qx[i, j] + qz[i, j] - into)
+
+
+@njit(cache=True, inline="always")
+def _downstream_weight(T, link_z, j, flow):
+    """Weight of the temperature downstream on the link j -> j+1.
+
+    By the ratio r of the slopes upstream of the link and on it: a half for r >= 1, ``2 r / (1 + r)^2`` below, which
+    meets it smoothly, and none at extrema and behind the ends.
+    """
+    up = j - 1 if flow > 0.0 else j + 1
+    weight = 0.0
+    if flow != 0.0 and 0 <= up < len(T) - 1:
+        own, before = (T[j + 1] - T[j]) * link_z[j], (T[up + 1] - T[up]) * link_z[up]
+        if own * before > 0.0:
+            weight = 0.5 if abs(before) >= abs(own) else 2.0 * own * before / (own + before) ** 2
+    return weight

@@ -60,18 +60,22 @@ class FilmEnergy:
     `SwiftStieber` (half more with a density law).
 
     ``rho c_p [d(m T)/dt + div(q T)] = Phi - U_b (T - T_b) - U_j (T - T_j)``: m film content, q flow per width (pressure
-    and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, fully upwind (first order),
-    backward Euler. Oil enters through the ends and supplies with the supply temperature. Cavitation models that do not
-    conserve mass lose oil at the end of the film and find it again at its beginning: it returns fully mixed, the
-    leakage replaced by supply oil. The viscosity of a step follows from the temperatures at its start: the coupling is
-    explicit, of first order. `steady` and `equilibrium` take the steady field; a static solution of a multibody model
-    takes the initial temperature.
+    and Couette flow), Phi heat of shear and pressure flow per area. Finite volumes, backward Euler, upwind in theta
+    (first order), of second order in z without new extrema. Oil enters through the ends and supplies with the supply
+    temperature. Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its
+    beginning: it returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the
+    temperatures at its start: the coupling is explicit, of first order. `steady` and `equilibrium` take the steady
+    field; a static solution of a multibody model takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
     (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4
     %, rise at the bush to 7 %; with walls at given temperatures and a ``conductivity`` load to 4 % (both walls) and 9 %
     (one), mean temperature to 1.5 and 6 K, while an adiabatic bush next to a cooled journal is up to 8 K hotter than
     the mean. A constant 3 k/c instead of the conductivity: load to 14 %.
+
+    Along z, 10, 20 and 40 intervals bring a film with a supply within 0.2 % of the converged load. Without supply and
+    with hardly cooled walls, hot oil turns with the journal beside cold oil from the ends, a jump that a grid smears:
+    6, 3 and 1 % (``tests/joint/heat/test_energy_along_z.py``).
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.heat.energy import film_heat, upwind_slopes
+from exudyn_ehd.film.heat.energy import film_heat, transport_slopes
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
@@ -270,7 +270,10 @@ class FilmTemperature(_Temperature):
             rhs = np.empty((2, *shape))
             rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
             rhs[1] = back * found
-            T0, T1 = self._solve_band(flows.x, flows.z, diagonal, rhs)
+            held = store if step > 0.0 else np.full(shape, np.inf)
+            slopes = np.empty((5, area.size))
+            transport_slopes(flows.x, flows.z, diagonal, old, film.grid.link_z, held, slopes)
+            T0, T1 = self._solve_band(flows.x, flows.z, slopes, rhs)
             mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
             T = supply + T0 + mixed * T1
         else:
@@ -291,15 +294,14 @@ class FilmTemperature(_Temperature):
         thicker, thinner = (self.viscosity_ratio(T + d) for d in (-0.05, 0.05))
         return np.log(thicker / thinner) / 0.1
 
-    def _solve_band(self, qx: np.ndarray, qz: np.ndarray, diagonal: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve the upwind system for the fields rhs (k, n, m)."""
+    def _solve_band(self, qx: np.ndarray, qz: np.ndarray, slopes: np.ndarray, rhs: np.ndarray) -> np.ndarray:
+        """Solve the system of ``slopes`` for the fields rhs (k, n, m)."""
         n, m = qx.shape
         if self.number is None:
             self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
             _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
             self.lower, self.upper = np.zeros((2, n * m, self.width + 1 + PAD))
             self.inverse = np.zeros(n * m)
-        slopes = upwind_slopes(qx, qz, diagonal)
         assemble(qx, qz, slopes, self.number, self.order, n * m, self.lower, self.upper)
         x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
         if not factor_lu(self.lower, self.upper, n * m, self.width, self.inverse):

@@ -15,13 +15,13 @@ from exudyn_ehd.status import FilmError
 SETTLED = 1e-11
 MAX_ROUNDS = 200
 # Differences of past rounds that the acceleration combines.
-DEPTH = 6
+DEPTH = 10
 # K; far beyond what any oil bears.
 HOTTEST = 2000.0
 LARGEST_CHANGE = 50.0
 # Largest change of a round, K, that the acceleration starts from, and rounds without progress before the damping grows.
 ACCELERATED = 5.0
-PATIENCE = 8
+PATIENCE = 20
 
 
 def settled_history(model: BearingModel, motion: np.ndarray) -> History | None:

@@ -6,7 +6,7 @@ import pytest
 from exudyn_ehd.film.banded.assemble import assemble
 from exudyn_ehd.film.banded.numbering import number_cells
 from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.heat.energy import content_rate, film_flows, film_heat, outside_flows, upwind_slopes
+from exudyn_ehd.film.heat.energy import content_rate, film_flows, film_heat, outside_flows, transport_slopes
 
 SHAPE = (8, 5)
 
@@ -87,14 +87,29 @@ def test_content_rate(fields):
         np.testing.assert_allclose(out, twin, rtol=1e-14, atol=1e-15)
 
 
-def test_band_is_the_upwind_matrix(fields):
+def twin_weight(T, z, j, flow):
+    """Weight downstream on the link j -> j+1: the smaller of a half and ``2 r / (1 + r)^2`` up to r = 1."""
+    up = j - 1 if flow > 0.0 else j + 1
+    if flow == 0.0 or not 0 <= up < len(z) - 1:
+        return 0.0
+    r = (T[up + 1] - T[up]) / (z[up + 1] - z[up]) * (z[j + 1] - z[j]) / (T[j + 1] - T[j])
+    return 0.0 if r <= 0.0 else 2.0 * min(r, 1.0) / (1.0 + min(r, 1.0)) ** 2
+
+
+@pytest.mark.parametrize("held", [0.0, 0.2, np.inf])
+def test_band_is_the_matrix_of_the_balance(fields, held):
+    """Upwind in theta, by the limiter in z, of no more flow than a step holds."""
     n, m = SHAPE
     number, order = np.zeros(SHAPE, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
     _, width = number_cells(np.ones(SHAPE, dtype=np.bool_), np.ones(SHAPE), order, number)
     lower, upper = np.zeros((2, n * m, width + 1 + PAD))
     # nothing flows over the links at the end
     fields["fz"][:, -1] = 0.0
-    slopes = upwind_slopes(fields["fx"], fields["fz"], fields["storage"])
+    z, T, slopes = np.array([0.0, 0.1, 0.4, 0.6, 1.0]), np.cumsum(fields["P"], axis=1), np.empty((5, n * m))
+    T[2:4] = fields["q"][2:4]
+    transport_slopes(
+        fields["fx"], fields["fz"], fields["storage"], T, 1.0 / np.diff(z), np.full(SHAPE, held), slopes
+    )
     assemble(np.ones(SHAPE), fields["fz"], slopes, number, order, n * m, lower, upper)
     band = np.zeros((n * m, n * m))
     for r in range(n * m):
@@ -103,12 +118,27 @@ def test_band_is_the_upwind_matrix(fields):
                 band[r, r + d] += upper[r, d]
                 if d:
                     band[r + d, r] += lower[r, d]
-    twin = np.zeros((n * m, n * m))
+    twin, weights = np.zeros((n * m, n * m)), []
     for at, value in np.ndenumerate(fields["storage"]):
         twin[number[at], number[at]] += value
     for kind, a, b in links(SHAPE):
         flow = fields["f" + kind][a]
-        up, down = (a, b) if flow >= 0.0 else (b, a)
-        twin[number[down], number[down]] += abs(flow)
-        twin[number[down], number[up]] -= abs(flow)
-    np.testing.assert_allclose(band, twin, rtol=1e-14, atol=1e-15)
+        up, down = (number[a], number[b]) if flow >= 0.0 else (number[b], number[a])
+        twin[down, down] += abs(flow)
+        twin[down, up] -= abs(flow)
+        if kind == "z":
+            weights.append(twin_weight(T[a[0]], z, a[1], flow))
+            share = weights[-1] * min(abs(flow), held)
+            twin[up, down] += share
+            twin[up, up] -= share
+            twin[down, down] -= share
+            twin[down, up] += share
+    np.testing.assert_allclose(band, twin, rtol=1e-13, atol=1e-14)
+    # every branch of the limiter
+    assert {0.0, 0.5} < set(weights)
+    # what a link carries leaves one vertex and reaches the other
+    gone = fields["storage"].copy()
+    for kind, a, b in links(SHAPE):
+        gone[a] -= fields["f" + kind][a]
+        gone[b] += fields["f" + kind][a]
+    np.testing.assert_allclose(band.sum(axis=0)[number], gone, rtol=1e-12, atol=1e-13)

@@ -1,0 +1,105 @@
+"""Energy equation along z: convergence with the grid, bounds and balance, for scenes with oil of its own and without."""
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+
+SUPPLY = 313.15
+LAW = ehd.VogelTemperature(first=(SUPPLY, 0.03), second=(373.15, 0.006))
+GROOVE = (ehd.AxialGroove(angle=0.2 + math.pi, width_angle=0.52, length=0.0159, pressure=1e5),)
+UNSUPPLIED = ehd.ElrodAdams(cavity_pressure=-1e5)
+
+
+def bearing(n_z, *, n_theta=48, cooling=200.0, **options):
+    return ehd.JournalBearing(
+        **{
+            "journal_radius": 0.02,
+            "length": 0.02,
+            "radial_clearance": 25e-6,
+            "film": ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
+            "lubricant": ehd.Lubricant(temperature_law=LAW),
+            "thermal": ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=cooling),
+        }
+        | options
+    )
+
+
+def load(b):
+    film = ehd.steady(b, speed=500.0, eccentricity_ratio=0.8, direction=0.2)
+    return math.hypot(*film.force[:2])
+
+
+@pytest.mark.parametrize(
+    ("options", "bounds"),
+    [
+        # a band of hot oil that turns with the journal, cold oil beside it; upwind 9, 5 and 2 % and still falling
+        ({"cavitation": UNSUPPLIED}, (0.05, 0.018, 0.005)),
+        ({"cavitation": UNSUPPLIED, "cooling": 2000.0}, (0.015, 0.006, 0.002)),
+        ({"cavitation": UNSUPPLIED, "supply": GROOVE}, (0.002, 0.001, 3e-4)),
+        ({"cavitation": ehd.ElrodAdams(), "supply": GROOVE}, (0.002, 2e-4, 1e-4)),
+        ({"cavitation": ehd.SwiftStieber(), "supply": GROOVE}, (0.002, 3e-4, 1e-4)),
+        ({"cavitation": ehd.SwiftStieber()}, (1e-3, 3e-4, 1e-4)),
+    ],
+    ids=["unsupplied", "unsupplied and cooled", "both", "Elrod-Adams", "Swift-Stieber", "Swift-Stieber alone"],
+)
+def test_load_converges_along_z(options, bounds):
+    loads = [load(bearing(n_z, **options)) for n_z in (10, 20, 40, 64)]
+    for coarse, bound in zip(loads[:3], bounds, strict=True):
+        assert abs(coarse / loads[3] - 1.0) < bound
+
+
+CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), UNSUPPLIED]
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_orbits_keep_bounds_and_balance(seed):
+    """Random scenes from 3 to 600 steps a turn: never below the coldest of what the oil was and meets."""
+    rng = np.random.default_rng(seed)
+    bush = SUPPLY + rng.uniform(-10.0, 20.0)
+    thermal = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=10 ** rng.uniform(1.5, 4), bush_temperature=bush)
+    supply = GROOVE if rng.random() < 0.5 else ()
+    options = {"cavitation": CLOSURES[seed % 4], "thermal": thermal, "supply": supply}
+    model = build_model(bearing(int(rng.integers(6, 16)), end_pressures=(0.0, rng.choice([0.0, 1e5])), **options))
+    motion, history = np.zeros(10), None
+    speed, whirl = 10 ** rng.uniform(1.5, 3.0), rng.choice([0.0, 0.5, -0.3])
+    step = 2.0 * math.pi / speed / 10 ** rng.uniform(0.5, 2.8)
+    for k in range(60):
+        angle = whirl * speed * step * k
+        radius = 25e-6 * (0.6 + 0.3 * math.sin(0.9 * angle + 0.1 * k))
+        motion[:2] = radius * math.cos(angle), radius * math.sin(angle)
+        motion[4:6] = -whirl * speed * motion[1], whirl * speed * motion[0]
+        motion[8] = speed
+        history = model.initial_history(motion) if history is None else history
+        evaluation = model.evaluate(motion, history, step)
+        before, history = history.temperature, evaluation.history()
+        assert history.temperature.min() > min(before.min(), SUPPLY, bush) - 1e-9
+        balance = model.effects.thermal.balance(evaluation.film, history.temperature)
+        defect = balance["heat_in"] - balance["carried_out"] - balance["conducted"] - balance["stored"]
+        assert abs(defect) < 1e-10 * max(map(abs, balance.values()))
+
+
+@pytest.mark.parametrize("cooling", [0.0, 200.0])
+def test_steady_film_has_no_wiggles(cooling):
+    """From the ends, where cold oil enters, it gets warmer up to the mid-plane, on coarse grids and fine ones."""
+    for n_z in (8, 10, 32):
+        b = bearing(n_z, cooling=cooling, cavitation=UNSUPPLIED)
+        T = ehd.steady(b, speed=500.0, eccentricity_ratio=0.8).temperature
+        assert T.min() > SUPPLY
+        assert np.diff(T[:, : n_z // 2 + 1], axis=1).min() > 0.0
+        assert np.diff(T[:, n_z // 2 :], axis=1).max() < 0.0
+
+
+@pytest.mark.parametrize("steps", [8, 1, 0.2])
+def test_long_steps_settle(steps):
+    """Steps of up to five turns: the temperatures come to rest, the shares of the links with them."""
+    model = build_model(bearing(10, cavitation=ehd.SwiftStieber()))
+    motion, step = np.zeros(10), 2.0 * math.pi / 500.0 / steps
+    motion[0], motion[8] = 20e-6, 500.0
+    history = model.initial_history(motion)
+    for _ in range(int(40 * max(steps, 1))):
+        before, history = history.temperature, model.evaluate(motion, history, step).history()
+    assert np.abs(history.temperature - before).max() < 1e-6
