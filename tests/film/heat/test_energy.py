@@ -107,9 +107,7 @@ def test_band_is_the_matrix_of_the_balance(fields, held):
     fields["fz"][:, -1] = 0.0
     z, T, slopes = np.array([0.0, 0.1, 0.4, 0.6, 1.0]), np.cumsum(fields["P"], axis=1), np.empty((5, n * m))
     T[2:4] = fields["q"][2:4]
-    transport_slopes(
-        fields["fx"], fields["fz"], fields["storage"], T, 1.0 / np.diff(z), np.full(SHAPE, held), slopes
-    )
+    transport_slopes(fields["fx"], fields["fz"], fields["storage"], T, 1.0 / np.diff(z), np.full(SHAPE, held), slopes)
     assemble(np.ones(SHAPE), fields["fz"], slopes, number, order, n * m, lower, upper)
     band = np.zeros((n * m, n * m))
     for r in range(n * m):

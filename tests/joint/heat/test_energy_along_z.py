@@ -1,4 +1,4 @@
-"""Energy equation along z: convergence with the grid, bounds and balance, for scenes with oil of its own and without."""
+"""Energy equation along z: convergence with the grid, bounds, balance, for scenes with and without a supply."""
 
 import math
 
@@ -60,7 +60,8 @@ def test_orbits_keep_bounds_and_balance(seed):
     """Random scenes from 3 to 600 steps a turn: never below the coldest of what the oil was and meets."""
     rng = np.random.default_rng(seed)
     bush = SUPPLY + rng.uniform(-10.0, 20.0)
-    thermal = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=10 ** rng.uniform(1.5, 4), bush_temperature=bush)
+    cooling = 10 ** rng.uniform(1.5, 4)
+    thermal = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=cooling, bush_temperature=bush)
     supply = GROOVE if rng.random() < 0.5 else ()
     options = {"cavitation": CLOSURES[seed % 4], "thermal": thermal, "supply": supply}
     model = build_model(bearing(int(rng.integers(6, 16)), end_pressures=(0.0, rng.choice([0.0, 1e5])), **options))
