@@ -1,9 +1,11 @@
 """Fixtures for all tests: examples as modules, no screen, a bearing, and measured errors."""
 
+import functools
 import importlib.util
 import os
 import pathlib
 import sys
+import time
 from collections.abc import Callable
 
 os.environ.setdefault("MPLBACKEND", "Agg")
@@ -11,14 +13,17 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+import exudyn as exu
 import matplotlib
 import numpy as np
 import pytest
+from exudyn.utilities import InertiaCylinder
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.solid.static_modes import bore_modes
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RADIUS = 0.025
@@ -53,8 +58,44 @@ def _own_cache(tmp_path_factory):
         yield
 
 
-def _films_of_all_kernels():
-    """Options of bearings that use the kernels of nearly all tests, in two halves that take as long to compile."""
+def _use_of_film(**options):
+    """Everything that a joint asks of a film."""
+    motion = np.array([0.5 * CLEARANCE, 0.4 * CLEARANCE, 1e-4, 0.0, 1e-3, 0.0, 0.0, 0.0, 300.0, 0.1])
+    plain = {
+        "journal_radius": RADIUS,
+        "length": 2.0 * RADIUS,
+        "radial_clearance": CLEARANCE,
+        "lubricant": ehd.Lubricant(viscosity=VISCOSITY),
+        "film": ehd.FiniteLength(n_theta=32, n_z=6),
+    }
+    model = build_model(ehd.JournalBearing(**(plain | options)))
+    evaluation = model.evaluate(motion, model.initial_history(motion), 1e-4)
+    evaluation.tangent()
+    evaluation.quantities()
+    evaluation.history()
+
+
+def _use_of_joint():
+    """A step of a spinning journal in a housing that moves, on a film without kernels."""
+    toy = load_module(ROOT / "tests" / "coupling" / "toy.py")
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    inertia = InertiaCylinder(7800.0, 0.1, RADIUS, 2)
+    bodies = [mbs.CreateRigidBody(inertia=inertia, initialAngularVelocity=[0.0, 0.0, w]) for w in (1.0, 30.0)]
+    toy.attach(mbs, bodies, toy.ToyFilm(), position=[0.0, 0.0, 0.0])
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 1, 1e-6
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    mbs.SolveDynamic(settings)
+
+
+def _uses_of_kernels():
+    """Calls that compile the kernels of nearly all tests: a plain film, what no film uses, and two rows of films.
+
+    What several films of a row share is compiled by the first of them; the rows take as long as each other.
+    """
     oil = {"viscosity": VISCOSITY, "temperature": 325.0}
     hot = ehd.ReynoldsTemperature(point=(325.0, VISCOSITY), coefficient=0.03)
     mesh = ehd.HollowCylinder(inner_radius=RADIUS, thickness=0.01, length=0.05, axial=1, radial=1, circumferential=8)
@@ -71,36 +112,51 @@ def _films_of_all_kernels():
     }
     modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
     nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
-    # the first of each half compiles what the others of it share
+    rows = (
+        [conserving, conserving | thin, conserving | modal, dense, liner | dense, conserving | dense],
+        [modal, nodal, rough, thin, touching, energy, liner]
+        + [liner | touching, liner | energy, conserving | liner, conserving | liner | dense],
+    )
     return (
-        [{}, conserving, conserving | thin, modal, modal | conserving, nodal, energy, rough, thin],
-        [dense, liner, liner | dense, liner | touching, liner | energy, conserving | liner, touching],
+        {"plain": _use_of_film},
+        {"joint": _use_of_joint, "solid": functools.partial(bore_modes, modal["bush"])},
+        *(
+            {f"film {n}{k}": functools.partial(_use_of_film, **x) for k, x in enumerate(row)}
+            for n, row in enumerate(rows)
+        ),
     )
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _kernels_compiled_once(_own_cache):
-    """Each worker of a parallel run first compiles its half of the kernels, and finds the other in numba's cache.
+def _kernels_compiled_once(_own_cache, tmp_path_factory):
+    """The workers of a parallel run share the compilation of the kernels, and find each other's in numba's cache.
 
-    Else every worker compiles nearly all of them: 190 s of processor time with an empty cache.
+    Else every worker compiles nearly all of them. What one has taken the others leave out, but all films wait for the
+    plain one's kernels. A worker goes along its own row of films, and then along the other row from its end.
     """
     worker = os.environ.get("PYTEST_XDIST_WORKER")
     if worker is None:
         return
-    motion = np.array([0.5 * CLEARANCE, 0.4 * CLEARANCE, 1e-4, 0.0, 1e-3, 0.0, 0.0, 0.0, 300.0, 0.1])
-    plain = {
-        "journal_radius": RADIUS,
-        "length": 2.0 * RADIUS,
-        "radial_clearance": CLEARANCE,
-        "lubricant": ehd.Lubricant(viscosity=VISCOSITY),
-        "film": ehd.FiniteLength(n_theta=32, n_z=6),
-    }
-    for options in _films_of_all_kernels()[int(worker.removeprefix("gw")) % 2]:
-        model = build_model(ehd.JournalBearing(**(plain | options)))
-        evaluation = model.evaluate(motion, model.initial_history(motion), 1e-4)
-        evaluation.tangent()
-        evaluation.quantities()
-        evaluation.history()
+    folder = tmp_path_factory.getbasetemp().parent
+    plain, apart, *rows = _uses_of_kernels()
+    own = int(worker.removeprefix("gw")) % 2
+    start = apart | plain if own else plain
+    for name, use in (start | rows[own] | dict(reversed(rows[1 - own].items())) | apart).items():
+        try:
+            (folder / f"{name} taken").mkdir()
+        except FileExistsError:
+            if name in plain:
+                _wait_for(folder / f"{name} compiled")
+        else:
+            use()
+            (folder / f"{name} compiled").touch()
+
+
+def _wait_for(path, limit=300.0):
+    """Until another worker has written a file."""
+    end = time.monotonic() + limit
+    while not path.exists() and time.monotonic() < end:
+        time.sleep(0.05)
 
 
 @pytest.fixture(scope="session")
