@@ -16,12 +16,14 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 TILE = 48
 
 
-@njit(cache=True)
-def solve_columns(forward, backward, inverse, symmetric, count, width, x):
+@njit(cache=True, fastmath=_FAST)
+def solve_columns(first, forward, backward, inverse, symmetric, count, width, x):
     """Solve ``A x = b`` with ``A = F^T G`` for every column of x (count, k), C-contiguous, in place.
 
     Parameters
     ----------
+    first : int
+        All rows of x before it are zero.
     forward, backward : (size, >= width + 4) arrays
         Bands of F and G, see `ldl` and `lu`; zeros behind the bandwidth.
     inverse : (size,) array
@@ -29,12 +31,6 @@ def solve_columns(forward, backward, inverse, symmetric, count, width, x):
     symmetric : bool
         G is F with every row times its ``inverse`` (``A = U^T D^-1 U``, F = U); else G has a unit diagonal.
     """
-    solve_columns_from(0, forward, backward, inverse, symmetric, count, width, x)
-
-
-@njit(cache=True, fastmath=_FAST)
-def solve_columns_from(first, forward, backward, inverse, symmetric, count, width, x):
-    """As `solve_columns` where all rows of x before ``first`` are zero."""
     sides = x.shape[1]
     whole = count - count % 4
     for k in range(min(first - first % 4, whole), whole, 4):
@@ -200,5 +196,6 @@ def solve_in_tiles(forward, backward, inverse, symmetric, count, width, x):
     ahead = pack_blocks(forward, inverse, True, count, width)
     back = ahead if symmetric else pack_blocks(backward, inverse, False, count, width)
     diagonal = np.zeros(rows)
-    diagonal[:count] = inverse[:count]
+    for r in range(count):
+        diagonal[r] = inverse[r]
     solve_tiles(ahead, back, diagonal, x.reshape(tiles, rows // 4, 4 * TILE))

@@ -24,24 +24,26 @@ _unsigned = np.uint64
 _1, _2, _3 = (_unsigned(k) for k in (1, 2, 3))
 # A step back, as unsigned indices wrap.
 _back = _unsigned(2**64 - 1)
+# numba would compile everything below anew for each plain True and False
+_YES, _NO = np.True_, np.False_
 
 
 @njit(cache=True)
 def solve_ldl(band, inverse, count, width, x):
     """Solve ``A x = b`` with the symmetric factor of `ldl.factor_band` for every row of x (k, count), in place."""
-    _solve_rows(band, band, True, True, inverse, count, width, x)
+    _solve_rows(band, band, _YES, _YES, inverse, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu(lower, upper, inverse, count, width, x):
     """Solve ``A x = b`` with the factor of `lu.factor_lu` for every row of x (k, count), in place."""
-    _solve_rows(lower, upper, False, True, inverse, count, width, x)
+    _solve_rows(lower, upper, _NO, _YES, inverse, count, width, x)
 
 
 @njit(cache=True)
 def solve_lu_transposed(lower, upper, inverse, count, width, x):
     """Solve ``A^T x = b`` with the factor of `lu.factor_lu` for every row of x (k, count), in place."""
-    _solve_rows(upper, lower, True, False, inverse, count, width, x)
+    _solve_rows(upper, lower, _YES, _NO, inverse, count, width, x)
 
 
 @njit(cache=True)
@@ -212,8 +214,8 @@ def _solve_four(forward, backward, scale_forth, scale_back, inverse, count, widt
         _put(x, r, s0)
         _put(x, r + _1, s1)
         _put(x, r + _2, s2)
-    for y in rows:
-        _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, y)
+    for k in range(4):
+        _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, rows[k])
     i0 = i1 = i2 = 1.0
     for panel in range(whole // _3):
         r = whole - _3 * panel - _3

@@ -9,6 +9,8 @@ import numpy as np
 
 # Zeros behind the half-bandwidth of every band: blocks of pivots may read past it.
 PAD = 4
+# First row of a whole matrix; numpy's integer, since numba compiles kernels anew for a plain 0.
+FIRST_ROW = np.int64(0)
 # Longest front of a cavity in rows of the grid: beyond, its columns cost more than they spare.
 FRONT_ROWS = 2
 

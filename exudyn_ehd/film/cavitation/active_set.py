@@ -16,6 +16,7 @@ from numba import njit
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.workspace import FIRST_ROW
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import Coefficients
 
@@ -164,8 +165,7 @@ def solve_active_set(kx, kz, b, fixed, pc, active, order, old_order, number, ban
                 active[i, j] = False
             elif not active[i, j]:
                 P[i, j] = pc
-    count = 0
-    width = 1
+    count, width = FIRST_ROW, np.int64(1)
     for step in range(MAX_ACTIVE_SET_STEPS):
         old_count, old_width = count, width
         for r in range(old_count):

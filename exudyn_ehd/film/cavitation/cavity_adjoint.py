@@ -12,6 +12,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.many_sides import solve_columns
+from exudyn_ehd.film.banded.workspace import FIRST_ROW
 from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -88,7 +89,7 @@ def solve_transport_transposed(t, unknowns, x):
         known = mu[t.driven_to[e]]
         for q in range(sides):
             target[q] += k * known[q]
-    solve_columns(t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)
+    solve_columns(FIRST_ROW, t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -114,8 +115,12 @@ def reduce_transposed(t, unknowns, x):
     for k in range(x.shape[0]):
         g, mu = x[k, :count], x[k, count:unknowns]
         if fronts > 0:
-            trial[:] = g
-            if np.any(mu != 0.0):
+            convects = False
+            for r in range(count):
+                trial[r] = g[r]
+            for c in range(placed):
+                convects |= mu[c] != 0.0
+            if convects:
                 back = mu.copy()
                 _convect_back_one(t, placed, back)
                 for e in range(t.shape[DRIVEN]):

@@ -30,9 +30,10 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
-from exudyn_ehd.film.banded.many_sides import solve_columns_from
+from exudyn_ehd.film.banded.many_sides import solve_columns
 from exudyn_ehd.film.banded.numbering import number_along
 from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.workspace import FIRST_ROW
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED = range(6)
@@ -279,15 +280,15 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
         return False, 0
     stride = fronts + -fronts % 4
     t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE], t.shape[WIDTH] = count, fronts, stride, width
-    assemble_band(film.kx, film.kz, t.number, order, count, width, 0, t.band)
-    if not factor_band(t.band, count, width, 0, t.diagonal):
+    assemble_band(film.kx, film.kz, t.number, order, count, width, FIRST_ROW, t.band)
+    if not factor_band(t.band, count, width, FIRST_ROW, t.diagonal):
         return False, 0
     if fronts > 0:
         V = t.spread[: count * stride].reshape(count, stride)
         V[:] = 0.0
         for b in range(fronts):
             V[t.front[b], b] = 1.0
-        solve_columns_from(t.front[0], t.band, t.band, t.diagonal, True, count, width, V)
+        solve_columns(t.front[0], t.band, t.band, t.diagonal, True, count, width, V)
         if not _factor_loop(t, placed):
             return False, 0
     return True, count + placed

@@ -177,13 +177,14 @@ class ElrodAdams:
 @njit(cache=True)
 def film_terms(film, inverse_step, mass_old):
     """`FilmTerms` of the mass-conserving film of `Coefficients`; parameters as for `solve_elrod`."""
-    grow, kept = np.empty(film.H.shape), np.zeros(film.H.shape)
-    if inverse_step > 0.0:
-        grow[:] = inverse_step * film.H
-        kept[:] = -inverse_step * mass_old
-    else:
-        grow[:] = film.H_t
-    nothing = np.zeros(film.H.shape)
+    grow, kept, nothing = np.empty(film.H.shape), np.zeros(film.H.shape), np.zeros(film.H.shape)
+    g, k, old = grow.reshape(-1), kept.reshape(-1), mass_old.reshape(-1)
+    H, H_t = film.H.reshape(-1), film.H_t.reshape(-1)
+    for c in range(g.size):
+        if inverse_step > 0.0:
+            g[c], k[c] = inverse_step * H[c], -inverse_step * old[c]
+        else:
+            g[c] = H_t[c]
     return FilmTerms(film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.fixed)
 
 
@@ -214,6 +215,23 @@ def assemble_elrod(terms, links, pc, full, number, order, count, P, lower, upper
 
 
 @njit(cache=True)
+def _linked(film, full):
+    """Whether vertices are linked in theta (not zero), are unknown, and are full or prescribed, (n, m) each.
+
+    Oil also links columns that exchange no pressure flow (short bearings).
+    """
+    links, free, sets = np.empty(full.shape), np.empty(full.shape, dtype=np.bool_), np.empty(full.shape, dtype=np.bool_)
+    n, m = full.shape
+    for i in range(n):
+        for j in range(m):
+            known = film.fixed[i, j]
+            links[i, j] = abs(film.kx[i, j]) + abs(film.fx[i, j])
+            free[i, j] = not known
+            sets[i, j] = full[i, j] or known
+    return links, free, sets
+
+
+@njit(cache=True, inline="always")
 def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
     """Unknowns x for the given sets; returns (ok, count, width, convected).
 
@@ -225,12 +243,11 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
         if ok:
             solve_transport(t, count, x)
             return True, count, 1, True
-    # oil also links columns that exchange no pressure flow (short bearings)
-    links = np.abs(film.kx) + np.abs(film.fx)
-    count, width = number_cells(np.logical_not(film.fixed), links, order, number)
+    links, free, sets = _linked(film, full)
+    count, width = number_cells(free, links, order, number)
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
     terms = film_terms(film, inverse_step, mass_old)
-    assemble_elrod(terms, links, pc, full | film.fixed, number, order, count, P, L, U, x)
+    assemble_elrod(terms, links, pc, sets, number, order, count, P, L, U, x)
     if not factor_lu(L, U, count, width, inv_diag):
         return False, count, width, False
     solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))

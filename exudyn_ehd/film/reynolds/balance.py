@@ -107,7 +107,8 @@ def film_balance(P, fill, rho, film, out):
         part(rho, 0, m),
         along[size:],
     )
-    along[:m] = along[size:]
+    for j in range(m):
+        along[j] = along[size + j]
     # nothing flows over the last row's links in z
     e = size - 1
     _link_flows(

@@ -23,6 +23,7 @@ from exudyn_ehd.film.solvers.steps import (
     copy_field,
     factor_film,
     flow_rounding,
+    free_all,
     newton_step,
     select,
     take_over,
@@ -35,7 +36,7 @@ SMALLEST_PEAK = 1e-6
 WHOLE_STEPS, TO_THE_END = 16, 0.9
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual):
     """Norm of what does not hold, and the smallest gap, at P."""
     if liner is not None:
@@ -50,7 +51,7 @@ def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual):
     return violation(residual, P, fixed, numbers[0], kinds[1]), 1.0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def factor(u, fixed, numbers, terms, liner, oil, matrix, active):
     """Newton's matrix at u, for the state of the last balance, factored; returns (ok, count, width)."""
     P = u[0]
@@ -67,13 +68,13 @@ def factor(u, fixed, numbers, terms, liner, oil, matrix, active):
     return False, 0, 0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _end(oil, step):
     """As for `take_step`."""
     return oil[2].highest / oil[0], TO_THE_END if step > WHOLE_STEPS else np.inf
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, width, trial):
     """As `newton_step`."""
     pc, vx, vz, beta = numbers
@@ -88,17 +89,19 @@ def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, w
     return np.inf, np.inf, 0.0, 0.0, 0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _shorter(step, u, chooses, liner, oil, factored, count, share, pc, tolerance, trial):
     """As `take_step`."""
     if liner is not None:
-        return take_step(u, (liner[0],), ENDLESS, factored, count, share, pc, chooses, tolerance, trial)
+        return take_step(
+            u, (liner[0], liner[4], liner[5]), ENDLESS, factored, count, share, pc, chooses, tolerance, trial
+        )
     if oil is not None:
         return take_step(u, None, _end(oil, step), factored, count, share, pc, chooses, tolerance, trial)
     return 0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _accept(u, trial, residual, fixed, pc, chooses, active, changes):
     """The trial state becomes the present one; returns how many vertices change sides."""
     if chooses:
@@ -133,7 +136,7 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
     if not gap > 0.0:
         return False, 0, False, count, width
     if not chooses or not warm:
-        active[:] = np.logical_not(fixed)
+        free_all(fixed, active)
     elif not ready:
         select(P, residual, fixed, pc, active)
     reused = ready

@@ -76,6 +76,14 @@ def flow_rounding(terms, rate):
 
 
 @njit(cache=True)
+def free_all(fixed, active):
+    """Every vertex that is not prescribed is an unknown."""
+    known, free = fixed.reshape(-1), active.reshape(-1)
+    for c in range(free.size):
+        free[c] = not known[c]
+
+
+@njit(cache=True)
 def select(P, r, fixed, pc, active):
     """Vertices that carry pressure or are about to, as oil piles up there; returns the number of changes."""
     x, leaves, known, free = P.reshape(-1), r.reshape(-1), fixed.reshape(-1), active.reshape(-1)
@@ -88,14 +96,14 @@ def select(P, r, fixed, pc, active):
     return changes
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def take_over(trial, r, fixed, pc, active, P_out):
     """`select` with the pressures of a trial, which become the film's."""
     copy_field(trial, P_out)
     return select(P_out, r, fixed, pc, active)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _solve(residual, factored, count, width):
     """Newton's step of the numbered unknowns."""
     order, x, lower, upper, inv_diag = factored
@@ -184,7 +192,7 @@ def _moved(P, x, drive, slope, bend):
     return drive - np.expm1(-min(k * rise, LARGEST_THICKENING)) / k
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def take_step(u, elements, end, factored, count, share, pc, chooses, tolerance, trial):
     """Trial state after ``share`` of the step, projected on what a closure
     allows; returns how many vertices rupture, fill up or cross the end of the oil's law.

@@ -146,7 +146,7 @@ class LinerBalance(LinerFilm):
         self.changes = int(
             take_step(
                 self._sides(self.u),
-                (self.load_fields,),
+                (self.load_fields, self.gap_fields, self.slope_fields),
                 ENDLESS,
                 self.matrix[2],
                 self.film.work.count,

@@ -41,7 +41,7 @@ def liner_residual(
     return violation(out, P, fixed, pc, complementary)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def plain_residual(
     P, fixed, numbers, kinds, load_fields, rigid, G, delta_old, gap_fields, metric, terms, known, rates, out
 ):  # fmt: skip
