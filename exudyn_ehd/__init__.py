@@ -51,7 +51,7 @@ from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.solve_film import FilmResult, solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult, steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, Status
+from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, StarvationWarning, Status
 
 __version__ = "0.1.0"
 
@@ -186,6 +186,7 @@ __all__ = [
     "SolveDynamic",
     "SolveDynamicSparse",
     "SolveStatic",
+    "StarvationWarning",
     "Status",
     "SteadyResult",
     "StepControl",

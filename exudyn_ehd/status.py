@@ -62,6 +62,10 @@ class RingingWarning(UserWarning):
     """The forces of a joint alternate from step to step: the steps are too large for the time integration."""
 
 
+class StarvationWarning(UserWarning):
+    """The film of a joint has lost its oil through the ends, and nothing brings it back."""
+
+
 def require_number(
     where: str,
     value: float,

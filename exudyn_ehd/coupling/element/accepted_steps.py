@@ -17,12 +17,13 @@ from exudyn_ehd.coupling.contract import JointModel, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import JointHistory, Record
-from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.coupling.watch import solver_state, starvation
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.static.steady import lacks_oil
 from exudyn_ehd.joint.static.steady_temperature import is_too_hot
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import Status
@@ -108,7 +109,7 @@ class AcceptedSteps:
         self._record = Record(film.model.bearing)
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
-        self._uses_memory = False
+        self._uses_memory = self._may_starve = False
         self._resumed: tuple[float, History | None, StepStart | None] | None = None
         self._first: list[float] = []
 
@@ -159,6 +160,7 @@ class AcceptedSteps:
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
+        self._may_starve = self._uses_memory and lacks_oil(bearing)
         goes_on = self._goes_on(mbs, start)
         if not self._uses_memory or not goes_on:
             self.memory = None
@@ -195,7 +197,7 @@ class AcceptedSteps:
             self.film.forget()
 
     def _check(self, start: float, trial: Trial, step: float, has_film: bool) -> None:
-        """Raise `FilmError` for a film that can't go on, warn of forces that ring."""
+        """Raise `FilmError` for a film that can't go on, warn of forces that ring and of films that run dry."""
         failures = self.film.failures
         if trial.status == Status.NO_PRESSURE and (step > 0.0 or solver_state.is_implicit(self.solver)):
             raise failures.no_film(start, trial, explicit=False)
@@ -204,6 +206,9 @@ class AcceptedSteps:
         temperature = getattr(self.memory, "temperature", None)
         if temperature is not None and is_too_hot(temperature):
             raise failures.too_hot(start, trial, temperature)
+        if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
+            self._may_starve = False
+            starvation.warn(failures.name, start, lost)
         if not has_film:
             return
         if self._ringing is not None:

@@ -61,7 +61,7 @@ class ElrodAdams:
 
     For starved or grooved bearings, oscillating loads, and wherever leakage and friction of the cavity matter. In a
     joint it needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity
-    pressure.
+    pressure; a moving one without it runs dry within some turns, and the joint warns.
 
     Parameters
     ----------

@@ -114,48 +114,17 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
 
 
 @njit(cache=True)
-def exchange_sums(P, q, kx, kz, fz, b, H_t, area, fixed, active, squeeze, cavity):
-    """Sums over what `outside_flows` gives for cavitation models that do not conserve mass, without fields in between.
+def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze, film, cavity):
+    """Sums over what `outside_flows` gives, without fields in between.
 
-    ``b`` (n, m) is the right-hand side of the film's equation, Couette inflow less squeeze, ``active`` (n, m) the
-    unbroken film, ``cavity`` the scaled cavity pressure.
+    Rates as in `content_rate`. ``active`` (n, m): the unbroken film of cavitation models that do not conserve mass,
+    ``film``: `Coefficients`, ``cavity``: the scaled cavity pressure.
 
     Returns
     -------
     leaving, work : float
         What leaves, and ``sum (P - cavity) inflow`` plus, with ``squeeze``, ``cavity sum area dH/dt``.
     """
-    n, m = q.shape
-    leaving = 0.0
-    work = 0.0
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            if not fixed[i, j]:
-                continue
-            inflow = 0.0
-            if j + 1 < m:
-                inflow += kz[i, j] * (q[i, j] - q[i, j + 1])
-            if j > 0:
-                inflow += kz[i, j - 1] * (q[i, j] - q[i, j - 1])
-            end = 1 if j == 0 else m - 2
-            if 0 < j < m - 1 or active[i, end] or fixed[i, end]:
-                inflow += kx[i, j] * (q[i, j] - q[nxt, j]) + kx[prv, j] * (q[i, j] - q[prv, j]) - b[i, j]
-            elif j == 0:
-                inflow += fz[i, j]
-            else:
-                inflow -= fz[i, j - 1]
-            leaving -= min(inflow, 0.0)
-            work += (P[i, j] - cavity) * inflow
-    if squeeze and cavity != 0.0:
-        work += cavity * np.sum(area * H_t)
-    return leaving, work
-
-
-@njit(cache=True)
-def exchange_sums_fill(P, q, fill, mass_old, inverse_step, squeeze, film, cavity):
-    """As `exchange_sums` where the closure conserves mass; rates as in `content_rate`, ``film``: `Coefficients`."""
     n, m = q.shape
     kx, kz, fx, fz, H, H_t, area, fixed = film
     leaving = 0.0
@@ -171,9 +140,11 @@ def exchange_sums_fill(P, q, fill, mass_old, inverse_step, squeeze, film, cavity
                 inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
             if j > 0:
                 inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
-            inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
-            inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
-            inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+            end = 1 if j == 0 else m - 2
+            if conserves or 0 < j < m - 1 or active[i, end] or fixed[i, end]:
+                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
+                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+                inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
     if squeeze and cavity != 0.0:

@@ -12,7 +12,6 @@ import numpy as np
 from exudyn_ehd.film.heat.energy import (
     content_rate,
     exchange_sums,
-    exchange_sums_fill,
     film_flows,
     outside_flows,
 )
@@ -96,24 +95,22 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     if film.parts.compressible is not None:
         work, leaving = _compressible_work(film, film.parts.compressible)
         return power_loss(film) + power * work, leaving
-    s, y, g, P = film.solver, film.solver.system, film.grid, film.oil.P
+    s, y = film.solver, film.solver.system
     cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0
-    if s.closure.conserves_mass:
-        stepped = y.inverse_step > 0.0 and not s.instant
-        leaving, work = exchange_sums_fill(
-            P,
-            s.pressure,
-            s.fill,
-            y.mass_old if stepped else s.H,
-            y.inverse_step if stepped else 0.0,
-            s.squeeze,
-            y.coefficients,
-            cavity,
-        )
-    else:
-        leaving, work = exchange_sums(
-            P, s.pressure, y.kx, y.kz, y.fz, y.b, s.H_t, s.area, g.fixed, s.work.active, s.squeeze, cavity
-        )
+    conserves = s.closure.conserves_mass
+    stepped = conserves and y.inverse_step > 0.0 and not s.instant
+    leaving, work = exchange_sums(
+        film.oil.P,
+        s.pressure,
+        s.fill if conserves else s.ones,
+        s.work.active,
+        conserves,
+        y.mass_old if stepped else s.H,
+        y.inverse_step if stepped else 0.0,
+        s.squeeze,
+        y.coefficients,
+        cavity,
+    )
     return power_loss(film) + power * (work + _end_work(film)), leaving
 
 

@@ -162,19 +162,25 @@ def steady(
 
 def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:
     """Raise `InputError` if a steady mass-conserving film has no source of oil and would starve to nothing."""
-    closure = bearing.cavitation
-    if not closure.conserves_mass or axial_speed != 0.0 or isinstance(bearing.inlet, MaximumGap) or bearing.supply:
-        return
-    if max(bearing.end_pressures) <= closure.cavity_pressure:
+    if axial_speed == 0.0 and lacks_oil(bearing):
         raise InputError(
             f"{where}: a steady film with ElrodAdams needs oil from somewhere, but no pressure is above the cavity "
-            "pressure "
-            f"({closure.cavity_pressure:g} Pa gauge), so that the side leakage would drain the closed ring; give "
-            "the bearing "
-            "supply=(AxialGroove(...),), end_pressures above the cavity pressure, or "
-            "ElrodAdams(cavity_pressure=-1e5) below "
-            "ambient pressure."
+            f"pressure ({bearing.cavitation.cavity_pressure:g} Pa gauge), so that the side leakage would drain the "
+            f"closed ring; {MORE_OIL}"
         )
+
+
+MORE_OIL = (
+    "give the bearing supply=(AxialGroove(...),), end_pressures above the cavity pressure, or "
+    "ElrodAdams(cavity_pressure=-1e5) below ambient pressure."
+)
+
+
+def lacks_oil(bearing: JournalBearing) -> bool:
+    """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
+    closure = bearing.cavitation
+    supplied = bearing.supply or isinstance(bearing.inlet, MaximumGap)
+    return closure.conserves_mass and not supplied and max(bearing.end_pressures) <= closure.cavity_pressure
 
 
 def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
