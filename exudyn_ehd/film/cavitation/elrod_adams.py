@@ -224,10 +224,8 @@ def _linked(film, full):
     n, m = full.shape
     for i in range(n):
         for j in range(m):
-            known = film.fixed[i, j]
             links[i, j] = abs(film.kx[i, j]) + abs(film.fx[i, j])
-            free[i, j] = not known
-            sets[i, j] = full[i, j] or known
+            free[i, j], sets[i, j] = not film.fixed[i, j], full[i, j] or film.fixed[i, j]
     return links, free, sets
 
 

@@ -199,22 +199,6 @@ def chain_links(slope, bend, face_slope, by_rate, by_gap, DX, rate_out, gap_out)
         by_rate_out[k] = rate[k] * a[k]
 
 
-@njit(cache=True)
-def chain_limiter(slope, bend, face_slope, has_rate, cell, face, rate):
-    """Sensitivities (k, n, m) to the film's gap -> to the true gap, in place; the rest as in `chain_links`."""
-    count, n, m = cell.shape
-    for i in range(n):
-        for j in range(m):
-            if slope[i, j] == 1.0 and face_slope[i, j] == 1.0 and bend[i, j] == 0.0:
-                continue
-            for k in range(count):
-                face[k, i, j] *= face_slope[i, j]
-                cell[k, i, j] *= slope[i, j]
-                if has_rate:
-                    cell[k, i, j] += rate[k, i, j] * bend[i, j]
-                    rate[k, i, j] *= slope[i, j]
-
-
 # Flat loops without checks for a division by zero, which the compiler vectorises.
 @njit(cache=True, fastmath=_FAST, error_model="numpy")
 def couette_integral_law(H, weight, ratio, active, fixed, cavity_share):

@@ -15,7 +15,6 @@ from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_wei
 from exudyn_ehd.film.solvers.linear import Sensitivities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
-    chain_limiter,
     chain_links,
     contact_adjoint_rhs,
     contact_tangent,
@@ -142,14 +141,15 @@ def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow
     sens = p.solver.sensitivities(lam)
     f = film.limited
     if f is not None:
-        rate = sens.cell if sens.rate is None else sens.rate
-        chain_limiter(f.slope, f.bend, f.face_slope, sens.rate is not None, sens.cell, sens.face, rate)
+        # to the film's gap -> to the true gap
+        sens.face[:] *= f.face_slope
+        sens.cell[:] = sens.cell * f.slope + sens.rate * f.bend
+        sens.rate[:] *= f.slope
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
     contract_pose(sens.cell, p.cos_x, p.sin_x, z, pose)
     contract_pose(sens.face, p.cos_f, p.sin_f, z, pose)
-    if sens.rate is not None:
-        contract_pose(sens.rate, p.cos_x, p.sin_x, z, rates)
-    if slow_motion and sens.rate is not None and p.liner is not None:
+    contract_pose(sens.rate, p.cos_x, p.sin_x, z, rates)
+    if slow_motion and p.liner is not None:
         rates += _following_deflection(film, p.liner, sens.rate)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
     return sens
