@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
@@ -127,8 +127,8 @@ class FilmParts:
         The same solver, if it is one of an elastic liner or of a compressible film.
     supply : SupplyMap or None
     contacts, limiter : buffers or None
-    cos_x, sin_x, cos_f, sin_f : (n,) arrays
-        Of the angles of vertices and of links.
+    directions : Directions
+        Of the grid.
     half_length : float
         Half the bearing's length over the reference length.
     pose_scale, motion_scale : (4,), (10,) arrays
@@ -148,10 +148,7 @@ class FilmParts:
     supply: SupplyMap | None
     contacts: ContactFields | None
     limiter: LimiterFields | None
-    cos_x: np.ndarray
-    sin_x: np.ndarray
-    cos_f: np.ndarray
-    sin_f: np.ndarray
+    directions: Directions
     half_length: float
     pose_scale: np.ndarray
     motion_scale: np.ndarray

@@ -126,9 +126,9 @@ class _RelaxedFilm:
         m, s, g = self.model.parts, self.model.solver, self.model.grid
         pose, rate = motion[:4] * m.pose_scale, motion[4:8] * m.pose_scale
         vx, vz = 0.5 * motion[8], 0.5 * motion[9] / g.reference_length
-        rigid_gap(pose, m.cos_x, m.sin_x, g.z, 1.0, s.H)
-        rigid_gap(pose, m.cos_f, m.sin_f, g.z, 1.0, s.HF)
-        rigid_gap(rate, m.cos_x, m.sin_x, g.z, 0.0, s.H_t)
+        rigid_gap(pose, m.directions.cos_x, m.directions.sin_x, g.z, 1.0, s.H)
+        rigid_gap(pose, m.directions.cos_f, m.directions.sin_f, g.z, 1.0, s.HF)
+        rigid_gap(rate, m.directions.cos_x, m.directions.sin_x, g.z, 0.0, s.H_t)
         y = s.system
         conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
         couette_fluxes(s.H, s.HF, None, vx, vz, g.mesh, y.fx, y.fz)
@@ -136,7 +136,7 @@ class _RelaxedFilm:
         add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
         sweeps = _sor(y.kx, y.kz, y.b, 0.0, self.relax, self.tolerance, P)
         out = np.empty(4)
-        pressure_integrals(P, g.weight, m.cos_x, m.sin_x, g.z, out)
+        pressure_integrals(P, g.weight, m.directions.cos_x, m.directions.sin_x, g.z, out)
         return out * self.model.scales.force, sweeps
 
     def __call__(self):

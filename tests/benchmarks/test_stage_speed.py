@@ -32,9 +32,9 @@ def _stage_runs(grid):
     vx = 0.5 * w.omega
 
     def gap():
-        rigid_gap(w.pose, p.cos_x, p.sin_x, z, 1.0, s.H)
-        rigid_gap(w.pose, p.cos_f, p.sin_f, z, 1.0, s.HF)
-        rigid_gap(w.rate, p.cos_x, p.sin_x, z, 0.0, s.H_t)
+        rigid_gap(w.pose, p.directions.cos_x, p.directions.sin_x, z, 1.0, s.H)
+        rigid_gap(w.pose, p.directions.cos_f, p.directions.sin_f, z, 1.0, s.HF)
+        rigid_gap(w.rate, p.directions.cos_x, p.directions.sin_x, z, 0.0, s.H_t)
 
     def coefficients():
         conductances(s.H, s.HF, None, 1.0, g.mesh, y.kx, y.kz)
@@ -48,7 +48,7 @@ def _stage_runs(grid):
         "coefficients": coefficients,
         "solve": lambda: s.closure.solve(y, s.work),
         "tangent": evaluation.tangent,
-        "integrals": lambda: pressure_integrals(film.oil.P, g.weight, p.cos_x, p.sin_x, z, out),
+        "integrals": lambda: pressure_integrals(film.oil.P, g.weight, p.directions.cos_x, p.directions.sin_x, z, out),
         "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None),
         "quantities": evaluation.quantities,
     }

@@ -177,14 +177,12 @@ class ElrodAdams:
 @njit(cache=True)
 def film_terms(film, inverse_step, mass_old):
     """`FilmTerms` of the mass-conserving film of `Coefficients`; parameters as for `solve_elrod`."""
-    grow, kept, nothing = np.empty(film.H.shape), np.zeros(film.H.shape), np.zeros(film.H.shape)
-    g, k, old = grow.reshape(-1), kept.reshape(-1), mass_old.reshape(-1)
-    H, H_t = film.H.reshape(-1), film.H_t.reshape(-1)
-    for c in range(g.size):
-        if inverse_step > 0.0:
-            g[c], k[c] = inverse_step * H[c], -inverse_step * old[c]
-        else:
-            g[c] = H_t[c]
+    grow, kept, nothing = np.empty(film.H.shape), np.empty(film.H.shape), np.zeros(film.H.shape)
+    n, m = film.H.shape
+    for i in range(n):
+        for j in range(m):
+            grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
+            kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
     return FilmTerms(film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.fixed)
 
 
@@ -221,9 +219,8 @@ def _linked(film, full):
     Oil also links columns that exchange no pressure flow (short bearings).
     """
     links, free, sets = np.empty(full.shape), np.empty(full.shape, dtype=np.bool_), np.empty(full.shape, dtype=np.bool_)
-    n, m = full.shape
-    for i in range(n):
-        for j in range(m):
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
             links[i, j] = abs(film.kx[i, j]) + abs(film.fx[i, j])
             free[i, j], sets[i, j] = not film.fixed[i, j], full[i, j] or film.fixed[i, j]
     return links, free, sets

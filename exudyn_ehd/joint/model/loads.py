@@ -75,7 +75,7 @@ def film_loads(
     """Loads of the film that ``parts.solver`` holds."""
     s, g, P = parts.solver, parts.grid, oil.P
     integrals = np.empty(4)
-    pressure_integrals(P, g.weight, parts.cos_x, parts.sin_x, g.z, integrals)
+    pressure_integrals(P, g.weight, parts.directions.cos_x, parts.directions.sin_x, g.z, integrals)
     extra_theta = extra_z = 0.0
     if extra is not None:
         extra_theta, extra_z = slope_integrals(P, g.weight, extra.slope_x, extra.slope_z)
@@ -136,8 +136,8 @@ def _add_contacts(
         contact_wrench(
             f.P[k],
             g.weight,
-            parts.cos_x,
-            parts.sin_x,
+            parts.directions.cos_x,
+            parts.directions.sin_x,
             g.z,
             motion,
             friction,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.grid import Directions
 from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
@@ -57,10 +58,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         supply=supply,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,
-        cos_x=np.cos(grid.x),
-        sin_x=np.sin(grid.x),
-        cos_f=np.cos(grid.x_face),
-        sin_f=np.sin(grid.x_face),
+        directions=Directions(*grid.directions),
         half_length=0.5 * bearing.length / R,
         pose_scale=pose_scale,
         motion_scale=np.concatenate((pose_scale, pose_scale, (0.5, 0.5 / R))),

@@ -305,10 +305,10 @@ class BearingModel:
         Returns the smallest, scaled, with the record's fields of these names.
         """
         s, p, z = self.solver, self.parts, self.grid.z
-        rigid_gap(journal.pose, p.cos_x, p.sin_x, z, 1.0, s.H)
-        rigid_gap(journal.pose, p.cos_f, p.sin_f, z, 1.0, s.HF)
+        rigid_gap(journal.pose, p.directions.cos_x, p.directions.sin_x, z, 1.0, s.H)
+        rigid_gap(journal.pose, p.directions.cos_f, p.directions.sin_f, z, 1.0, s.HF)
         if s.squeeze:
-            rigid_gap(journal.rate, p.cos_x, p.sin_x, z, 0.0, s.H_t)
+            rigid_gap(journal.rate, p.directions.cos_x, p.directions.sin_x, z, 0.0, s.H_t)
         smallest = 1.0 - float(largest_eccentricity(journal.pose, p.half_length))
         extra = None
         if self.effects.gap_terms:

@@ -274,7 +274,7 @@ def _contact_wrench(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarra
     theta, axial = friction_rows(R)
     for (friction, transition), by_gap in zip(f.friction, f.slope, strict=True):
         slope = by_gap * g.weight * R**2
-        cos, sin = slope * p.cos_x[:, None], slope * p.sin_x[:, None]
+        cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
         fields = np.stack([cos, sin, cos * g.z, sin * g.z, slope])
         rows = bore.contract(fields) / p.bearing.radial_clearance
         c, s, zc, zs, _ = rows
@@ -294,7 +294,7 @@ def contact_slope(film: SolvedFilm, f: ContactFields) -> np.ndarray:
 def _contact_columns(film: SolvedFilm, bore: Bore, f: ContactFields) -> np.ndarray:
     """Minus the gradient of the contacts' part of the bore's loads to the pose, (k, 4)."""
     slope, z, p = contact_slope(film, f), film.grid.z, film.parts
-    cos, sin = slope * p.cos_x[:, None], slope * p.sin_x[:, None]
+    cos, sin = slope * p.directions.cos_x[:, None], slope * p.directions.sin_x[:, None]
     return bore.contract(np.stack([cos, sin, cos * z, sin * z])).T * p.pose_scale
 
 

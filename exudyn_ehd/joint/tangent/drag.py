@@ -44,9 +44,9 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     p, g = film.parts, film.grid
     if p.liner is not None:
         face, cell = drag_by_gap(film)
-        contract_pose(face, p.cos_f, p.sin_f, g.z, gradient[:1, :4])
-        contract_pose(cell[1:], p.cos_x, p.sin_x, g.z, gradient[1:, :4])
-        contract_pose(cell[:1], p.cos_x, p.sin_x, g.z, gradient[:1, :4])
+        contract_pose(face, p.directions.cos_f, p.directions.sin_f, g.z, gradient[:1, :4])
+        contract_pose(cell[1:], p.directions.cos_x, p.directions.sin_x, g.z, gradient[1:, :4])
+        contract_pose(cell[:1], p.directions.cos_x, p.directions.sin_x, g.z, gradient[:1, :4])
         return
     f = _flux(film.solver)
     drag_pose_gradient(film.oil.P, f.cx_h, f.cz_h, *_gap_slopes(film), g.mesh, g.directions, gradient)

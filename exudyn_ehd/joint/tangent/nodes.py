@@ -274,8 +274,8 @@ class NodalProduct(TangentProduct):
 def _pose_columns(film: SolvedFilm) -> np.ndarray:
     """Minus dH / d(scaled pose) (n m, 4)."""
     p, z = film.parts, film.grid.z
-    cos, sin = np.repeat(p.cos_x, z.size), np.repeat(p.sin_x, z.size)
-    heights = np.tile(z, p.cos_x.size)
+    cos, sin = np.repeat(p.directions.cos_x, z.size), np.repeat(p.directions.sin_x, z.size)
+    heights = np.tile(z, p.directions.cos_x.size)
     return np.column_stack((cos, sin, cos * heights, sin * heights))
 
 

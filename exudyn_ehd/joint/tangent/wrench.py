@@ -102,9 +102,9 @@ def _following_deflection(film: SolvedFilm, solver: NonlinearFilmSolver, by_rate
     rows = (by_rate * solver.deflection_by_pressure).reshape(by_rate.shape[0], -1)[:, w.order[: w.count]]
     sens = solver.sensitivities(solver.adjoint(np.ascontiguousarray(rows)))
     out = np.zeros((by_rate.shape[0], 4))
-    contract_pose(sens.cell, p.cos_x, p.sin_x, z, out)
-    contract_pose(sens.face, p.cos_f, p.sin_f, z, out)
-    contract_pose(by_rate * solver.gap_slopes.D_r, p.cos_x, p.sin_x, z, out)
+    contract_pose(sens.cell, p.directions.cos_x, p.directions.sin_x, z, out)
+    contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, out)
+    contract_pose(by_rate * solver.gap_slopes.D_r, p.directions.cos_x, p.directions.sin_x, z, out)
     return out
 
 
@@ -146,9 +146,9 @@ def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow
         sens.cell[:] = sens.cell * f.slope + sens.rate * f.bend
         sens.rate[:] *= f.slope
     pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
-    contract_pose(sens.cell, p.cos_x, p.sin_x, z, pose)
-    contract_pose(sens.face, p.cos_f, p.sin_f, z, pose)
-    contract_pose(sens.rate, p.cos_x, p.sin_x, z, rates)
+    contract_pose(sens.cell, p.directions.cos_x, p.directions.sin_x, z, pose)
+    contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, pose)
+    contract_pose(sens.rate, p.directions.cos_x, p.directions.sin_x, z, rates)
     if slow_motion and p.liner is not None:
         rates += _following_deflection(film, p.liner, sens.rate)
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
@@ -192,7 +192,7 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
     p, g, w, P_q = film.parts, film.grid, film.solver.work, film.oil.P_q
     own = shape_rows(film)
     rows = np.empty((own + 5 * _pressed_contact(film), w.count))
-    load_adjoint_rhs(w.order, w.count, g.weight, p.cos_x, p.sin_x, g.z, w.active, rows)
+    load_adjoint_rhs(w.order, w.count, g.weight, p.directions.cos_x, p.directions.sin_x, g.z, w.active, rows)
     if P_q is not None:
         weigh_rows(w.order, w.count, P_q, rows[:4])
     if shear_needs_adjoint(film):
@@ -210,7 +210,9 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = p.liner.contact_by_pressure
-        contact_adjoint_rhs(w.order, w.count, g.weight, by_pressure, p.cos_x, p.sin_x, g.z, rows[own:])
+        contact_adjoint_rhs(
+            w.order, w.count, g.weight, by_pressure, p.directions.cos_x, p.directions.sin_x, g.z, rows[own:]
+        )
     return rows
 
 
@@ -261,7 +263,7 @@ def _contract_couette(film: SolvedFilm, gradient: np.ndarray, dc: np.ndarray) ->
     slope = _film_gap_slope(film)
     if slope is not None:
         gradient[0] *= slope
-    contract_pose(gradient, film.parts.cos_x, film.parts.sin_x, film.grid.z, dc[None, :4])
+    contract_pose(gradient, film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z, dc[None, :4])
 
 
 def _film_gap_slope(film: SolvedFilm) -> np.ndarray | None:
@@ -279,8 +281,8 @@ def _add_contacts(film: SolvedFilm, f: ContactFields, out: np.ndarray) -> None:
             contact_tangent(
                 f.slope[k],
                 g.weight,
-                p.cos_x,
-                p.sin_x,
+                p.directions.cos_x,
+                p.directions.sin_x,
                 g.z,
                 motion,
                 p.pose_scale,
@@ -298,4 +300,4 @@ def _end_gradient(film: SolvedFilm) -> np.ndarray:
     slope = _film_gap_slope(film)
     assert slope is not None
     lower, upper = (film.scales.ends * film.grid.width_x[0]).tolist()
-    return contract_ends(slope, -lower, upper, film.parts.cos_x, film.parts.sin_x, film.grid.z)
+    return contract_ends(slope, -lower, upper, film.parts.directions.cos_x, film.parts.directions.sin_x, film.grid.z)

@@ -72,7 +72,7 @@ def plain_contact(film, P, motion):
     The plain reference of the kernels.
     """
     p, g = film.parts, film.grid
-    basis = np.stack([p.cos_x[:, None] + 0 * g.z, p.sin_x[:, None] + 0 * g.z])
+    basis = np.stack([p.directions.cos_x[:, None] + 0 * g.z, p.directions.sin_x[:, None] + 0 * g.z])
     basis = np.concatenate([basis, basis * g.z, np.ones((1, *g.shape))])
     integrals = np.sum(basis * (P * g.weight), axis=(1, 2))
     theta, axial = friction_rows(R)
@@ -109,7 +109,7 @@ def test_contact_kernels_are_the_plain_formulas(speed, tilt, friction):
     f, g, p = film.pressing, film.grid, film.parts
     _, integrals, drag, wrench = plain_contact(film, f.P[0], motion)
     found, drag_out, wrench_out = np.empty(5), np.ones(6), np.ones(6)
-    arrays = (g.weight, p.cos_x, p.sin_x, g.z, motion)
+    arrays = (g.weight, p.directions.cos_x, p.directions.sin_x, g.z, motion)
     contact_wrench(f.P[0], *arrays, friction, asperity.transition_speed, R, found, drag_out, wrench_out)
     np.testing.assert_allclose(found, integrals, rtol=1e-12, atol=1e-13 * integrals[4])
     size = integrals[4] * R**2
