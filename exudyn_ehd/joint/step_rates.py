@@ -21,8 +21,9 @@ The weights are those that go on in a line for two steps, from the middle of d_1
 see misses that alternate. With linear kinematics d is h (beta - gamma / 2) (a1 - a0) of Newmark's formulas; fed back by
 weights that see its alternation, as 5/2 and -3/2 of the last two, it throws stiff films into alternation at spectral
 radii below 0.4. These keep every mode within the unit circle at any spectral radius, and damp alternating rates as
-velocities alone do. They ask for no parameter of the integrator: it takes a rule of second order for the coordinates,
-and the film at the end of the step, as Exudyn's implicit solvers of second order have.
+velocities alone do: on films of every closure, with what they remember, each step at least by the spectral radius. They
+ask for no parameter of the integrator: it takes a rule of second order for the coordinates, and the film at the end of
+the step, as Exudyn's implicit solvers of second order have.
 
 Misses by which a journal would move less than a millionth of its clearance in a step are left out: nodes on Lie groups
 round rotations to some 1e-11 rad a step, which over short steps is no rate.
