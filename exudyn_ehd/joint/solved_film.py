@@ -213,7 +213,7 @@ class OilFields(NamedTuple):
     P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
     ratio : viscosity over the reference; None where that is one
     ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
-    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line
+    beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line, and all is reduced
     """
 
     P: np.ndarray

@@ -224,9 +224,11 @@ def test_growth_of_whirl_does_not_depend_on_the_step(planar_rotor, name, ratio):
     """In shares of the growth with 480 steps a turn."""
     bearing, eq = whirling(CLOSURES[name])
     found = {steps: growth(planar_rotor, bearing, eq, ratio, steps) for steps in (60, 120, 480)}
-    # or, next to the threshold, 2e-4 per radian; cavities that remember are of first order in the step
-    for steps, tolerance in ((60, 0.02 if name == "swift-stieber" else 0.08), (120, 0.05)):
-        assert found[steps] == pytest.approx(found[480], rel=tolerance, abs=2e-4)
+    # The integrator's own error is 0.1 % with 60 steps. Cavities that remember are of first order in the step: 5.5 % of
+    # a growth that is itself a hundredth of the speed, or 0.6 % of the critical mass.
+    small = name == "swift-stieber"
+    for steps, tolerance in ((60, 2e-3 if small else 0.06), (120, 1e-3 if small else 0.03)):
+        assert found[steps] == pytest.approx(found[480], rel=tolerance)
 
 
 GROOVE = ehd.AxialGroove(angle=math.pi / 2, width_angle=0.5, length=0.02, pressure=1e5)

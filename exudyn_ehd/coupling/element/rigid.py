@@ -27,8 +27,6 @@ from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
-# Iterates in a row behind the end of a pressure law; two lead back, and with more Newton's method may converge there.
-MOST_BEYOND = 3
 
 
 class FilmElement:
@@ -61,7 +59,6 @@ class FilmElement:
         self.seen: list[float] = []
         self.steps = AcceptedSteps(self)
         self._trial: Trial | None = None
-        self._beyond = 0
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -99,8 +96,7 @@ class FilmElement:
         solver = self.steps.solver
         if not solver_state.can_reject_step(solver):
             raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(solver))
-        known = trial.evaluation is not None and np.isfinite(trial.evaluation.wrench.sum())
-        return self._beyond > MOST_BEYOND or not known
+        return trial.evaluation is None or not np.isfinite(trial.evaluation.wrench.sum())
 
     def _try(
         self,
@@ -139,7 +135,6 @@ class FilmElement:
             evaluation = self.model.evaluate(motion, memory, step, spin)
             self.evaluations += 1
         self._trial = Trial(q, q_t, memory, step, begin, bodies, motion, evaluation)
-        self._beyond = self._beyond + 1 if self._trial.status == Status.NO_PRESSURE else 0
         return self._trial
 
     def _move(

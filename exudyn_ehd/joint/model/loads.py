@@ -27,6 +27,10 @@ from exudyn_ehd.joint.solved_film import (
 from exudyn_ehd.joint.tangent.drag import drag_integrals
 
 _NO_CONTACT = np.zeros(6)
+# Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
+# they meet, and one too large would let them take the next states for solutions. Force and tangent are reduced
+# alike, and so lead to where they would have led.
+FARTHEST = 10.0
 
 
 def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> OilFields | None:
@@ -52,6 +56,10 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
             return None
     elif law is not None:
         beyond = not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
+        if beyond:
+            share = min(1.0, FARTHEST * law.largest_pressure / P.max())
+            P *= share
+            ratio *= share
         P /= pressure_scale
         ratio_q *= pressure_scale
     if shear is None:
