@@ -19,15 +19,13 @@ areas.
 
 from __future__ import annotations
 
-import numpy as np
 from numba import njit
 
 
 @njit(cache=True)
-def film_heat(P, q, kx, kz, couette, heat_out):
-    """Heat of the film: ``couette`` (n, m) plus the pressure flow's, half of it at either vertex of a link."""
+def film_heat(P, q, kx, kz, heat_out):
+    """Add the pressure flow's heat to ``heat_out`` (n, m), half of it at either vertex of a link."""
     n, m = P.shape
-    heat_out[:] = couette
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
@@ -41,10 +39,9 @@ def film_heat(P, q, kx, kz, couette, heat_out):
 
 
 @njit(cache=True)
-def film_flows(q, fill, kx, kz, fx, fz, area, rate, qx_out, qz_out, source_out):
-    """Flows over the links i -> i+1 and j -> j+1, and the source S of every vertex; ``rate`` = dm/dt (n, m)."""
+def film_flows(q, fill, kx, kz, fx, fz, qx_out, qz_out, source_out):
+    """Flows over the links i -> i+1 and j -> j+1; ``source_out`` (n, m) takes what leaves by them in addition."""
     n, m = q.shape
-    source_out[:] = area * rate
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
@@ -123,7 +120,7 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
     Returns
     -------
     leaving, work : float
-        What leaves, and ``sum (P - cavity) inflow`` plus, with ``squeeze``, ``cavity sum area dH/dt``.
+        What leaves, and ``sum (P - cavity) inflow``.
     """
     n, m = q.shape
     kx, kz, fx, fz, H, H_t, area, fixed = film
@@ -147,8 +144,6 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
                 inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
-    if squeeze and cavity != 0.0:
-        work += cavity * np.sum(area * H_t)
     return leaving, work
 
 

@@ -77,10 +77,8 @@ class OilFlows(Exchange):
         super().__init__(film)
         s, y, shape = film.solver, film.solver.system, film.grid.shape
         self.content = y.mass_old if self.stepped else self.fill * s.H
-        self.x, self.z, self.found = np.empty(shape), np.empty(shape), np.empty(shape)
-        film_flows(
-            s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, self.x, self.z, self.found
-        )
+        self.x, self.z, self.found = np.empty(shape), np.empty(shape), s.area * self.rate
+        film_flows(s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.found)
         self.found -= self.outside
         if s.closure.conserves_mass:
             self.found[:] = 0.0
@@ -111,6 +109,8 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
         y.coefficients,
         cavity,
     )
+    if s.squeeze and cavity != 0.0:
+        work += cavity * float(np.sum(s.area * y.H_t))
     return power_loss(film) + power * (work + _end_work(film)), leaving
 
 

@@ -240,10 +240,10 @@ class FilmTemperature(_Temperature):
                 g_theta, g_z, _ = film.slip(transition)
                 friction = friction + coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * area
         flow_power = p.flow_scale * film.scales.pressure
-        heat = np.empty(p.grid.shape)
+        heat = friction / flow_power
         # The links' flows of a compressible film are mass flows, which dissipate the drop of the flow work.
         drop = film.oil.P if p.compressible is None else p.compressible.flow_work(film.oil.P)
-        film_heat(drop, s.pressure, s.system.kx, s.system.kz, friction / flow_power, heat)
+        film_heat(drop, s.pressure, s.system.kx, s.system.kz, heat)
         return heat * flow_power
 
     def _solve(

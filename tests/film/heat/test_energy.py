@@ -32,8 +32,8 @@ def links(shape):
 
 def test_heat(fields):
     f = fields
-    heat, twin = np.empty(SHAPE), f["storage"].copy()
-    film_heat(f["P"], f["q"], f["kx"], f["kz"], f["storage"], heat)
+    heat, twin = f["storage"].copy(), f["storage"].copy()
+    film_heat(f["P"], f["q"], f["kx"], f["kz"], heat)
     for kind, a, b in links(SHAPE):
         w = f["k" + kind][a] * (f["q"][a] - f["q"][b]) * (f["P"][a] - f["P"][b])
         twin[a] += 0.5 * w
@@ -50,8 +50,8 @@ def test_flows_take_the_fill_from_upstream(fields):
         flow[kind][a] = f["k" + kind][a] * (f["q"][a] - f["q"][b]) + couette * f["fill"][a if couette >= 0.0 else b]
         source[a] += flow[kind][a]
         source[b] -= flow[kind][a]
-    qx, qz, s = (np.empty(SHAPE) for _ in range(3))
-    film_flows(f["q"], f["fill"], f["kx"], f["kz"], f["fx"], f["fz"], f["storage"], f["rate"], qx, qz, s)
+    qx, qz, s = np.empty(SHAPE), np.empty(SHAPE), f["storage"] * f["rate"]
+    film_flows(f["q"], f["fill"], f["kx"], f["kz"], f["fx"], f["fz"], qx, qz, s)
     np.testing.assert_allclose(qx, flow["x"], rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(qz, flow["z"], rtol=1e-13, atol=1e-15)
     np.testing.assert_allclose(s, source, rtol=1e-12, atol=1e-14)
@@ -60,9 +60,9 @@ def test_flows_take_the_fill_from_upstream(fields):
 def test_outside_flows_are_the_balance_of_fixed_vertices(fields):
     """Where the film next to an end is ruptured, only the link's flow passes."""
     f = fields
-    qx, qz, source, outside = (np.empty(SHAPE) for _ in range(4))
+    qx, qz, source, outside = np.empty(SHAPE), np.empty(SHAPE), f["storage"] * f["rate"], np.empty(SHAPE)
     args = [f[k] for k in ("q", "fill", "kx", "kz", "fx", "fz", "storage", "rate")]
-    film_flows(*args, qx, qz, source)
+    film_flows(*args[:6], qx, qz, source)
     fixed = np.zeros(SHAPE, dtype=np.bool_)
     fixed[:, [0, -1]] = fixed[2, :] = True
     unbroken = np.random.default_rng(7).random(SHAPE) > 0.4
