@@ -1,8 +1,11 @@
 """Joints of engines under impulsive loads, in coarse steps and with every effect of the oil."""
 
+import dataclasses
 import math
+import warnings
 
 import exudyn as exu
+import exudyn.utilities as eut
 import numpy as np
 import pytest
 
@@ -69,3 +72,98 @@ def test_loads_beyond_a_pressure_law(planar_rotor, closure):
             exu.ExudynError, match=r"'rotor bearing'.* t = .*runs away.*RoelandsPressure.*liner or bush"
         ):
             swinging(planar_rotor, "barus", steps, 0.9, load=55000.0, closure=closure)
+
+
+ROUGH = {
+    "asperity": ehd.GreenwoodTripp(composite_roughness=0.5e-6, composite_modulus=8e10),
+    "roughness": ehd.PatirCheng(composite_roughness=0.5e-6),
+}
+HEAT = ehd.FilmEnergy(
+    supply_temperature=373.15, bush_coefficient=5e3, bush_temperature=373.15,
+    journal_coefficient=5e3, journal_temperature=373.15,
+)  # fmt: skip
+# Peak of the gas, bar, law and effects, and the converged minimum film, um, and peak pressure, MPa (2880 steps a turn).
+CELLS = {
+    "plain": (60.0, None, {}, 0.8012, 207.7),
+    "barus": (30.0, LAWS["barus"], {**ROUGH, "thermal": HEAT}, 1.8115, 109.3),
+    "roelands": (30.0, LAWS["roelands"], {**ROUGH, "thermal": HEAT}, 1.8029, 105.4),
+}
+
+
+def gudgeon_pin(bar, law, effects, steps, rho):
+    """History of the gudgeon pin of an engine at 3000 rpm, one turn from bottom dead centre, and its warnings."""
+    speed, crank_radius, rod_length = 100.0 * math.pi, 0.04, 0.13
+    turn = 2.0 * math.pi / speed
+    oil = dataclasses.replace(ehd.oil("SAE 5W-30", temperature=373.15), pressure_law=law)
+    bearing = ehd.JournalBearing(
+        journal_radius=0.01, length=0.022, radial_clearance=10e-6, lubricant=oil,
+        film=ehd.FiniteLength(n_theta=64, n_z=8), cavitation=ehd.ElrodAdams(cavity_pressure=-1e5), **effects,
+    )  # fmt: skip
+    mbs = exu.SystemContainer().AddSystem()
+    ground = mbs.CreateGround()
+
+    def body(mass, inertia, **options):
+        return mbs.CreateRigidBody(inertia=eut.RigidBodyInertia(mass=mass, inertiaTensor=np.diag(inertia)), **options)
+
+    crank = body(3.0, [0.02] * 3, initialAngularVelocity=[speed, 0, 0])
+    mbs.CreateRevoluteJoint(itemNumbers=[ground, crank], position=[0, 0, 0], axis=[1, 0, 0])
+    big_end, place = np.array([0, 0, -crank_radius]), np.array([0, 0, rod_length - crank_radius])
+    velocity, middle = np.cross([speed, 0, 0], big_end), np.array([0, 0, 0.3 * rod_length])
+    swing = np.array([velocity[1] / rod_length, 0, 0])
+    rod = body(
+        0.6, [2.2e-3, 2.2e-3, 2e-4], referencePosition=big_end + middle,
+        initialVelocity=velocity + np.cross(swing, middle), initialAngularVelocity=swing,
+    )  # fmt: skip
+    piston = body(0.45, [3e-4] * 3, referencePosition=place)
+    mbs.CreatePrismaticJoint(itemNumbers=[ground, piston], position=place, axis=[0, 0, 1])
+    mbs.CreateGenericJoint(itemNumbers=[rod, crank], position=big_end, constrainedAxes=[1, 1, 1, 0, 1, 1])
+    joint = ehd.CreateLubricatedJoint(mbs, "gudgeon pin", [rod, piston], place, [1, 0, 0], bearing)
+
+    def gas(mbs, t, load):
+        past = math.remainder(speed * t - 0.35 - math.pi, 4.0 * math.pi)
+        pressure = bar * 1e5 * math.exp(-((past / 0.45) ** 2)) + 1e5
+        return [0, 0, -min(1.0, t / (0.1 * turn)) * pressure * math.pi * 0.04**2]
+
+    def drive(mbs, t, load):
+        rate = mbs.GetObjectOutputBody(crank, exu.OutputVariableType.AngularVelocity, [0, 0, 0])[0]
+        return [200.0 * (speed - rate), 0, 0]
+
+    mbs.CreateForce(itemNumber=piston, loadVector=[0, 0, -1.0], loadVectorUserFunction=gas)
+    mbs.CreateTorque(itemNumber=crank, loadVector=[1.0, 0, 0], loadVectorUserFunction=drive)
+    mbs.Assemble()
+    settings = ehd.ConfigureSolver(exu.SimulationSettings())
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = turn, steps
+    settings.timeIntegration.generalizedAlpha.spectralRadius = rho
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        assert ehd.SolveDynamic(mbs, settings)
+    return joint.history, [w.category for w in caught]
+
+
+def check_pin(name, steps, rho, tolerance):
+    *scene, lowest_film, peak = CELLS[name]
+    history, caught = gudgeon_pin(*scene, steps, rho)
+    assert 1e6 * history.minimum_gap.min() == pytest.approx(lowest_film, rel=tolerance)
+    assert 1e-6 * history.peak_pressure.max() == pytest.approx(peak, rel=tolerance)
+    return history, caught
+
+
+def test_gudgeon_pin_at_exudyns_spectral_radius():
+    """Degree by degree; a film that rings ended at 4e10 MPa here."""
+    check_pin("plain", 360, 0.9, 0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", CELLS)
+def test_gudgeon_pin_in_steps_of_all_sizes(name):
+    """1 % with 720 steps a turn and as many rows as steps; with half and a quarter of them 5 %, where forces that ring
+    are warned of."""
+    for rho in (0.9, 0.5):
+        history, caught = check_pin(name, 720, rho, 0.01)
+        assert history.time.size == 721
+        assert not caught
+    for steps, rho in ((360, 0.9), (180, 0.5)):
+        check_pin(name, steps, rho, 0.05)
+    assert ehd.RingingWarning in check_pin(name, 180, 0.9, 0.05)[1]
