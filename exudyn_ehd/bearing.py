@@ -12,7 +12,7 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftSti
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
+from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
 from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
@@ -260,11 +260,13 @@ def advice(status: Status, bearing: object) -> str:
             "liner too, or reduce the load or the step size."
         )
     law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
-    if status is Status.NO_PRESSURE and isinstance(law, RoelandsPressure):
+    if status is Status.NO_PRESSURE and law is not None:
+        barus = "use RoelandsPressure instead of BarusPressure, " if isinstance(law, BarusPressure) else ""
         return (
-            "the pressure runs away: with RoelandsPressure, too, no finite pressure carries a film that is pressed "
-            "together as fast as here; reduce loads and speeds of approach (initial velocities), check the law's "
-            "coefficient, or name an elastic liner or bush."
+            f"the pressure runs away: with {type(law).__name__} no finite pressure carries a film that is pressed "
+            "together as fast as here, and between rigid surfaces none carries more than a mean pressure (force / "
+            f"diameter / length) of some 1 / coefficient = {1.0 / law.coefficient:.3g} Pa; reduce loads and speeds of "
+            f"approach (initial velocities), check the law's coefficient, {barus}or name an elastic liner or bush."
         )
     return status.advice
 
