@@ -8,6 +8,7 @@ import scenes
 import toy
 
 from exudyn_ehd.coupling.items.resolve import resolve
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.status import Status
 
 STIFFNESS, DAMPING, TILTING = 1e5, 40.0, 50.0
@@ -17,7 +18,9 @@ class Spring:
     """F = -k e - d e_t at the journal's or at the housing's point, M = -k_t tilt; with the interface of a film."""
 
     remembers = needs_spin = False
-    bearing = SimpleNamespace(radial_clearance=5e-3, journal_radius=0.02, length=0.03)
+    bearing = SimpleNamespace(
+        radial_clearance=5e-3, journal_radius=0.02, length=0.03, supply=(), inlet=None, cavitation=SwiftStieber()
+    )
 
     def __init__(self, at_journal, tilting=TILTING):
         self.at_journal, self.tilting = at_journal, tilting

@@ -14,6 +14,7 @@ import numpy as np
 
 from exudyn_ehd.coupling import api
 from exudyn_ehd.coupling.items import joint_frame
+from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.status import Status
 
 exu.config.printToConsole = False
@@ -52,7 +53,9 @@ class ToyFilm:
     axial_drag: float = 3.0
     axial: bool = True
     bearing: SimpleNamespace = dataclasses.field(
-        default_factory=lambda: SimpleNamespace(radial_clearance=1e-3, journal_radius=0.02, length=0.03)
+        default_factory=lambda: SimpleNamespace(
+            radial_clearance=1e-3, journal_radius=0.02, length=0.03, supply=(), inlet=None, cavitation=SwiftStieber()
+        )
     )
     count: int = 0
     linear: bool = False
