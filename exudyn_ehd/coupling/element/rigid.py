@@ -96,7 +96,9 @@ class FilmElement:
         solver = self.steps.solver
         if not solver_state.can_reject_step(solver):
             raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(solver))
-        return trial.evaluation is None or not np.isfinite(trial.evaluation.wrench.sum())
+        if trial.status != Status.NO_PRESSURE or trial.evaluation is None:
+            return True
+        return not np.isfinite(trial.evaluation.wrench.sum())
 
     def _try(
         self,
