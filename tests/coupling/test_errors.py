@@ -267,7 +267,7 @@ def test_a_film_that_heats_beyond_any_oil_ends_the_run():
 def test_a_film_without_pressure_is_told_by_its_law():
     for law, remedy in (
         (ehd.BarusPressure(coefficient=2e-8), "use RoelandsPressure"),
-        (ehd.RoelandsPressure(coefficient=2e-8), "RoelandsPressure, too"),
+        (ehd.RoelandsPressure(coefficient=2e-8), "with RoelandsPressure .* law.s coefficient, or name"),
     ):
         oil = ehd.Lubricant(viscosity=0.02, pressure_law=law)
         mbs, _ = system(dataclasses.replace(BEARING, lubricant=oil), load=lambda t: -4e6)
