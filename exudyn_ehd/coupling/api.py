@@ -98,7 +98,7 @@ class LubricatedJoint(JointResults):
         current state, completed at this moment (during a run it is the start of the current step). A run that starts at
         the end of the record goes on with it and with what the film remembers, e.g. after
         ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new one, also a run at that time from the
-        old initial values.
+        old initial values. A last state without a film is left out, and a warning says why.
         """
         return self.element.steps.history(self.mbs)
 

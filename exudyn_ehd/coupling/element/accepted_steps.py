@@ -7,6 +7,7 @@ there serves the next step. A rejected step leaves nothing behind.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable
 from typing import Protocol
 
@@ -262,10 +263,15 @@ class AcceptedSteps:
         self.solvers = solver_state.NO_RUN
 
     def history(self, mbs: exu.MainSystem) -> JointHistory:
-        """The record, completed by the current state if that is later than the last recorded step."""
+        """The record, completed by the current state if that is later than the last step; warns if it has no film."""
         final = None
-        if mbs.systemIsConsistent:
-            time = mbs.systemData.GetTime(self._accepted)
-            if time > self._record.last_time:
-                final = self.film.row(time, self.film.look(mbs, time, self._accepted))
+        if mbs.systemIsConsistent and (time := mbs.systemData.GetTime(self._accepted)) > self._record.last_time:
+            trial = self.film.look(mbs, time, self._accepted)
+            final = self.film.row(time, trial)
+            if final is None and self.is_idle:
+                warnings.warn(
+                    f"{self.film.failures.no_film(time, trial, explicit=False)} The run ended there: history leaves "
+                    "this state out.",
+                    stacklevel=3,
+                )
         return self._record.snapshot(final)

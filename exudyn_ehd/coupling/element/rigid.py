@@ -93,12 +93,10 @@ class FilmElement:
         """
         if trial.status == Status.CONVERGED:
             return False
-        solver = self.steps.solver
-        if not solver_state.can_reject_step(solver):
-            raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(solver))
-        if trial.status != Status.NO_PRESSURE or trial.evaluation is None:
-            return True
-        return not np.isfinite(trial.evaluation.wrench.sum())
+        if not solver_state.can_reject_step(self.steps.solver):
+            raise self.failures.no_film(t, trial, explicit=solver_state.is_explicit(self.steps.solver))
+        found = trial.evaluation
+        return trial.status != Status.NO_PRESSURE or found is None or not np.isfinite(found.wrench.sum())
 
     def _try(
         self,

@@ -325,6 +325,37 @@ def test_sensor_agrees_with_the_record():
         joint.AddSensor("minimum_gap")
 
 
+class BeyondEvaluation(toy.ToyEvaluation):
+    """Behind the end of a pressure law, where forces go on."""
+
+    def __init__(self, model, motion):
+        super().__init__(model, motion)
+        if model.beyond:
+            self.status = Status.NO_PRESSURE
+
+
+class BeyondFilm(toy.ToyFilm):
+    """Toy film whose last states lie behind the end of a pressure law."""
+
+    beyond = False
+
+    def evaluate(self, motion, history=None, step=0.0, spin=0.0):
+        self.count += 1
+        return BeyondEvaluation(self, motion.copy())
+
+
+def test_last_state_without_a_film_is_said():
+    film = BeyondFilm()
+    mbs, joint, _ = scene(film)
+    mbs.Assemble()
+    settings = scenes.settings(0.001, 20)
+    mbs.SetPreStepUserFunction(lambda mbs, t: setattr(film, "beyond", t > 0.00096) or True)
+    mbs.SolveDynamic(settings)
+    with pytest.warns(UserWarning, match="'big end'.* t = 0.001 .*history leaves this state out"):
+        history = joint.history
+    assert len(history.time) == 20
+
+
 class LaggingEvaluation(toy.ToyEvaluation):
     """A force that follows the eccentricity with a lag: m' = (x - m) / tau by backward Euler."""
 
