@@ -91,7 +91,7 @@ class Balances:
                 assert s.fill.min() >= 0.0 and s.fill.max() <= 1.0
             if old.temperature is not None:
                 b = model.effects.thermal.balance(film, new.temperature)
-                error = abs(b["heat_in"] - b["carried_out"] - b["conducted"] - b["stored"])
+                error = abs(b["heat_in"] - b["convected"] - b["conducted"] - b["stored"])
                 self.heat = max(self.heat, error / max(abs(v) for v in b.values()))
         return row
 

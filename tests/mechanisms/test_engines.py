@@ -47,7 +47,7 @@ def lowest(history):
 @pytest.mark.parametrize("law", sample(list(LAWS), 1))
 def test_cavities_that_close_under_a_pressure_law(planar_rotor, law):
     """Where a cavity closes, the film of a stiff oil has no pressure at the speed of before, however short the step:
-    Newton's method comes back from there. 2 cycles were the end, with steps of any size."""
+    Newton's method has to come back from there, or no step is short enough."""
     history = swinging(planar_rotor, law, 100, 0.6)
     assert history.time[-1] == pytest.approx(3.0 * CYCLE)
     assert np.diff(history.time).min() > 0.01 * CYCLE / 100
@@ -151,7 +151,7 @@ def check_pin(name, steps, rho, tolerance):
 
 
 def test_gudgeon_pin_at_exudyns_spectral_radius():
-    """Degree by degree; a film that rings ended at 4e10 MPa here."""
+    """Degree by degree; a film that rings reaches 4e10 MPa here."""
     check_pin("plain", 360, 0.9, 0.05)
 
 

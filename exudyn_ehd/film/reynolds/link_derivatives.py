@@ -37,7 +37,7 @@ def derivatives_of(d):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _carried(fill, rho, couette, axis, i, j, p, q):
+def _convected(fill, rho, couette, axis, i, j, p, q):
     """sigma of the link (i, j) -> (p, q) along ``axis``; arguments as for `link_derivatives`."""
     sigma = 1.0
     if rho is not None:
@@ -56,9 +56,9 @@ def mass_flows(fill, rho, couette):
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
-            out[0, i, j] = fx[i, j] * _carried(fill, rho, couette, 0, i, j, nxt, j)
+            out[0, i, j] = fx[i, j] * _convected(fill, rho, couette, 0, i, j, nxt, j)
         for j in range(m - 1):
-            out[1, i, j] = fz[i, j] * _carried(fill, rho, couette, 1, i, j, i, j + 1)
+            out[1, i, j] = fz[i, j] * _convected(fill, rho, couette, 1, i, j, i, j + 1)
     return out
 
 
@@ -92,7 +92,7 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
         lx = link_x[i] * flow_x
         wx = width_x[i]
         for j in range(m):
-            v = linked * vx * _carried(fill, rho, couette, 0, i, j, nxt, j)
+            v = linked * vx * _convected(fill, rho, couette, 0, i, j, nxt, j)
             if slopes is None:
                 h = HF[i, j]
                 g_h = 3.0 * h * h
@@ -102,9 +102,9 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
             DX[i, j] = (v - g_h * (lx * (P[nxt, j] - P[i, j]))) * width_z[j]
         for j in range(m):
             carrier = HF[i, j] if slopes is None else slopes[2][i, j]
-            SX[i, j] = linked * carrier * _carried(fill, rho, couette, 0, i, j, nxt, j) * width_z[j]
+            SX[i, j] = linked * carrier * _convected(fill, rho, couette, 0, i, j, nxt, j) * width_z[j]
         for j in range(m - 1):
-            v = vz * _carried(fill, rho, couette, 1, i, j, i, j + 1)
+            v = vz * _convected(fill, rho, couette, 1, i, j, i, j + 1)
             if slopes is None:
                 h = 0.5 * (H[i, j] + H[i, j + 1])
                 g_h = 3.0 * h * h
@@ -114,7 +114,7 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
             DZ[i, j] = (v - g_h * (link_z[j] * (P[i, j + 1] - P[i, j]))) * wx
         for j in range(m - 1):
             carrier = 0.5 * (H[i, j] + H[i, j + 1]) if slopes is None else slopes[3][i, j]
-            SZ[i, j] = carrier * _carried(fill, rho, couette, 1, i, j, i, j + 1) * wx
+            SZ[i, j] = carrier * _convected(fill, rho, couette, 1, i, j, i, j + 1) * wx
         if by_speed is not None:
             for j in range(m):
                 SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]

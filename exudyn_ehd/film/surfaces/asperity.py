@@ -151,7 +151,7 @@ class AsperityContact(AverageGap):
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
         """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `seams.Contact`."""
-        settle_asperities(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
+        solve_asperity_gap(X, compliance / scale, scale, self.sigma, self.level, self.table, G, P_out, slope_out)
 
 
 @njit(cache=True)
@@ -200,7 +200,7 @@ def asperity_pressure(H, sigma, level, table, P_out, slope_out):
 
 
 @njit(cache=True)
-def settle_asperities(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
+def solve_asperity_gap(X, compliance, scale, sigma, level, table, G, P_out, slope_out):
     """Gap on a Winkler element that asperities press: the root of ``G - X - compliance p(G)``, in place from any start.
 
     p falls and is convex, so that Newton's method gets below the root in one step, never below X, and then rises to it.

@@ -69,7 +69,7 @@ class WallContact:
         self, X: np.ndarray, compliance: float, scale: float, G: np.ndarray, P_out: np.ndarray, slope_out: np.ndarray
     ) -> None:
         """Gap G (n, m) on Winkler elements, with contact pressure and slope there; as `joint.seams.Contact`."""
-        settle_wall(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
+        solve_wall_gap(X, compliance, scale, self.onset, self.level, G, P_out, slope_out)
 
     def limit(
         self,
@@ -100,7 +100,7 @@ def wall_pressure(H, onset, pressure, P_out, slope_out):
 
 
 @njit(cache=True)
-def settle_wall(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
+def solve_wall_gap(X, compliance, scale, onset, pressure, G_out, P_out, slope_out):
     """Gap on a Winkler element that the wall presses: ``G = X + q (1 - G / onset)^2``,
     q = compliance times pressure, by its larger root.
 

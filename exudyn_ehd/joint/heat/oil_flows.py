@@ -31,27 +31,27 @@ class Exchange:
     fill, rate, outside : (n, m) arrays
         Film fraction, times the density ratio; d(fill H)/dt, 1/s; flow that enters at the ends and at supplies, in
         units of c R^2.
-    fx, fz, carried : (n, m) arrays
-        Couette flows of the links before they take the upstream value of ``carried`` along.
+    fx, fz, convected : (n, m) arrays
+        Couette flows of the links before they take the upstream value of ``convected`` along.
     """
 
     def __init__(self, film: SolvedFilm) -> None:
         s, y, shape = film.solver, film.solver.system, film.grid.shape
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
-        self.fill = self.carried = s.fill if conserves else s.ones
+        self.fill = self.convected = s.fill if conserves else s.ones
         self.fx, self.fz = y.fx, y.fz
         oil = film.parts.compressible
         if oil is not None:
             # these flows hold the upstream film fraction and the links' density already
             self.fx, self.fz, _ = oil.couette_flows()
-            self.fill, self.carried = oil.rho * self.fill, s.ones
+            self.fill, self.convected = oil.rho * self.fill, s.ones
         self.rate, self.outside = np.empty(shape), np.empty(shape)
         self.stepped = conserves and y.inverse_step > 0.0 and not s.instant
         old = y.mass_old if self.stepped else s.H
         content_rate(s.H, s.H_t, self.fill, old, y.inverse_step if self.stepped else 0.0, s.squeeze, self.rate)
         unbroken = np.ones(shape, dtype=np.bool_) if conserves else s.work.active | fixed
         outside_flows(
-            s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, fixed, unbroken, self.outside
+            s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, s.area, self.rate, fixed, unbroken, self.outside
         )
 
     @property
@@ -78,7 +78,7 @@ class OilFlows(Exchange):
         s, y, shape = film.solver, film.solver.system, film.grid.shape
         self.content = y.mass_old if self.stepped else self.fill * s.H
         self.x, self.z, self.found = np.empty(shape), np.empty(shape), s.area * self.rate
-        film_flows(s.pressure, self.carried, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.found)
+        film_flows(s.pressure, self.convected, y.kx, y.kz, self.fx, self.fz, self.x, self.z, self.found)
         self.found -= self.outside
         if s.closure.conserves_mass:
             self.found[:] = 0.0

@@ -99,12 +99,12 @@ class LumpedTemperature(_Temperature):
         return (heat + flow * self.supply + G * self.housing) / (flow + G)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
-        """Heat in, carried out, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
+        """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         heat, flow = self._rates(film)
         stored = self.capacity * (temperature - _number(film)) / film.step if film.step > 0.0 else 0.0
         return {
             "heat_in": heat,
-            "carried_out": flow * (temperature - self.supply),
+            "convected": flow * (temperature - self.supply),
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
         }
@@ -207,7 +207,7 @@ class FilmTemperature(_Temperature):
         return self._solve(film, 0.0)[0]
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
-        """Heat in, carried out, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
+        """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         return self._solve(film, film.step, temperature)[1]
 
     def _wall(self, film: SolvedFilm) -> tuple[float | np.ndarray, float | np.ndarray]:
@@ -281,10 +281,10 @@ class FilmTemperature(_Temperature):
         rise = T - supply
         mixed = float(np.sum(weight * rise))
         stored = float(np.sum(store * (T - old))) if step > 0.0 else 0.0
-        carried = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
+        convected = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
         return T, {
             "heat_in": float(heat.sum()),
-            "carried_out": scale * carried,
+            "convected": scale * convected,
             "conducted": scale * float(np.sum(walls * (T - wall))),
             "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }

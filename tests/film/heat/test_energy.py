@@ -131,7 +131,7 @@ def test_band_is_the_matrix_of_the_balance(fields, held):
             twin[up, up] -= share
             twin[down, down] -= share
             twin[down, up] += share
-    np.testing.assert_allclose(band, twin, rtol=1e-13, atol=1e-14)
+    np.testing.assert_allclose(band, twin, rtol=1e-14, atol=1e-15)
     # every branch of the limiter
     assert {0.0, 0.5} < set(weights)
     # what a link carries leaves one vertex and reaches the other

@@ -53,7 +53,7 @@ def make(thermal, law=SOFT, pressure_law=None, **options):
 
 
 def defect(balance):
-    out = balance["carried_out"] + balance["conducted"] + balance["stored"]
+    out = balance["convected"] + balance["conducted"] + balance["stored"]
     return abs(balance["heat_in"] - out) / max(abs(v) for v in balance.values())
 
 
@@ -73,7 +73,7 @@ def run(model, motion=MOTION, steps=4):
 @THERMAL
 @CLOSURE
 @PRESSURE
-def test_heat_in_is_carried_out_conducted_and_stored(thermal, cavitation, pressure_law):
+def test_heat_in_is_convected_conducted_and_stored(thermal, cavitation, pressure_law):
     """1e-8 of the largest term; the equations close to rounding, the flows carry about 1e-11."""
     model = make(thermal, pressure_law=pressure_law, cavitation=cavitation)
     history, worst = run(model, steps=20)

@@ -84,7 +84,7 @@ def test_orbits_keep_bounds_and_balance(seed):
         before, history = history.temperature, evaluation.history()
         assert history.temperature.min() > min(before.min(), SUPPLY, bush) - 1e-9
         balance = model.effects.thermal.balance(evaluation.film, history.temperature)
-        defect = balance["heat_in"] - balance["carried_out"] - balance["conducted"] - balance["stored"]
+        defect = balance["heat_in"] - balance["convected"] - balance["conducted"] - balance["stored"]
         assert abs(defect) < 1e-10 * max(map(abs, balance.values()))
 
 

@@ -44,7 +44,7 @@ def petroff(temperature=SUPPLY, speed=OMEGA):
 
 
 def defect(balance):
-    return abs(balance["heat_in"] - balance["carried_out"] - balance["conducted"] - balance["stored"]) / max(
+    return abs(balance["heat_in"] - balance["convected"] - balance["conducted"] - balance["stored"]) / max(
         abs(v) for v in balance.values()
     )
 
@@ -195,7 +195,7 @@ def test_isothermal_walls_are_the_limit_of_strong_cooling():
 )
 @pytest.mark.parametrize("ends", [(0.0, 0.0), (1e5, 4e5)])
 def test_balance_over_a_transient_and_at_rest(cavitation, thermal, ends):
-    """Heat in = carried out + conducted + stored, at every accepted step with squeeze, and in the steady state."""
+    """Heat in = convected + conducted + stored, at every accepted step with squeeze, and in the steady state."""
     model = build_model(bearing(thermal, cavitation=cavitation, end_pressures=ends))
     history, worst = run(model, motion(0.6, vx=2e-3, vy=-3e-3), 1e-4, 20)
     assert worst < BALANCE

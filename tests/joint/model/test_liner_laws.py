@@ -179,7 +179,7 @@ def test_heat_of_a_film_on_a_liner_is_kept(closure):
         assert evaluation.status is ehd.Status.CONVERGED
         history = evaluation.history()
         b = model.effects.thermal.balance(evaluation.film, history.temperature)
-        left = b["heat_in"] - b["carried_out"] - b["conducted"] - b["stored"]
+        left = b["heat_in"] - b["convected"] - b["conducted"] - b["stored"]
         assert abs(left) < 1e-8 * max(abs(v) for v in b.values())
     assert history.temperature.max() > 325.0
 
