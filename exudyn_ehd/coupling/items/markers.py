@@ -13,7 +13,8 @@ from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
 from exudyn_ehd.coupling.items.bodies import NODE_KINDS, beam_item, body_item, cable_item, node_item
 from exudyn_ehd.coupling.items.item import Item
-from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, MeshSide, NodeSide, TreeSide
+from exudyn_ehd.coupling.items.meshes import mesh_item
+from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, NodeSide, TreeSide
 from exudyn_ehd.status import InputError
 
 _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeRigid")
@@ -25,6 +26,10 @@ def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
     item = _known_marker_item(mbs, where, data)
     if item is not None:
         return dataclasses.replace(item, marker=marker, is_marker=True)
+    if data["markerType"] == "SuperElementRigid":
+        body = mbs.GetObject(data["bodyNumber"])
+        if body["objectType"] not in ("FFRF", "FFRFreducedOrder"):
+            return mesh_item(mbs, where, marker, data, body)
     if data["markerType"] not in _RIGID_MARKERS:
         raise InputError(
             f"{where}: a marker of type {data['markerType']} has no orientation; give a rigid marker, e.g. "
@@ -99,14 +104,9 @@ def _marker_side(
     kind = data["markerType"]
     if kind == "KinematicTreeRigid":
         return (lambda rotation: TreeSide(marker, list(nodes), rotation)), nodes
-    if kind == "SuperElementRigid" and body["objectType"] in ("FFRF", "FFRFreducedOrder"):
+    if kind == "SuperElementRigid":
         frame = node_item(mbs, "", nodes[0]).side(np.zeros(3), np.eye(3))
         assert isinstance(frame, NodeSide)
         frame.rho[:] = 0.0
         return (lambda rotation: FloatingSide(marker, list(nodes), rotation, frame)), nodes
-    if kind == "SuperElementRigid" and all(mbs.GetNode(node)["nodeType"] == "Point" for node in nodes):
-        own = np.array(data["meshNodeNumbers"], dtype=int)
-        used = tuple(nodes[i] for i in own)
-        columns = (3 * own[:, None] + np.arange(3)).ravel()
-        return (lambda rotation: MeshSide(marker, list(used), rotation, columns)), used
     return (lambda rotation: MarkerSide(marker, list(nodes), rotation)), nodes

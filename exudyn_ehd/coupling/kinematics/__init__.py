@@ -2,9 +2,10 @@
 
 Module map
 ----------
-sides        pose, rates and Jacobians of a side
-rigid_nodes  nodes of rigid bodies
-beam_sides   points of beams
-cables       points of cables
-relative     motion of the journal in the housing's frame
+sides         pose, rates and Jacobians of a side
+rigid_nodes   nodes of rigid bodies
+beam_sides    points of beams
+cables        points of cables
+fitted_sides  best rigid fit of the nodes of finite elements
+relative      motion of the journal in the housing's frame
 """

@@ -1,8 +1,8 @@
 """The two sides of a joint: who carries the marker frame, and how its state is read.
 
 A side fills the work arrays of `kinematics`: `NodeSide` for the nodes of rigid bodies and ground through kernels,
-`beam_sides` for geometrically exact beams and cables, `MarkerSide` for any other rigid marker through Exudyn's own
-marker Jacobians.
+`beam_sides` for geometrically exact beams and cables, `fitted_sides` for finite elements in absolute coordinates,
+`MarkerSide` for any other rigid marker through Exudyn's own marker Jacobians.
 """
 
 from __future__ import annotations
@@ -101,15 +101,12 @@ class MarkerSide:
 
     def bind(self, mbs: exu.MainSystem) -> None:
         """Find the number of coordinates, which Exudyn knows only after Assemble."""
-        self.size = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian).shape[1]
+        self.size = np.asarray(mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)).shape[1]
         self.jac = np.zeros((4, 3, self.size))
         try:
             mbs.ComputeItem(self.marker, exu.ComputeItemType.JacobianTTimesVectorDerivative, vector=np.ones(6))
         except exu.ExudynError:
             self._offers_change = False
-
-    def _jacobian(self, mbs: exu.MainSystem, item: exu.ComputeItemType) -> np.ndarray:
-        return np.asarray(mbs.ComputeItem(self.marker, item))
 
     def update(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType) -> None:
         """Fill the frame from the marker in ``configuration``, and Jp, Jr if that is the current one."""
@@ -120,8 +117,8 @@ class MarkerSide:
         self.frame[:, 4] = mbs.GetMarkerOutput(self.marker, output.Velocity, configuration)
         self.frame[:, 5] = mbs.GetMarkerOutput(self.marker, output.AngularVelocity, configuration)
         if configuration == _CURRENT:
-            self.jac[0] = self._jacobian(mbs, exu.ComputeItemType.PositionJacobian)
-            self.jac[1] = self._jacobian(mbs, exu.ComputeItemType.RotationJacobian)
+            self.jac[0] = mbs.ComputeItem(self.marker, exu.ComputeItemType.PositionJacobian)
+            self.jac[1] = mbs.ComputeItem(self.marker, exu.ComputeItemType.RotationJacobian)
 
     def vary(self, mbs: exu.MainSystem, q: np.ndarray, q_t: np.ndarray) -> None:
         """Fill Vq, Wq; `update` must have run at the same state."""
@@ -223,29 +220,6 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
         change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
     change[:3, :n, n:] = np.cross(turn[:, None, :], jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
     return change
-
-
-class MeshSide(MarkerSide):
-    """Superelement marker on a finite-element object with positions as nodes: only the marker's own nodes take part.
-
-    The Jacobian of the position is constant, that of the averaged rotation as good as constant.
-
-    Parameters
-    ----------
-    marker, rotation
-        As in `MarkerSide`.
-    nodes : list
-        The marker's nodes.
-    columns : ndarray of int (n,)
-        Their columns in the marker's Jacobians.
-    """
-
-    def __init__(self, marker: Index, nodes: list[Index], rotation: np.ndarray, columns: np.ndarray) -> None:
-        super().__init__(marker, nodes, rotation)
-        self.columns = columns
-
-    def _jacobian(self, mbs: exu.MainSystem, item: exu.ComputeItemType) -> np.ndarray:
-        return np.asarray(mbs.ComputeItem(self.marker, item))[:, self.columns]
 
 
 def detached(side: SideType) -> SideType:
