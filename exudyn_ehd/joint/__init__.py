@@ -9,6 +9,7 @@ bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time
 model        from a bearing's description to its evaluation
+balance      steady films: their temperature, their position under a load
 audit        which effects mattered
 static       steady films, equilibrium, Stribeck curve
 """

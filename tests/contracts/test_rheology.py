@@ -165,7 +165,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
         "heat.temperature._Temperature.viscosity_ratio",
         "heat.oil_flows.film_flows",
         "model.loads.couette_integral_ratio",
-        "static.steady_temperature._target",
+        "balance.temperature._target",
     ):
         monkeypatch.setattr(f"exudyn_ehd.joint.{target}", forbidden)
     for model in (expected, make(cavitation=cavitation)):

@@ -22,10 +22,10 @@ from exudyn_ehd.coupling.watch import solver_state, starvation
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
+from exudyn_ehd.joint.balance.film import lacks_oil
+from exudyn_ehd.joint.balance.temperature import is_too_hot
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.steady import lacks_oil
-from exudyn_ehd.joint.static.steady_temperature import is_too_hot
 from exudyn_ehd.joint.step_rates import StepStart, next_start
 from exudyn_ehd.status import Status
 

@@ -7,7 +7,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
-from exudyn_ehd.joint.static.steady_temperature import HOTTEST, WAY_OUT
+from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
 from exudyn_ehd.status import FilmError, Status
 
 # Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are

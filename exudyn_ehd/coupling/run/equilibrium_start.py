@@ -12,10 +12,10 @@ from exudyn_ehd.coupling.contract import JointModel
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative, rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, read_state
+from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
-from exudyn_ehd.joint.static.steady_temperature import settled_history
 from exudyn_ehd.status import InputError, Status, require_number, require_vector
 
 _INITIAL = exu.ConfigurationType.Initial

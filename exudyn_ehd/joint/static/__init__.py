@@ -4,7 +4,6 @@ Module map
 ----------
 solve_film          film in any gap
 steady              prescribed position
-steady_temperature  its temperature
 equilibrium         position under a load, stiffness and damping
 dynamic_stiffness   both at any frequency, for films that remember their oil
 stribeck            friction over speed

@@ -6,23 +6,22 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
+from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
-from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.joint.static.steady_temperature import settled_history
+from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
-from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_size, require_vector
+from exudyn_ehd.status import InputError, Status, require_number, require_size, require_vector
 
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
@@ -174,40 +173,6 @@ MORE_OIL = (
     "give the bearing supply=(AxialGroove(...),), end_pressures above the cavity pressure, or "
     "ElrodAdams(cavity_pressure=-1e5) below ambient pressure."
 )
-
-
-def lacks_oil(bearing: JournalBearing) -> bool:
-    """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
-    closure = bearing.cavitation
-    supplied = bearing.supply or isinstance(bearing.inlet, MaximumGap)
-    return closure.conserves_mass and not supplied and max(bearing.end_pressures) <= closure.cavity_pressure
-
-
-def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
-    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
-
-    None if nothing remembers.
-    """
-    history = settled_history(model, motion)
-    if not model.remembers_mass or not np.any(motion[4:8]):
-        return history
-    at_rest = motion.copy()
-    at_rest[4:8] = 0.0
-    content = evaluate_at(model, at_rest, where)[0].history()
-    assert content is not None
-    return replace(content, temperature=None if history is None else history.temperature)
-
-
-def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Evaluation, SolvedFilm]:
-    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
-    evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
-    if evaluation.film is None or evaluation.status is not Status.CONVERGED:
-        raise FilmError(
-            f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
-            f"{advice(evaluation.status, model.bearing)}"
-        )
-    return evaluation, evaluation.film
 
 
 def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:

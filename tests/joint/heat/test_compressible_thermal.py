@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.steady_temperature import settled_history
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, OMEGA, STEP = 320.0, 300.0, 1e-4

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
-from exudyn_ehd.joint.static.steady_temperature import settled_history
 
 R, L, C = 0.025, 0.05, 25e-6
 SUPPLY, MU, BETA, OMEGA = 320.0, 0.02, 0.03, 300.0

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.impedance import ImpedanceModel
-from exudyn_ehd.joint.static.steady_temperature import settled_history
 from exudyn_ehd.status import FilmError, InputError, Status, require_integer, require_number
 from tests.benchmarks.accuracy.scenes.setting import Outcome, QuantityOfInterest, Setting
 

@@ -1,0 +1,8 @@
+"""Steady films in balance: with their own heat, and with a load.
+
+Module map
+----------
+film         film at a motion, its temperature and oil content settled
+temperature  steady temperature
+position     journal's position under a load
+"""

@@ -1,0 +1,47 @@
+"""The steady film at a motion of the journal, with settled temperature and oil content."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
+from exudyn_ehd.joint.balance.temperature import settled_history
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.status import FilmError, Status
+
+
+def lacks_oil(bearing: JournalBearing) -> bool:
+    """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
+    closure = bearing.cavitation
+    supplied = bearing.supply or isinstance(bearing.inlet, MaximumGap)
+    return closure.conserves_mass and not supplied and max(bearing.end_pressures) <= closure.cavity_pressure
+
+
+def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
+    """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
+
+    None if nothing remembers.
+    """
+    history = settled_history(model, motion)
+    if not model.remembers_mass or not np.any(motion[4:8]):
+        return history
+    at_rest = motion.copy()
+    at_rest[4:8] = 0.0
+    content = evaluate_at(model, at_rest, where)[0].history()
+    assert content is not None
+    return replace(content, temperature=None if history is None else history.temperature)
+
+
+def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Evaluation, SolvedFilm]:
+    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
+    evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
+    if evaluation.film is None or evaluation.status is not Status.CONVERGED:
+        raise FilmError(
+            f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
+            f"{advice(evaluation.status, model.bearing)}"
+        )
+    return evaluation, evaluation.film
