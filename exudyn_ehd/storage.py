@@ -8,14 +8,17 @@ that can't be written costs the computing time of every run and nothing else.
 
 from __future__ import annotations
 
+import dataclasses
+import enum
 import hashlib
 import io
 import os
 import pathlib
 import tempfile
+import types
 import warnings
 import zipfile
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
@@ -53,6 +56,63 @@ def replacing(path: str | pathlib.Path, *, binary: bool = False) -> Iterator[Any
     except BaseException:
         pathlib.Path(name).unlink(missing_ok=True)
         raise
+
+
+def fingerprint(value: object) -> str:
+    """Digest of what describes something: options by their fields, arrays by content, functions by their code.
+
+    It is the same in every process. Names and constants that a function refers to outside itself do not count.
+
+    Parameters
+    ----------
+    value : object
+        Numbers, texts, arrays, containers of them, functions, and objects with attributes.
+    """
+    digest = hashlib.sha256()
+    for part in _parts(value, set()):
+        digest.update(part)
+    return digest.hexdigest()[:32]
+
+
+def _parts(value: object, above: set[int]) -> Iterator[bytes]:
+    """The bytes that tell a value from others of its kind or another; ``above`` holds what contains it."""
+    if isinstance(value, np.generic):
+        value = value.item()
+    if value is None or isinstance(value, (bool, complex, str, bytes, enum.Enum)):
+        yield f"<{value!r}>".encode()
+        return
+    if isinstance(value, (int, float)):
+        yield f"<{value if abs(value) > 2**53 else float(value)!r}>".encode()
+        return
+    yield f"<{type(value).__qualname__}".encode()
+    if id(value) not in above:
+        if isinstance(value, np.ndarray) and value.dtype != object:
+            yield repr((value.dtype.str, value.shape)).encode() + np.ascontiguousarray(value).tobytes()
+        elif isinstance(value, (type, types.BuiltinFunctionType, types.ModuleType)):
+            yield repr(value).encode()
+        else:
+            for item in _content(value):
+                yield from _parts(item, above | {id(value)})
+    yield b">"
+
+
+def _content(value: Any) -> Iterable[object]:
+    """What an object is made of."""
+    if dataclasses.is_dataclass(value):
+        return [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
+    if isinstance(value, types.CodeType):
+        return value.co_code, value.co_names, value.co_consts
+    if isinstance(value, types.FunctionType):
+        cells = [cell.cell_contents for cell in value.__closure__ or ()]
+        return value.__code__, value.__defaults__, value.__kwdefaults__, cells
+    if isinstance(value, Mapping):
+        return value.items()
+    if isinstance(value, (set, frozenset)):
+        return sorted(value, key=repr)
+    if isinstance(value, (tuple, list, np.ndarray)):
+        return value
+    # as pickle sees it: class, arguments, attributes
+    return value.__reduce_ex__(2)
 
 
 def cache_folder() -> pathlib.Path:

@@ -1,4 +1,4 @@
-"""Studies over parameters with Exudyn's `ParameterVariation`: in this process, in several, under MPI, on hosts.
+"""Studies over parameters: in this process, in several, under MPI, on hosts; finished rows can be kept on disk.
 
 The same call serves all four; what differs is how the script is started:
 
@@ -20,12 +20,10 @@ Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: ev
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
+import itertools
 import math
 import numbers
 import pathlib
-import pickle
-import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -34,10 +32,11 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.status import EHDError, InputError, require_integer
+from exudyn_ehd.studies import places
+from exudyn_ehd.studies.rows import Row, RowFile
 from exudyn_ehd.tables import text_table, write_csv
 
 _WHERE = "parameter_study"
-_INDEX = "computationIndex"
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,6 +156,7 @@ def parameter_study(
     processes: int = 1,
     mpi: bool = False,
     hosts: Sequence[str] = (),
+    file: str | pathlib.Path | None = None,
     units: Mapping[str, str] | None = None,
     show_progress: bool = True,
 ) -> StudyTable:
@@ -176,6 +176,10 @@ def parameter_study(
         Compute on the ranks of an MPI run.
     hosts : sequence of str
         Names or addresses of hosts that run dispy's node server.
+    file : path, optional
+        Keeps finished rows, each as soon as it is there. A second call reads them and computes the rest: what was
+        interrupted, what failed, what was added to the lists. A change of the function itself, or of the bearing and
+        other things that it holds, is noticed; one of what it calls is not: delete the file then.
     units : dict, optional
         Units of parameters and results by name, for print and CSV; common names have theirs.
     show_progress : bool
@@ -184,101 +188,53 @@ def parameter_study(
     Returns
     -------
     StudyTable
-        A row that fails does not end the study: it holds nan and says why in ``errors``.
+        A row that fails, or whose process dies, does not end the study: it holds nan and says why in ``errors``. Under
+        MPI a rank that dies ends all of them; with ``file`` the next call goes on from there.
 
     Raises
     ------
     InputError
         For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at
-        once, missing packages.
+        once, missing packages, MPI without mpiexec, files of another function.
     EHDError
-        If every row failed.
+        If every row failed, or no host answers.
     """
-    from exudyn.processing import ParameterVariation
-
     lists = _checked_parameters(parameters)
     where = _checked_place(processes, mpi, hosts)
-    count = math.prod(len(values) for values in lists.values())
-    entry: Any = _Entry(function, count, show_progress)
-    if where == "hosts":
-        # dispy sends the source of a function; an instance has none
-        entry = function
-    elif where != "here":
-        _check_picklable(function)
-    options: dict[str, Any] = {"useMPI": True} if mpi else {}
-    places, values = ParameterVariation(
-        entry,
-        lists,
-        addComputationIndex=where != "hosts",
-        useMultiProcessing=where != "here",
-        numberOfThreads=processes,
-        clusterHostNames=list(hosts),
-        showProgress=where == "hosts" and show_progress,
-        **options,
-    )
-    rows = [value if isinstance(value, _Row) else _Row(_as_numbers(value), "", math.nan) for value in values]
-    return _table({name: np.asarray(places[name], dtype=float) for name in lists}, lists, rows, dict(units or {}))
-
-
-@dataclasses.dataclass(frozen=True)
-class _Row:
-    """What came back from one call."""
-
-    results: dict[str, float]
-    error: str
-    seconds: float
-
-
-def _evaluated(call: Callable[[], Any]) -> _Row:
-    start = time.perf_counter()
-    results, error = {}, ""
-    # a failed point must not take the others with it: its error is reported in the table
-    try:
-        results = _as_numbers(call())
-    except Exception as caught:
-        error = " ".join(f"{type(caught).__name__}: {caught}".split())
-    return _Row(results, error, time.perf_counter() - start)
-
-
-@dataclasses.dataclass(frozen=True)
-class _Entry:
-    """What runs in a worker; picklable if the function is."""
-
-    function: Callable[[dict[str, Any]], Any]
-    count: int
-    show_progress: bool
-
-    def __call__(self, parameters: dict[str, Any]) -> _Row:
-        own = dict(parameters)
-        index = own.pop(_INDEX)
-        row = _evaluated(lambda: self.function(own))
-        if self.show_progress:
-            given = ", ".join(f"{name} = {value:.5g}" for name, value in own.items())
-            line = f"[{index + 1}/{self.count}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)\n"
-            # one piece: an unbuffered print writes the line's end apart, and lines of two processes could then mix
-            print(line, end="", flush=True)
-        return row
-
-
-def _as_numbers(value: Any) -> dict[str, float]:
-    results = value if isinstance(value, Mapping) else {"value": value}
-    for name, number in results.items():
-        if not isinstance(name, str) or not isinstance(number, numbers.Real):
-            raise InputError(
-                f"{_WHERE}.function must return a number or a dict of numbers, got {name!r}: {type(number).__name__}."
-            )
-    return {name: float(number) for name, number in results.items()}
+    points = [dict(zip(lists, values, strict=True)) for values in itertools.product(*lists.values())]
+    kept = None if file is None else RowFile(file, function)
+    stored = [None if kept is None else kept.find(point) for point in points]
+    rows = {index: row for index, row in enumerate(stored) if row is not None}
+    left = {index: point for index, point in enumerate(points) if index not in rows}
+    if show_progress and rows:
+        print(f"{len(rows)} of {len(points)} rows are taken from {file}", flush=True)
+    runs: dict[str, Callable[[], places.Rows]] = {
+        "here": lambda: places.here(function, left),
+        "processes": lambda: places.in_processes(function, left, processes),
+        "mpi": lambda: places.on_ranks(function, left),
+        "hosts": lambda: places.on_hosts(function, left, hosts),
+    }
+    for index, row in runs[where]() if left else ():
+        rows[index] = row
+        if kept is not None:
+            kept.add(points[index], row)
+        if show_progress:
+            given = ", ".join(f"{name} = {value:.5g}" for name, value in points[index].items())
+            print(f"[{index + 1}/{len(points)}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)", flush=True)
+    own = {name: np.array([point[name] for point in points], dtype=float) for name in lists}
+    return _table(own, lists, [rows[index] for index in range(len(points))], dict(units or {}))
 
 
 def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, list[float]]:
     lists: dict[str, list[float]] = {}
     for name, values in dict(parameters).items():
         numbers_only = np.ndim(values) == 1 and all(isinstance(v, numbers.Real) for v in values)
-        if not isinstance(name, str) or name in (_INDEX, "seconds", "error") or not numbers_only or len(values) == 0:
+        if not isinstance(name, str) or name in ("seconds", "error") or not numbers_only or len(values) == 0:
             raise InputError(
                 f"{_WHERE}.parameters must be a dict of names and lists of numbers, got {name!r}: {values!r}."
             )
-        lists[name] = [v if isinstance(v, int) else float(v) for v in values]
+        whole = all(isinstance(v, numbers.Integral) for v in values)
+        lists[name] = [int(v) if whole else float(v) for v in values]
     if not lists:
         raise InputError(f"{_WHERE}.parameters is empty; give at least one list, e.g. {{'speed': [100.0, 200.0]}}.")
     return lists
@@ -286,29 +242,18 @@ def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, 
 
 def _checked_place(processes: int, mpi: bool, hosts: Sequence[str]) -> str:
     require_integer(f"{_WHERE}: processes", processes, at_least=1)
-    places = [name for name, asked in (("processes", processes > 1), ("mpi", mpi), ("hosts", len(hosts) > 0)) if asked]
-    if len(places) > 1:
-        raise InputError(f"{_WHERE}: only one of processes, mpi and hosts can be given, got {' and '.join(places)}.")
+    given = {"processes": processes > 1, "mpi": mpi, "hosts": len(hosts) > 0}
+    asked = [name for name, wanted in given.items() if wanted]
+    if len(asked) > 1:
+        raise InputError(f"{_WHERE}: only one of processes, mpi and hosts can be given, got {' and '.join(asked)}.")
     for place, package in (("mpi", "mpi4py"), ("hosts", "dispy")):
-        if place in places and importlib.util.find_spec(package) is None:
-            raise InputError(
-                f"{_WHERE}: {place} needs the package {package}, which is not installed; pip install {package}."
-            )
-    return places[0] if places else "here"
-
-
-def _check_picklable(function: Any) -> None:
-    try:
-        pickle.dumps(function)
-    except (pickle.PicklingError, AttributeError, TypeError) as error:
-        raise InputError(
-            f"{_WHERE}.function can't be sent to other processes ({error}); define it at the top of a module, not as a "
-            "lambda or inside another function."
-        ) from None
+        if place in asked:
+            places.require_package(place, package)
+    return asked[0] if asked else "here"
 
 
 def _table(
-    places: dict[str, np.ndarray], lists: dict[str, list[float]], rows: list[_Row], units: dict[str, str]
+    places: dict[str, np.ndarray], lists: dict[str, list[float]], rows: list[Row], units: dict[str, str]
 ) -> StudyTable:
     if all(row.error for row in rows):
         raise EHDError(f"{_WHERE}: all {len(rows)} rows failed, the first with {rows[0].error}")

@@ -1,7 +1,19 @@
 """Studies over parameters: the table holds what single calls give, wherever they ran; failures stay in their rows."""
 
 import csv
+import dataclasses
+import importlib.machinery
+import inspect
+import json
+import math
 import multiprocessing
+import os
+import signal
+import sys
+import threading
+import types
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import exudyn as exu
 import numpy as np
@@ -167,3 +179,154 @@ def test_missing_packages_are_named(monkeypatch):
 def test_unknown_parameters_are_named(make_bearing):
     with pytest.raises(InputError, match=r"must be among journal_radius.*got width"):
         ehd.varied(make_bearing(), {"width": 0.1})
+
+
+def deadly(parameters):
+    """Ends its process at x = 2, and is killed at x = 3."""
+    if parameters["x"] == 2:
+        os._exit(7)
+    if parameters["x"] == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return parameters["x"] ** 2
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")
+def test_a_dead_process_ends_its_row_alone():
+    table = ehd.parameter_study(deadly, {"x": [1, 2, 3, 4, 5]}, processes=2, show_progress=False)
+    np.testing.assert_array_equal(table["value"], [1.0, np.nan, np.nan, 16.0, 25.0])
+    assert table.errors[1] == "the process of this row ended with exit code 7 before it returned"
+    assert table.errors[2] == "the process of this row was ended by SIGKILL, often for lack of memory"
+    assert not any(table.errors[k] for k in (0, 3, 4))
+    assert not multiprocessing.active_children()
+
+
+@dataclasses.dataclass
+class Counted:
+    """Writes down every call; fails at x = 2 as long as it shall."""
+
+    log: str
+    fails: Path
+    weights: np.ndarray = dataclasses.field(default_factory=lambda: np.ones(2000))
+
+    def __call__(self, parameters):
+        with open(self.log, "a") as file:
+            file.write(f"{parameters['x']}\n")
+        if parameters["x"] == 2 and self.fails.exists():
+            raise ehd.FilmError("no film")
+        return {"square": parameters["x"] ** 2, "nothing": math.nan}
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_a_second_call_computes_what_is_missing(tmp_path, processes):
+    log, file, fails = tmp_path / "log", tmp_path / "new" / "study.jsonl", tmp_path / "fails"
+    fails.touch()
+    log.touch()
+
+    def calls():
+        lines = sorted(int(line) for line in log.read_text().split())
+        log.write_text("")
+        return lines
+
+    def study(values, **options):
+        function = Counted(str(log), fails, **options)
+        return ehd.parameter_study(function, {"x": values}, processes=processes, file=file, show_progress=False)
+
+    first = study([1, 2, 3])
+    assert calls() == [1, 2, 3] and first.errors[1] == "FilmError: no film"
+    # a run that was killed while it wrote: the cut line counts as not computed
+    text = file.read_text()
+    assert text.count("\n") == 3
+    file.write_text(text[:-20])
+    fails.unlink()
+    cut = json.loads(text.splitlines()[-1])["point"]["x"]
+    again = study([1, 2, 3, 4])
+    assert calls() == sorted({2, cut, 4})
+    np.testing.assert_array_equal(again["square"], [1.0, 4.0, 9.0, 16.0])
+    assert np.all(np.isnan(again["nothing"])) and np.all(again["seconds"] > 0.0)
+    np.testing.assert_array_equal(study([4, 3])["square"], [16.0, 9.0])
+    assert calls() == []
+    # numpy's text of an array leaves out what lies in its middle
+    changed = np.ones(2000)
+    changed[1000] = 2.0
+    with pytest.raises(InputError, match="rows of another function"):
+        study([1], weights=changed)
+    file.write_text("something else\n")
+    with pytest.raises(InputError, match="holds no rows of a study"):
+        study([1])
+
+
+def _fake_mpi(monkeypatch, size, pool):
+    core = types.SimpleNamespace(SharedPool=pool)
+    world = types.SimpleNamespace(Get_size=lambda: size)
+    futures = types.ModuleType("mpi4py.futures")
+    futures.MPIPoolExecutor, futures._core = ThreadPoolExecutor, core
+    package = types.ModuleType("mpi4py")
+    package.MPI, package.futures = types.SimpleNamespace(COMM_WORLD=world), futures
+    package.__spec__ = importlib.machinery.ModuleSpec("mpi4py", None)
+    monkeypatch.setitem(sys.modules, "mpi4py", package)
+    monkeypatch.setitem(sys.modules, "mpi4py.futures", futures)
+
+
+def test_mpi_without_its_start_is_refused(monkeypatch):
+    """It would wait for ranks that never come."""
+    _fake_mpi(monkeypatch, 1, None)
+    with pytest.raises(InputError, match=r"mpi needs a start by 'mpiexec.*one rank"):
+        ehd.parameter_study(stubborn, {"x": [1]}, mpi=True)
+    _fake_mpi(monkeypatch, 3, None)
+    with pytest.raises(InputError, match=r"lacks '-m mpi4py\.futures'"):
+        ehd.parameter_study(stubborn, {"x": [1]}, mpi=True)
+    _fake_mpi(monkeypatch, 3, object())
+    table = ehd.parameter_study(stubborn, {"x": [1, 2, 3]}, mpi=True, show_progress=False)
+    np.testing.assert_array_equal(table["square"], [1.0, np.nan, 9.0])
+
+
+def on_host(parameters):
+    """Its source alone goes to a host."""
+    import os
+
+    if parameters["x"] == 2:
+        raise RuntimeError("film failed")
+    if parameters["x"] == 3:
+        os._exit(7)
+    return {"square": parameters["x"] ** 2}
+
+
+class OneHost:
+    """What the study uses of dispy's cluster: a node that runs a job at once, or never."""
+
+    Created = 5
+
+    def __init__(self, function, nodes, **options):
+        names = {}
+        if function is not None:
+            exec(inspect.getsource(function), names)
+        self.function = names[function.__name__] if function else None
+
+    def submit(self, *arguments):
+        job = types.SimpleNamespace(finish=threading.Event(), status=OneHost.Created, exception=None, result=None)
+        if self.function is not None:
+            job.result, job.status = self.function(*arguments), 11
+            job.finish.set()
+        return job
+
+    def close(self, **options):
+        pass
+
+
+def test_hosts_keep_the_rows_that_did_not_fail(monkeypatch):
+    dispy = types.ModuleType("dispy")
+    dispy.JobCluster, dispy.DispyJob = OneHost, OneHost
+    dispy.__spec__ = importlib.machinery.ModuleSpec("dispy", None)
+    monkeypatch.setitem(sys.modules, "dispy", dispy)
+    parameters = {"x": [1, 2, 3, 4]}
+    table = ehd.parameter_study(on_host, parameters, hosts=("127.0.0.1",), show_progress=False)
+    np.testing.assert_array_equal(table["square"], [1.0, np.nan, np.nan, 16.0])
+    assert table.errors[1] == "RuntimeError: film failed"
+    assert table.errors[2] == "the process of this row ended with exit code 7 before it returned"
+    with pytest.raises(InputError, match="plain function for hosts"):
+        ehd.parameter_study(Counted("", Path()), parameters, hosts=("127.0.0.1",))
+    # nobody answers
+    dispy.JobCluster = lambda function, nodes, **options: OneHost(None, nodes, **options)
+    monkeypatch.setattr("exudyn_ehd.studies.places._HOSTS_ANSWER", 0.1)
+    with pytest.raises(EHDError, match=r"none of the hosts there has taken a row within 0.1 s; start dispynode.py"):
+        ehd.parameter_study(on_host, parameters, hosts=("there",))
