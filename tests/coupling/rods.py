@@ -8,7 +8,7 @@ from elastic_scene import CYLINDER, HOUSING, STEEL, bearing
 from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
+from exudyn_ehd.coupling.run.system_matrix import Factors, SystemMatrix
 
 RING = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.05, axial=1, radial=1, circumferential=6)
 ARM, TURN, PUSH = np.array([0.05, -0.02, 0.0]), 40.0, 8e3
@@ -100,7 +100,7 @@ def total(mbs, modes=(), matrix=None):
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
     for part in (SystemMatrix.of(mbs) if matrix is None else matrix).parts:
-        rows, columns, values = (np.asarray(a) for a in part(mbs, 1.0, 0.0, 0.0))
+        rows, columns, values = (np.asarray(a) for a in part(mbs, Factors(1.0, 0.0, 0.0, 1.0, 1.0)))
         own = (rows < n) & (columns < n)
         np.add.at(flow, rows[own], values[own] * q_t[columns[own]])
     ways = np.zeros((2, n))

@@ -27,6 +27,16 @@ def require_system(where: str, mbs: exu.MainSystem) -> None:
         )
 
 
+def require_time(where: str, settings: exu.SimulationSettings) -> None:
+    """Refuse a run that ends before it starts."""
+    time = settings.timeIntegration
+    if not time.endTime > time.startTime:
+        raise InputError(
+            f"{where}.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
+            f"{time.endTime:.9g} s."
+        )
+
+
 def joints_of(mbs: exu.MainSystem) -> list[Joint]:
     """The lubricated joints of a system, in the order in which they were created."""
     return mbs.variables.setdefault(JOINTS, [])
@@ -83,12 +93,7 @@ def SolveDynamic(
         state = restart if isinstance(restart, SystemState) else load_state(restart)
         going_on = _restarted(mbs, simulationSettings, state)
     else:
-        time = simulationSettings.timeIntegration
-        if not time.endTime > time.startTime:
-            raise InputError(
-                "SolveDynamic.simulationSettings.timeIntegration.endTime must be after startTime = "
-                f"{time.startTime:.9g} s, got {time.endTime:.9g} s."
-            )
+        require_time("SolveDynamic", simulationSettings)
     with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
@@ -198,7 +203,7 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
     return StartGuess(mbs, before, bushes)
 
 
-def _user_function(hook: Any) -> Any:
+def user_function(hook: Any) -> Any:
     """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
     function = hook["function"] if isinstance(hook, dict) else hook
     return function if callable(function) else 0
@@ -211,7 +216,7 @@ def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[N
     if not options.get("storeSolver", True):
         yield
         return
-    own = _user_function(mbs.GetPreNewtonResidualUserFunction())
+    own = user_function(mbs.GetPreNewtonResidualUserFunction())
     mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own or None))
     try:
         yield
@@ -234,7 +239,7 @@ def _restarted(mbs: exu.MainSystem, settings: exu.SimulationSettings, state: Sys
         )
     alpha = integration.generalizedAlpha
     computes = alpha.computeInitialAccelerations
-    before = _user_function(mbs.GetPreStepUserFunction())
+    before = user_function(mbs.GetPreStepUserFunction())
     first = [True]
 
     def pre_step(mbs: exu.MainSystem, t: float) -> bool:

@@ -5,9 +5,10 @@ through ``MainSolverImplicitSecondOrder.SetUserFunctionNewton``. The unknowns ar
 Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
     [M / f + beta h^2 K + gamma h D   C^T] [d_q               ]   [r]
-    [C                                0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
+    [r C                              0  ] [beta h^2 d_lambda ] = [g],      f = (1 - alpha_f) / (1 - alpha_m),
 
-after which q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
+with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
+q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
 and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
@@ -18,7 +19,8 @@ The bush deflects little under a film's short waves, so that some eight products
 takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The matrix is put
 together in `system_matrix`.
 
-Additive coordinates only: Lie group nodes and first-order coordinates are refused.
+Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
+Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
 """
 
 from __future__ import annotations
@@ -31,10 +33,11 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
-from exudyn_ehd.coupling.run.solve import own_errors, start_guess
+from exudyn_ehd.coupling.run.settings import require_settings
+from exudyn_ehd.coupling.run.solve import own_errors, require_system, require_time, start_guess, user_function
 from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
-from exudyn_ehd.status import require_integer, require_number
+from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
@@ -117,14 +120,15 @@ def SolveDynamicSparse(
 ) -> SparseRun:
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
-    Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`.
+    Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`. User functions of the system take
+    part: before and after steps, before residuals, after Newton's method, and what one adds to the Jacobian.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
-        Assembled.
+        Assembled if it is not.
     simulationSettings : exudyn.SimulationSettings, optional
-        Tolerances, steps and spectral radius are taken from ``timeIntegration``.
+        Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
     reuse : FactorReuse, optional
 
     Returns
@@ -134,14 +138,25 @@ def SolveDynamicSparse(
     Raises
     ------
     InputError
-        The model holds coordinates that this solver can't update.
+        The model holds coordinates that this solver can't update or constraints that it does not know, or the settings
+        ask for what it does not offer; the message names it.
     FilmError, RunError
         As `SolveDynamic`; ``joint.history`` holds all accepted steps.
     """
+    require_system("SolveDynamicSparse", mbs)
     settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings
+    require_settings("SolveDynamicSparse", settings)
+    require_time("SolveDynamicSparse", settings)
+    _require_offered(settings.timeIntegration)
+    if not mbs.systemIsConsistent:
+        mbs.Assemble()
     run = SparseRun()
+    before = user_function(mbs.GetPreNewtonResidualUserFunction())
     loop = _Newton(
-        matrix=SystemMatrix.of(mbs), guess=start_guess(mbs), reuse=FactorReuse() if reuse is None else reuse, run=run
+        matrix=SystemMatrix.of(mbs),
+        guess=start_guess(mbs, before or None),
+        reuse=FactorReuse() if reuse is None else reuse,
+        run=run,
     )
     solver: Solver = exu.MainSolverImplicitSecondOrder()
     solver.SetUserFunctionNewton(mbs, loop)
@@ -162,6 +177,20 @@ def SolveDynamicSparse(
     return run
 
 
+def _require_offered(integration: Any) -> None:
+    """Refuse settings of Exudyn's Newton method that are not followed here."""
+    for name, value, only in (
+        ("newton.active", integration.newton.active, True),
+        ("newton.residualMode", integration.newton.residualMode, 0),
+        ("computeLoadsJacobian", integration.computeLoadsJacobian, 0),
+    ):
+        if value != only:
+            raise InputError(
+                f"SolveDynamicSparse.simulationSettings.timeIntegration.{name} must be {only}, got {value}; this "
+                "solver offers no other, use exudyn_ehd.SolveDynamic."
+            )
+
+
 @dataclass(kw_only=True, eq=False)
 class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
@@ -176,10 +205,15 @@ class _Newton:
     excess: int = 0
 
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
-        newton = settings.timeIntegration.newton
+        newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
+        # Exudyn's Newton method forgets the multipliers of the step before, too
+        data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
-        self.guess(mbs, mbs.systemData.GetTime(), 0, 0)
+        self.guess(mbs, data.GetTime(), 0, turn)
         error = first = solver.ComputeNewtonResidual(mbs, settings)
+        if turn > 0:
+            # a contact has opened or closed
+            self.factor = None
         if solver.it.currentStepSize != self.step_size:
             self.factor = None
             self.step_size = solver.it.currentStepSize
@@ -190,12 +224,14 @@ class _Newton:
             if not np.isfinite(error):
                 break
             if self.factor is None or age >= self.reuse.maximum_iterations:
-                if not self._factorise(solver, mbs):
+                if not self._factorise(solver, mbs, settings):
                     break
                 # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
             self._update(solver, mbs)
             age += 1
+            if self.guess.before is not None:
+                self.guess.before(mbs, data.GetTime(), iteration, turn)
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
             if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1
@@ -210,11 +246,12 @@ class _Newton:
         self.run.rejected += 1
         return False
 
-    def _factorise(self, solver: Solver, mbs: exu.MainSystem) -> bool:
+    def _factorise(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
-        system = self.matrix.assemble(mbs, solver)
+        index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
         try:
             self.factor = splu(

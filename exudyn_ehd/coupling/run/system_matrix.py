@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import exudyn as exu
 import numpy as np
@@ -16,8 +17,40 @@ from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
 _SIMPLE = ("Ground", "RigidBody", "RigidBody2D", "MassPoint", "MassPoint2D", "Mass1D", "RotationalMass1D")
+# Constraints whose equations hold no coordinates of their own besides multipliers: what Exudyn returns is all there is.
+_CONSTRAINTS = (
+    "ConnectorCoordinate",
+    "ConnectorCoordinateVector",
+    "ConnectorDistance",
+    "JointGeneric",
+    "JointPrismatic2D",
+    "JointPrismaticX",
+    "JointRevolute2D",
+    "JointRevoluteZ",
+    "JointRollingDisc",
+    "JointSpherical",
+)
 # Exudyn's steps of numerical differentiation: settings.timeIntegration.newton.numericalDifferentiation.
 RELATIVE_STEP, SMALLEST_COORDINATE = 1e-7, 1e-2
+
+
+class Factors(NamedTuple):
+    """What the parts of an iteration matrix are multiplied with.
+
+    Attributes
+    ----------
+    mass, stiffness, damping : float
+        1 / f, beta h^2, gamma h.
+    position, velocity : float
+        Of the rows of constraints that Exudyn solves for positions and for velocities: 1 and gamma / (beta h), the
+        change of a rate with its coordinate.
+    """
+
+    mass: float
+    stiffness: float
+    damping: float
+    position: float
+    velocity: float
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,7 +62,9 @@ class SystemMatrix:
     coordinates, constraints : int
         Second-order coordinates and algebraic equations.
     parts : tuple
-        One function (mbs, M factor, K factor, D factor) -> (rows, columns, values) per object.
+        One function (mbs, Factors) -> (rows, columns, values) per object.
+    films : tuple
+        Films on nodal bushes, and the places of their coordinates.
     """
 
     coordinates: int
@@ -41,6 +76,11 @@ class SystemMatrix:
     def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
         """Look up the objects of an assembled model."""
         data = mbs.systemData
+        if mbs.NumberOfGeneralContacts():
+            raise InputError(
+                "SolveDynamicSparse mbs must have no GeneralContact, whose stiffness Exudyn does not return; use "
+                "contact objects (ObjectContact...), or mbs.SolveDynamic."
+            )
         for number in range(data.NumberOfNodes()):
             kind = mbs.GetNode(NodeIndex(number))["nodeType"]
             if "LG" in kind or "LieGroup" in kind:
@@ -87,18 +127,32 @@ class SystemMatrix:
         made = ((places, film.operator(mbs, t, q[places], q_t[places], *factors)) for film, places in self.films)
         return [(places, operator) for places, operator in made if operator is not None]
 
-    def assemble(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> csc_matrix:
-        """Return the iteration matrix of the current state, scaled by beta h^2."""
-        h = solver.it.currentStepSize
-        factors = (1 / solver.factJacAlgorithmic, solver.newmarkBeta * h * h, solver.newmarkGamma * h)
-        triplets = [part(mbs, *factors) for part in self.parts]
+    def assemble(
+        self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder, *, index2: bool = False
+    ) -> csc_matrix:
+        """Return the iteration matrix of the current state, scaled by beta h^2.
+
+        ``index2`` says that all constraints are solved for velocities (``useIndex2Constraints``).
+        """
+        h, rate = solver.it.currentStepSize, solver.newmarkGamma / solver.newmarkBeta / solver.it.currentStepSize
+        square = solver.newmarkBeta * h * h
+        factors = Factors(1 / solver.factJacAlgorithmic, square, solver.newmarkGamma * h, rate if index2 else 1.0, rate)
+        own = mbs.GetSystemJacobianUserFunction()
+        triplets = [part(mbs, factors) for part in self.parts]
+        if isinstance(own, dict):
+            scales = (-square, -factors.damping, -square)
+            added = as_sparse(own["function"](mbs, mbs.systemData.GetTime(), *scales))
+            if added is not None:
+                triplets.append((added.row, added.col, added.data))
         rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
         size = self.coordinates + self.constraints
         system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
         if self.constraints:
             # rows of inactive constraints are lambda = 0
             empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
-            system = (system + coo_matrix((np.ones(len(empty)), (empty, empty)), shape=(size, size))).tocsc()
+            system = (
+                system + coo_matrix((np.full(len(empty), 1 / square), (empty, empty)), shape=(size, size))
+            ).tocsc()
         return system
 
 
@@ -130,7 +184,8 @@ def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:
         )
     mass, stiffness, damping = (constant(name) for name in ("massMatrix", "stiffnessMatrix", "dampingMatrix"))
 
-    def part(mbs, fM, fK, fD):
+    def part(mbs, factors: Factors):
+        fM, fK, fD = factors[:3]
         data = mbs.systemData
         q = np.asarray(data.GetODE2Coordinates())[places]
         q_t = np.asarray(data.GetODE2Coordinates_t())[places]
@@ -158,7 +213,15 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     offered = mbs.ComputeItem(item)
     terms = [(k, i) for i, k in enumerate((kind.MassMatrix, kind.JacobianODE2, kind.JacobianODE2_t)) if k in offered]
     constrained = kind.ConstraintJacobian in offered and len(equations) > 0
-    object_type = mbs.GetObject(item)["objectType"]
+    values = mbs.GetObject(item)
+    object_type = values["objectType"]
+    if constrained and object_type not in _CONSTRAINTS:
+        raise InputError(
+            f"SolveDynamicSparse mbs must hold constraints between markers only, got object {int(item)} of type "
+            f"{object_type}, whose algebraic equations have coordinates of their own; use mbs.SolveDynamic."
+        )
+    # solved for velocities whatever the settings are
+    by_rates = object_type == "JointRollingDisc" or bool(values.get("velocityLevel", False))
     own_mass: Callable | None = None
     if object_type.startswith("MassPoint") or object_type == "RigidBody2D":
         # Exudyn keeps these mass matrices sparse and can't return them
@@ -175,14 +238,14 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
     differs = kind.ODE2LHS in offered and kind.JacobianODE2 not in offered and object_type not in _SIMPLE
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
-    def part(mbs, *factors):
-        values = np.zeros((len(places), len(places))) if own_mass is None else factors[0] * own_mass(mbs)
+    def part(mbs, factors: Factors):
+        values = np.zeros((len(places), len(places))) if own_mass is None else factors.mass * own_mass(mbs)
         for what, i in terms:
             matrix = np.asarray(mbs.ComputeItem(item, what))
             if matrix.size:
                 values += factors[i] * matrix
         if differs:
-            values += _differences(mbs, item, places, *factors[1:])
+            values += _differences(mbs, item, places, factors.stiffness, factors.damping)
         if not constrained:
             return rows, columns, values.ravel()
         C = coo_matrix(np.asarray(mbs.ComputeItem(item, kind.ConstraintJacobian)))
@@ -190,7 +253,7 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
         return (
             np.concatenate([rows, a, q]),
             np.concatenate([columns, q, a]),
-            np.concatenate([values.ravel(), C.data, C.data]),
+            np.concatenate([values.ravel(), (factors.velocity if by_rates else factors.position) * C.data, C.data]),
         )
 
     return part
@@ -208,7 +271,8 @@ def _differences(mbs: exu.MainSystem, item: Index, places: np.ndarray, fK: float
             continue
         state = np.array(read())
         still = np.array(mbs.ComputeItem(item, kind))
-        for column, place in enumerate(places):
+        # a coordinate that an object has twice moves once
+        for column, place in zip(*np.unique(places, return_index=True)[::-1], strict=True):
             moved = state.copy()
             step = RELATIVE_STEP * (SMALLEST_COORDINATE + abs(state[place]))
             moved[place] += step
@@ -225,8 +289,9 @@ def _euler_parameters(mbs: exu.MainSystem, node: Index, n: int) -> Callable:
     rows = np.full(4, n + data.GetNodeLTGAE(int(node))[0], dtype=np.int32)
     reference = np.array(mbs.GetNode(node)["referenceCoordinates"], dtype=float)[3:]
 
-    def part(mbs, *factors):
+    def part(mbs, factors: Factors):
         slope = 2 * (reference + np.asarray(mbs.systemData.GetODE2Coordinates())[columns])
-        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), np.concatenate([slope, slope])
+        values = np.concatenate([factors.position * slope, slope])
+        return np.concatenate([rows, columns]), np.concatenate([columns, rows]), values
 
     return part
