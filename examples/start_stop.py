@@ -64,8 +64,10 @@ def make_bearing(*, quick: bool) -> ehd.JournalBearing:
 
 def simulate(bearing: ehd.JournalBearing, *, end: float, step: float) -> Run:
     """Start, run up, coast."""
-    # at rest: the limit of slow turning, in which asperities carry the load
-    rest = ehd.stribeck(dataclasses.replace(bearing, wear=None), load=LOAD, speeds=[1e-3, 1.0, 100.0]).position[0]
+    # at rest: the limit of slow turning, in which asperities carry the load, without friction
+    smooth = dataclasses.replace(bearing.asperity, friction_coefficient=0.0)
+    resting = dataclasses.replace(bearing, wear=None, asperity=smooth)
+    rest = ehd.stribeck(resting, load=LOAD, speeds=[1e-3, 1.0, 100.0]).position[0]
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddObject(eii.ObjectGround())
     node = mbs.AddNode(eii.NodeRigidBody2D(referenceCoordinates=[0, 0, 0], initialCoordinates=[*rest, 0]))

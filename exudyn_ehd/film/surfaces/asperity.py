@@ -52,7 +52,8 @@ class GreenwoodTripp:
     friction_coefficient : float
         Boundary friction of the asperities; 0: none.
     transition_speed : float
-        Sliding speed v0 in ``v / sqrt(v^2 + v0^2)``, by which Coulomb friction is regularised, m/s.
+        Sliding speed v0 in ``v / sqrt(v^2 + v0^2)``, by which Coulomb friction is regularised, m/s: slower sliding rubs
+        less than the coefficient says, in a joint, `steady` and `equilibrium`, but not in `stribeck`.
     residual_film : float
         Film that touching spots keep, share of sigma, 0.001 to 0.2.
     """

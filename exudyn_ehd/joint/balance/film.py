@@ -20,12 +20,12 @@ def lacks_oil(bearing: JournalBearing) -> bool:
     return closure.conserves_mass and not supplied and max(bearing.end_pressures) <= closure.cavity_pressure
 
 
-def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History | None:
+def history_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> History | None:
     """Settled temperature at ``motion`` and, with rates, the oil content of the steady film at rest there.
 
-    None if nothing remembers.
+    None if nothing remembers. ``near``: history of a film nearby, whose temperature saves time.
     """
-    history = settled_history(model, motion)
+    history = settled_history(model, motion, near)
     if not model.remembers_mass or not np.any(motion[4:8]):
         return history
     at_rest = motion.copy()
@@ -35,9 +35,14 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str) -> History |
     return replace(content, temperature=None if history is None else history.temperature)
 
 
-def evaluate_at(model: BearingModel, motion: np.ndarray, where: str) -> tuple[Evaluation, SolvedFilm]:
-    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none."""
-    evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
+def evaluate_at(
+    model: BearingModel, motion: np.ndarray, where: str, near: History | None = None
+) -> tuple[Evaluation, SolvedFilm]:
+    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none.
+
+    ``near`` as for `history_at`.
+    """
+    evaluation = model.evaluate_steady(motion, history_at(model, motion, where, near))
     if evaluation.film is None or evaluation.status is not Status.CONVERGED:
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "

@@ -1,107 +1,218 @@
-"""The journal's position under a load, by Newton's method or by creep."""
+"""Search for the position in which a film carries a load."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.joint.balance.film import evaluate_at, history_at
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
+from exudyn_ehd.status import FilmError
 
 LARGEST_LOAD_STEPS = 100
 LARGEST_CREEP_STEPS = 300
+# Steps of Newton's method that may pass without the unbalance falling to a tenth of its smallest.
+PATIENCE = 25
+# Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
+LARGEST_EFFORT = 6000
 STEP_HALVINGS = 8
+LOAD_TOLERANCE = 1e-10
+# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
+FORCE_ROUNDING = 1e-16
 
 
-def newton(
-    model: BearingModel,
-    motion: np.ndarray,
-    force: np.ndarray,
-    tolerance: float,
-    where: str,
-    most: int = LARGEST_LOAD_STEPS,
-) -> tuple[int, float, Evaluation, np.ndarray]:
-    """Newton's method from ``motion`` (changed in place): steps, unbalance over load, film and tangent at the end.
+@dataclass(eq=False)
+class Carried:
+    """A position of a search.
 
-    ``force`` (2,) is the load on the journal, N; `FilmError`, in the name of ``where``, without a film at the start.
+    Attributes
+    ----------
+    motion : (10,) array
+    evaluation, film : Evaluation, SolvedFilm
+        Of the steady film there.
+    unbalance : (2,) array
+        Force of the film and load, N.
+    tangent : (6, 10) array
+        d wrench / d motion at the temperature of this film.
     """
-    size = float(np.hypot(*force))
-    count, residual = 0, math.inf
-    evaluation, _ = evaluate_at(model, motion, where)
-    tangent = evaluation.steady_tangent()
-    while count < most:
-        count += 1
-        unbalance = evaluation.wrench[:2] + force
-        residual = float(np.max(np.abs(unbalance))) / size
-        if residual <= tolerance:
-            break
-        try:
-            step = _limited_step(model, motion, np.linalg.solve(tangent[:2, :2], -unbalance))
-            evaluation = _move(model, motion, step, where)
-        except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
-            break
-        tangent = evaluation.steady_tangent()
-    return count, residual, evaluation, tangent
+
+    motion: np.ndarray
+    evaluation: Evaluation
+    film: SolvedFilm
+    unbalance: np.ndarray
+    tangent: np.ndarray
+
+    @property
+    def slope(self) -> np.ndarray:
+        """dF/d(x, y) (2, 2) at the temperature of this film, N/m."""
+        return self.tangent[:2, :2]
 
 
-def creep(
-    model: BearingModel, motion: np.ndarray, force: np.ndarray, tolerance: float, where: str
-) -> tuple[int, float, Evaluation, np.ndarray]:
-    """As `newton`, by way of the journal's creep.
+class LoadSearch:
+    """Search for the position in which the steady film of a model carries a load.
 
-    A viscous resistance r holds it back, which falls as the unbalance does.
+    Newton's method. Where a temperature follows the position, the tangent at a held temperature misses what the
+    temperature adds; Broyden's update of that part, D, from the forces of successive positions replaces it::
 
-    ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and sure
-    where Newton's method jumps over a film that starves or touches.
+        (dF/dx + D) step = -(F + load),    D += (dF - (mean of dF/dx + D) step) step^T / step^2.
+
+    Parameters
+    ----------
+    model : BearingModel
+    force : (2,) array
+        Load on the journal, N.
+    where : str
+        Who asks, for messages.
     """
-    size = float(np.hypot(*force))
-    evaluation, _ = evaluate_at(model, motion, where)
-    unbalance, tangent = evaluation.wrench[:2] + force, evaluation.steady_tangent()
-    resistance, count = 10.0 * size / model.bearing.radial_clearance, 1
-    while count < LARGEST_CREEP_STEPS and float(np.max(np.abs(unbalance))) > tolerance * size:
-        try:
-            step = np.linalg.solve(resistance * np.eye(2) - tangent[:2, :2], unbalance)
-        except np.linalg.LinAlgError:
-            resistance *= 4.0
-            count += 1
-            continue
-        base = motion[:2].copy()
-        motion[:2] += _limited_step(model, motion, step)
-        count += 1
-        try:
-            evaluation, _ = evaluate_at(model, motion, where)
-            trial = evaluation.wrench[:2] + force
-        except FilmError:
-            trial = np.full(2, math.inf)
-        if float(np.hypot(*trial)) < float(np.hypot(*unbalance)):
-            unbalance, tangent = trial, evaluation.steady_tangent()
-            resistance /= 5.0
+
+    def __init__(self, model: BearingModel, force: np.ndarray, where: str) -> None:
+        self.model, self.force, self.where = model, force, where
+        self.size = float(np.hypot(*force))
+        self.count, self.first = 0, model.parts.evaluations.count
+        self._history: History | None = None
+        self._follows = np.zeros((2, 2))
+
+    def find(self, motion: np.ndarray) -> Carried:
+        """Position, from that of a motion (10,) on, in which the film carries the load.
+
+        Raises
+        ------
+        FilmError
+            If none was found.
+        """
+        b = self.model.bearing
+        tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
+        start, self.first = self.at(motion), self.model.parts.evaluations.count
+        found = self.newton(start, tolerance)
+        if self.residual(found) > tolerance:
+            found = self.creep(self.at(motion), tolerance)
+        if found.film.serial != self.model.parts.evaluations.count:
+            found = self.at(found.motion)
+        if self.residual(found) > tolerance:
+            raise FilmError(
+                f"{self.where}: no position found that carries {self.size:.4g} N in {self.count} steps; the nearest "
+                f"is off by {self.residual(found):.2g} of the load, at eccentricity ratio "
+                f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. A load this high may need "
+                "asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film grid; a supply area in "
+                "the loaded zone or a starved film may carry no such load at any position: look at ehd.steady(...) "
+                "around there."
+            )
+        return found
+
+    def residual(self, place: Carried) -> float:
+        """Largest component of film force + load, over the load."""
+        return float(np.max(np.abs(place.unbalance))) / self.size
+
+    def _spent(self) -> bool:
+        return self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+
+    def at(self, motion: np.ndarray) -> Carried:
+        """The steady film at a motion (10,), which is kept."""
+        self.count += 1
+        evaluation, film = evaluate_at(self.model, motion, self.where, self._history)
+        self._history = film.history
+        unbalance = evaluation.wrench[:2] + self.force
+        return Carried(motion.copy(), evaluation, film, unbalance, evaluation.steady_tangent())
+
+    def _moved(self, place: Carried, step: np.ndarray) -> Carried:
+        """The film a step (2,) on; in a flexible bore after the part of the step that leaves a film."""
+        for k in range(STEP_HALVINGS if self.model.flexible else 1):
+            motion = place.motion.copy()
+            motion[:2] += step * 0.5**k
+            try:
+                reached = self.at(motion)
+                break
+            except FilmError:
+                if k + 1 == STEP_HALVINGS or not self.model.flexible:
+                    raise
+        self._learn(place, reached)
+        return reached
+
+    def _learn(self, place: Carried, reached: Carried) -> None:
+        """Broyden's update of what the temperature adds to the tangent."""
+        if self.model.effects.thermal is None:
+            return
+        step = reached.motion[:2] - place.motion[:2]
+        expected = (0.5 * (place.slope + reached.slope) + self._follows) @ step
+        missed = reached.unbalance - place.unbalance - expected
+        self._follows = self._follows + np.outer(missed, step) / float(step @ step + 1e-300)
+
+    def newton(self, place: Carried, tolerance: float, most: int = LARGEST_LOAD_STEPS) -> Carried:
+        """Newton's method from a place on, until the unbalance is below ``tolerance`` of the load, or ``most`` steps.
+
+        It also ends where it makes no progress, or reaches no film.
+        """
+        residuals: list[float] = []
+        for _ in range(most):
+            residuals.append(self.residual(place))
+            stuck = len(residuals) > PATIENCE and residuals[-1] > 0.1 * residuals[-1 - PATIENCE]
+            if residuals[-1] <= tolerance or stuck or self._spent():
+                break
+            try:
+                step = np.linalg.solve(place.slope + self._follows, -place.unbalance)
+                place = self._moved(place, limited_step(self.model, place.motion, step))
+            except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
+                break
+        return place
+
+    def creep(self, place: Carried, tolerance: float) -> Carried:
+        """By way of the journal's creep, against a viscous resistance r that falls as the unbalance does.
+
+        ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and
+        sure where Newton's method jumps over a film that starves or touches.
+        """
+        resistance = 10.0 * self.size / self.model.bearing.radial_clearance
+        highest = 1e12 * resistance
+        self._follows = np.zeros((2, 2))
+        for _ in range(LARGEST_CREEP_STEPS):
+            if self.residual(place) <= tolerance or resistance > highest or self._spent():
+                break
+            try:
+                step = np.linalg.solve(resistance * np.eye(2) - place.slope - self._follows, place.unbalance)
+                motion = place.motion.copy()
+                motion[:2] += limited_step(self.model, motion, step)
+                reached = self.at(motion)
+            except (np.linalg.LinAlgError, FilmError):
+                resistance *= 4.0
+                continue
+            self._learn(place, reached)
+            if float(np.hypot(*reached.unbalance)) < float(np.hypot(*place.unbalance)):
+                place, resistance = reached, resistance / 5.0
+            else:
+                resistance *= 4.0
+        return place
+
+
+def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
+    """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
+
+    The guess only saves steps. It stays inside the gap that the tilt leaves.
+    """
+    target = float(np.hypot(*force)) / bearing.reference_force(omega)
+    ratio = (0.5 * bearing.length / bearing.journal_radius) ** 2
+    room = 1.0 - 0.5 * bearing.length * float(np.hypot(*tilt)) / bearing.radial_clearance
+    lower, upper = 0.0, 1.0
+    for _ in range(40):
+        eps = 0.5 * (lower + upper)
+        s = 1.0 - eps * eps
+        short = ratio * eps / (2.0 * s * s) * math.sqrt(math.pi**2 * s + 16.0 * eps * eps)
+        long = 3.0 * eps * math.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps * eps) * s)
+        if short * long / (short + long + 1e-300) < target:
+            lower = eps
         else:
-            motion[:2] = base
-            resistance *= 4.0
-    evaluation, _ = evaluate_at(model, motion, where)
-    return count, float(np.max(np.abs(unbalance))) / size, evaluation, tangent
+            upper = eps
+    eps = lower * max(room, 0.02)
+    angle = math.atan2(force[1], force[0]) + math.copysign(
+        math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps), omega
+    )
+    return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
-def _move(model: BearingModel, motion: np.ndarray, step: np.ndarray, where: str) -> Evaluation:
-    """Advance ``motion`` (10,) in place by a step (2,) and evaluate.
-
-    In a flexible bore by the part of it that leaves a film.
-    """
-    motion[:2] += step
-    if model.flexible:
-        for _ in range(STEP_HALVINGS):
-            evaluation = model.evaluate_steady(motion, history_at(model, motion, where))
-            if evaluation.status is Status.CONVERGED:
-                return evaluation
-            step = 0.5 * step
-            motion[:2] -= step
-    return evaluate_at(model, motion, where)[0]
-
-
-def _limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
+def limited_step(model: BearingModel, motion: np.ndarray, step: np.ndarray) -> np.ndarray:
     """Shorten a step (2,) so that it uses up at most 60 % of the smallest gap at either end.
 
     A wall or a flexible bush limits nothing.

@@ -24,7 +24,7 @@ ACCELERATED = 5.0
 PATIENCE = 20
 
 
-def settled_history(model: BearingModel, motion: np.ndarray) -> History | None:
+def settled_history(model: BearingModel, motion: np.ndarray, near: History | None = None) -> History | None:
     """History whose temperature is in balance with the steady film at ``motion``; None for an isothermal bearing.
 
     One temperature: the heat falls with rising temperature, so that the balance has one root, found by the secant
@@ -38,6 +38,8 @@ def settled_history(model: BearingModel, motion: np.ndarray) -> History | None:
     model : BearingModel
     motion : (10,) array
         As for `BearingModel.evaluate`.
+    near : History, optional
+        Of a film nearby, from whose temperature to start; it saves time.
 
     Raises
     ------
@@ -47,10 +49,11 @@ def settled_history(model: BearingModel, motion: np.ndarray) -> History | None:
     thermal = model.effects.thermal
     if thermal is None:
         return None
-    start = thermal.initial_temperature(model.grid.shape)
-    if isinstance(start, np.ndarray):
-        return _settle_field(model, thermal, motion, start)
-    return _settle_number(model, thermal, motion, float(start))
+    cold = thermal.initial_temperature(model.grid.shape)
+    start = cold if near is None or near.temperature is None else near.temperature
+    if isinstance(cold, np.ndarray):
+        return _settle_field(model, thermal, motion, np.asarray(start), cold)
+    return _settle_number(model, thermal, motion, float(start), float(cold))
 
 
 def _target(
@@ -79,7 +82,9 @@ def _require_way_out(T: float) -> None:
         raise FilmError(f"steady temperature: the heat of the film has no way out; {WAY_OUT}")
 
 
-def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float) -> History:
+def _settle_number(
+    model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: float, cold: float
+) -> History:
     lower, upper = -math.inf, math.inf
     T, slope, previous, f_previous = start, -1.0, math.nan, math.nan
     for _ in range(MAX_ROUNDS):
@@ -88,7 +93,7 @@ def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarr
             return History(temperature=T)
         _require_way_out(T if math.isfinite(float(target)) else math.inf)
         f = float(target) - T
-        if abs(f) <= SETTLED * max(abs(T - start), abs(f), 1e-3):
+        if abs(f) <= SETTLED * max(abs(T - cold), abs(f), 1e-3):
             return History(temperature=T)
         if f > 0.0:
             lower = T
@@ -103,7 +108,9 @@ def _settle_number(model: BearingModel, thermal: ThermalEffect, motion: np.ndarr
     raise _unsettled(abs(f))
 
 
-def _settle_field(model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: np.ndarray) -> History:
+def _settle_field(
+    model: BearingModel, thermal: ThermalEffect, motion: np.ndarray, start: np.ndarray, cold: np.ndarray
+) -> History:
     T = best = start
     past: list[tuple[np.ndarray, np.ndarray]] = []
     smallest, damping, patience = math.inf, 1.0, 0
@@ -114,7 +121,7 @@ def _settle_field(model: BearingModel, thermal: ThermalEffect, motion: np.ndarra
         change = target - T
         size = float(np.abs(change).max())
         _require_way_out(float(T.max()) if math.isfinite(size) else math.inf)
-        if size <= SETTLED * max(float(np.ptp(target)), float(np.abs(T - start).max()), 1e-3):
+        if size <= SETTLED * max(float(np.ptp(target)), float(np.abs(T - cold).max()), 1e-3):
             return History(temperature=T)
         near = size < ACCELERATED
         patience = 0 if size < 0.9 * smallest else patience + 1

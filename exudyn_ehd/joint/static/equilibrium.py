@@ -9,17 +9,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.joint.balance.position import creep, newton
+from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
-from exudyn_ehd.status import FilmError, InputError, require_number, require_size, require_vector
+from exudyn_ehd.status import InputError, require_number, require_size, require_vector
 
 LOADS = {"smallest": 1e-30, "largest": 1e15}
-LOAD_TOLERANCE = 1e-10
-# Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
-FORCE_ROUNDING = 1e-16
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +42,7 @@ class EquilibriumResult:
     residual : float
         Largest component of film force + load, divided by the load.
     iterations : int
-        Film evaluations.
+        Positions tried; a film's temperature and a flexible bore settle at each of them.
     film : SteadyResult
     response : FilmResponse or None
         What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
@@ -125,23 +122,9 @@ def equilibrium(
     model = build_study_model(bearing, 0.0)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
-    tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * bearing.reference_force(omega) / size)
-    start = motion[:2].copy()
-    count, residual, evaluation, tangent = newton(model, motion, force, tolerance, "equilibrium")
-    if residual > tolerance:
-        motion[:2] = start
-        more, residual, evaluation, tangent = creep(model, motion, force, tolerance, "equilibrium")
-        count += more
-    if residual > tolerance:
-        raise FilmError(
-            f"equilibrium: no position found that carries {size:.4g} N in {count} steps; the nearest is off by "
-            f"{residual:.2g} of the "
-            f"load, at eccentricity ratio {np.hypot(*motion[:2]) / bearing.radial_clearance:.4f}. A load this high "
-            "may need "
-            "contact=RegularisedWall(...) or a finer film grid; a supply area in the loaded zone or a starved film "
-            "may carry "
-            "no such load at any position: look at ehd.steady(...) around there."
-        )
+    search = LoadSearch(model, force, "equilibrium")
+    found = search.find(motion)
+    evaluation, tangent = found.evaluation, found.tangent
     response, frequency = None, 0.0
     if model.remembers_mass and model.parts.liner is None and not model.flexible and evaluation.film is not None:
         response = FilmResponse(evaluation.film, tangent)
@@ -151,17 +134,17 @@ def equilibrium(
     else:
         K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
         ratio, mass = whirl_threshold(K, C, abs(omega))
-    film = result_at(model, motion, "equilibrium")
+    film = result_at(model, found.motion, "equilibrium", found.film.history)
     return EquilibriumResult(
-        position=motion[:2].copy(),
-        eccentricity_ratio=float(np.hypot(*motion[:2])) / bearing.radial_clearance,
+        position=found.motion[:2],
+        eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
         attitude_angle=film.attitude_angle,
         stiffness=K,
         damping=C,
         whirl_ratio=ratio,
         critical_mass=mass,
-        residual=residual,
-        iterations=count,
+        residual=search.residual(found),
+        iterations=search.count,
         film=film,
         frequency=frequency,
         response=response,
@@ -179,31 +162,6 @@ def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
     if not model.remembers_mass:
         return tangent
     return model.evaluate(evaluation.motion, evaluation.history()).steady_tangent()
-
-
-def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:
-    """Eccentricity (2,) in m from the mean of the short and the long bearing's load, both half Sommerfeld.
-
-    The guess only saves steps. It stays inside the gap that the tilt leaves.
-    """
-    target = float(np.hypot(*force)) / bearing.reference_force(omega)
-    ratio = (0.5 * bearing.length / bearing.journal_radius) ** 2
-    room = 1.0 - 0.5 * bearing.length * float(np.hypot(*tilt)) / bearing.radial_clearance
-    lower, upper = 0.0, 1.0
-    for _ in range(40):
-        eps = 0.5 * (lower + upper)
-        s = 1.0 - eps * eps
-        short = ratio * eps / (2.0 * s * s) * math.sqrt(math.pi**2 * s + 16.0 * eps * eps)
-        long = 3.0 * eps * math.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps * eps) * s)
-        if short * long / (short + long + 1e-300) < target:
-            lower = eps
-        else:
-            upper = eps
-    eps = lower * max(room, 0.02)
-    angle = math.atan2(force[1], force[0]) + math.copysign(
-        math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps), omega
-    )
-    return eps * bearing.radial_clearance * np.array([math.cos(angle), math.sin(angle)])
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:

@@ -19,6 +19,7 @@ from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.status import InputError, Status, require_number, require_size, require_vector
@@ -175,9 +176,9 @@ MORE_OIL = (
 )
 
 
-def result_at(model: BearingModel, motion: np.ndarray, where: str) -> SteadyResult:
-    """The steady film at ``motion``; `FilmError` as by `evaluate_at`."""
-    evaluation, film = evaluate_at(model, motion, where)
+def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> SteadyResult:
+    """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
+    evaluation, film = evaluate_at(model, motion, where, near)
     q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])

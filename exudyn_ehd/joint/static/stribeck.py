@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.static.equilibrium import LOAD_TOLERANCE, first_guess
-from exudyn_ehd.status import FilmError, InputError, Status, require_number
+from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.static.steady import require_oil
+from exudyn_ehd.status import FilmError, InputError, require_number
 
-MAX_STEPS = 200
+LARGEST_HALVINGS = 8
+# Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
+NO_TRANSITION = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +41,9 @@ class StribeckResult:
     power_loss, contact_power_loss, leakage : (n,) arrays
         W, W, m3/s.
     hersey : (n,) array
-        mu omega / (load / (2 R L)), dimensionless.
+        mu omega / (load / (2 R L)), dimensionless, mu the lubricant's own ``viscosity``.
+    film_temperature, bore_displacement : (n,) arrays
+        Mean of the film, K, nan for an isothermal bearing; of a liner or flexible bore, m, the largest, 0 for others.
     position : (n, 2) array
         x, y of the journal axis, m.
     """
@@ -54,6 +60,8 @@ class StribeckResult:
     contact_power_loss: np.ndarray
     leakage: np.ndarray
     hersey: np.ndarray
+    film_temperature: np.ndarray
+    bore_displacement: np.ndarray
     position: np.ndarray
 
     @property
@@ -66,8 +74,10 @@ class StribeckResult:
 def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | np.ndarray) -> StribeckResult:
     """Equilibrium and friction under a constant load (N, in -y on the journal) over a range of speeds.
 
-    Speeds are worked through from the fastest to the slowest, each starting from the last position; where Newton's
-    method does not settle, speeds in between lead to it.
+    Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Sliding
+    lasts, so that boundary friction acts in full: ``GreenwoodTripp.transition_speed``, by which that of a joint passes
+    through rest, takes no part. Speeds are worked through from the fastest to the slowest, each starting from the
+    last position; where no position is found, speeds in between lead to it.
 
     Parameters
     ----------
@@ -81,7 +91,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     Raises
     ------
     InputError
-        For a load or speeds that are not positive, or an inlet that a moving journal can't have.
+        For a load or speeds that are not positive, an inlet that a moving journal can't have, or a film that conserves
+        mass and has no source of oil.
     FilmError
         If no equilibrium was found at a speed.
     """
@@ -93,72 +104,50 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         )
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("stribeck: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
-    model = build_study_model(bearing, 0.0)
-    force = np.array([0.0, -size])
+    require_oil(bearing, "stribeck")
+    model = build_study_model(_sliding(bearing, float(values.min())), 0.0)
     order = np.argsort(-values)
-    position = first_guess(bearing, float(values[order[0]]), force, np.zeros(2))
     last = float(values[order[0]])
+    search = LoadSearch(model, np.array([0.0, -size]), "stribeck")
+    motion = np.zeros(10)
+    motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
     for k in order:
-        found = _follow(model, position, last, float(values[k]), force)
-        position, last = found.motion[:2], float(values[k])
-        rows[k] = _row(found, last, size)
+        found = _follow(search, motion, last, float(values[k]))
+        motion, last = found.motion, float(values[k])
+        rows[k] = _row(found.evaluation, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)
 
 
-def _follow(model: BearingModel, position: np.ndarray, last: float, speed: float, force: np.ndarray) -> Evaluation:
-    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where Newton fails."""
+def _sliding(bearing: JournalBearing, slowest: float) -> JournalBearing:
+    """The bearing with boundary friction in full at every spin from the slowest, rad/s, on."""
+    if bearing.asperity is None:
+        return bearing
+    slow = NO_TRANSITION * slowest * bearing.journal_radius
+    return replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
+
+
+def _follow(search: LoadSearch, motion: np.ndarray, last: float, speed: float) -> Carried:
+    """Equilibrium at ``speed`` from the one at ``last``, halving the way (in the logarithm) where it is not found."""
     target, halvings = speed, 0
     while True:
-        found = _settle(model, position, target, force)
-        if found is not None and target == speed:
-            return found
-        if found is not None:
-            position, last, target = found.motion[:2], target, speed
+        motion = motion.copy()
+        motion[8] = target
+        try:
+            found = search.find(motion)
+        except FilmError as error:
+            halvings += 1
+            target = math.sqrt(last * target)
+            if halvings > LARGEST_HALVINGS or target / last > 0.9:
+                raise FilmError(
+                    f"stribeck: no equilibrium found at {speed:.4g} rad/s under {search.size:.4g} N; next to "
+                    f"{last:.4g} rad/s: {error}"
+                ) from error
             continue
-        halvings += 1
-        target = float(np.sqrt(last * target))
-        if halvings > 30 or abs(target / last - 1.0) < 1e-3:
-            raise FilmError(
-                f"stribeck: no equilibrium found at {speed:.4g} rad/s under {abs(force[1]):.4g} N, next to "
-                f"{last:.4g} rad/s; give "
-                "the bearing asperity=GreenwoodTripp(...) so that contact carries what the film can't, or refine "
-                "its film grid."
-            )
-
-
-def _settle(model: BearingModel, start: np.ndarray, speed: float, force: np.ndarray) -> Evaluation | None:
-    """Newton's method with steps below a tenth of the clearance, halved while the unbalance grows.
-
-    None if it does not settle.
-    """
-    size = float(np.hypot(*force))
-    longest = 0.1 * model.bearing.radial_clearance
-    motion = np.zeros(10)
-    motion[:2], motion[8] = start, speed
-    evaluation = model.evaluate(motion)
-    if evaluation.status is not Status.CONVERGED:
-        return None
-    for _ in range(MAX_STEPS):
-        unbalance = evaluation.wrench[:2] + force
-        error = float(np.hypot(*unbalance))
-        if error < LOAD_TOLERANCE * size:
-            return evaluation
-        step = np.linalg.solve(evaluation.tangent()[:2, :2], -unbalance)
-        step *= min(1.0, longest / (float(np.hypot(*step)) + 1e-300))
-        base = motion[:2].copy()
-        for _ in range(12):
-            motion[:2] = base + step
-            evaluation = model.evaluate(motion)
-            if evaluation.status is Status.CONVERGED and (
-                float(np.hypot(*(evaluation.wrench[:2] + force))) < max(error, 4.0 * size)
-            ):
-                break
-            step *= 0.5
-        if evaluation.status is not Status.CONVERGED:
-            return None
-    return None
+        if target == speed:
+            return found
+        motion, last, target = found.motion, target, speed
 
 
 def _row(evaluation: Evaluation, speed: float, load: float) -> dict[str, float | np.ndarray]:
@@ -178,5 +167,7 @@ def _row(evaluation: Evaluation, speed: float, load: float) -> dict[str, float |
         "contact_power_loss": q["contact_power_loss"],
         "leakage": q["leakage"],
         "hersey": b.lubricant.viscosity * speed * 2.0 * b.journal_radius * b.length / load,
+        "film_temperature": q.get("film_temperature", np.nan),
+        "bore_displacement": q.get("bore_displacement", 0.0),
         "position": evaluation.motion[:2].copy(),
     }

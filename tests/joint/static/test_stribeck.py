@@ -1,5 +1,6 @@
 """Stribeck curve: regimes, limits, order of speeds, refusals."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -87,3 +88,56 @@ def test_wide_range_of_loads(load):
 def test_refused_values(options, message):
     with pytest.raises(ehd.InputError, match=message):
         ehd.stribeck(bearing(), **({"load": 100.0, "speeds": [10.0]} | options))
+
+
+LAW = ehd.VogelTemperature(first=(313.15, 0.05), second=(373.15, 0.008))
+MESH = ehd.HollowCylinder(inner_radius=0.020025, thickness=8e-3, length=0.03, axial=2, radial=1, circumferential=24)
+SOFT = ehd.SaintVenantKirchhoff(youngs_modulus=5e9, poisson_ratio=0.3, density=2000.0)
+STATES = {
+    "one temperature": {"thermal": ehd.LumpedThermal(supply_temperature=313.15)},
+    "field of temperature": {"thermal": ehd.FilmEnergy(supply_temperature=313.15)},
+    "modes": {"bush": ehd.ModalBush(mesh=MESH, material=SOFT, tolerance=0.05)},
+    "liner": {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9, poisson_ratio=0.4)},
+}
+
+
+@pytest.mark.parametrize("option", STATES)
+def test_every_point_is_the_equilibrium_with_whatever_the_bearing_names(option):
+    """Temperature and bore settle at each speed; random load and direction of the speeds' order."""
+    rng = np.random.default_rng(len(option))
+    load, speeds = float(rng.uniform(1e3, 5e3)), rng.permutation([60.0, 200.0, 600.0])
+    b = dataclasses.replace(bearing(), lubricant=ehd.Lubricant(temperature_law=LAW), **STATES[option])
+    curve = ehd.stribeck(b, load=load, speeds=speeds)
+    for k, speed in enumerate(speeds):
+        film = ehd.equilibrium(b, speed=speed, load=(0.0, -load)).film
+        assert curve.friction_torque[k] == pytest.approx(-film.friction_torque, rel=1e-7)
+        assert curve.minimum_gap[k] == pytest.approx(film.minimum_gap, rel=1e-7)
+        if b.thermal is not None:
+            assert curve.film_temperature[k] == pytest.approx(float(np.mean(film.temperature)), rel=1e-8)
+            assert curve.film_temperature[k] > 314.0
+        else:
+            assert math.isnan(curve.film_temperature[k])
+            assert curve.bore_displacement[k] > 1e-7
+
+
+def test_boundary_friction_is_full_however_slow_the_sliding():
+    """What asperities carry rubs with their coefficient, whatever their transition speed; the rest is the film's."""
+    rough = dataclasses.replace(ASPERITY, transition_speed=0.01)
+    curve = ehd.stribeck(bearing(asperity=rough), load=2000.0, speeds=np.geomspace(1e-4, 300.0, 10))
+    contact = 0.1 * curve.contact_load_share
+    np.testing.assert_allclose(curve.contact_torque / (0.02 * 2000.0), contact, rtol=0.05, atol=1e-9)
+    assert curve.contact_load_share[0] > 0.99
+    assert curve.friction_coefficient[0] == pytest.approx(0.1, rel=0.02)
+    assert 1.0 < curve.lowest_friction[0] < 300.0
+
+
+def test_a_film_without_a_source_of_oil_is_refused():
+    with pytest.raises(ehd.InputError, match=r"stribeck: .* needs oil from somewhere"):
+        ehd.stribeck(bearing(cavitation=ehd.ElrodAdams()), load=500.0, speeds=[300.0])
+
+
+def test_a_load_that_no_film_carries_says_where_the_curve_ends():
+    with pytest.raises(
+        ehd.FilmError, match=r"stribeck: no equilibrium found at 1e-06 rad/s under 1e\+05 N.*GreenwoodT"
+    ):
+        ehd.stribeck(bearing(), load=1e5, speeds=[1e-6])
