@@ -67,7 +67,7 @@ _LAZY = {
     "Revolutions": "coupling.record.revolutions",
     "load_history": "coupling.record.history",
     "StepControl": "coupling.watch.step_control",
-    "JointState": "coupling.run.restart",
+    "JointState": "coupling.run.joint_state",
     "SystemState": "coupling.run.restart",
     "SaveState": "coupling.run.solve",
     "SolveDynamic": "coupling.run.solve",

@@ -23,7 +23,7 @@ from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
 from exudyn_ehd.coupling.record.sensors import add_sensor
-from exudyn_ehd.coupling.run.restart import JointState, check_owner, digest
+from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
 from exudyn_ehd.coupling.run.solve import joints_of, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
@@ -144,7 +144,13 @@ class LubricatedJoint(JointResults):
             )
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
-            name=self.name, bearing=digest(self.bearing), time=time, memory=memory, rows=rows, begin=begin
+            name=self.name,
+            bearing=digest(self.bearing),
+            time=time,
+            memory=memory,
+            rows=rows,
+            begin=begin,
+            modes=bore_modes_of(self.element),
         )
 
     def restore_state(self, state: JointState) -> None:

@@ -7,6 +7,7 @@ settings           ConfigureSolver
 start_guess        where Newton starts in a step
 equilibrium_start  joints placed in equilibrium
 restart            states to go on from
+joint_state        what a joint knows besides coordinates, and whose it is
 sparse             SolveDynamicSparse
 system_matrix      its iteration matrix
 """

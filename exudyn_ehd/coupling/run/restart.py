@@ -3,83 +3,27 @@
 from __future__ import annotations
 
 import dataclasses
-import hashlib
 import json
 import pathlib
 import zipfile
 import zlib
 from collections.abc import Sequence
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data
-from exudyn_ehd.coupling.element.rigid import FilmElement
-from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing
 
-_FORMAT = "exudyn_ehd SystemState 2"
+_FORMAT = "exudyn_ehd SystemState 3"
 Part = TypeVar("Part", History, StepStart)
 _PARTS = ("ODE2", "ODE2_t", "ODE1", "AE", "Data")
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class JointState:
-    """What a joint knows besides Exudyn's coordinates.
-
-    Attributes
-    ----------
-    name : str
-    bearing : str
-        Digest of the bearing's description: a state is for the bearing that it came from.
-    time : float
-        s, of the last accepted step.
-    memory : History or None
-        Oil content, wear, temperature and deflection at that time; None if the film remembers nothing.
-    rows : (n, k) array
-        The record of accepted steps up to it.
-    begin : StepStart or None
-        Where the next step begins, if its rates follow the positions.
-    """
-
-    name: str
-    bearing: str
-    time: float
-    memory: History | None
-    rows: np.ndarray
-    begin: StepStart | None = None
-
-
-class Joint(Protocol):
-    """What runs ask of a lubricated joint."""
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-
-    @property
-    def bearing(self) -> JournalBearing:
-        """What was given as bearing."""
-
-    @property
-    def element(self) -> FilmElement:
-        """The film between the two frames."""
-
-    @property
-    def history(self) -> JointHistory:
-        """All accepted steps."""
-
-    def state(self) -> JointState:
-        """Memory and record at the last accepted state."""
-
-    def restore_state(self, state: JointState) -> None:
-        """Let the next run go on from a state."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
@@ -162,9 +106,10 @@ class SystemState:
         heads = []
         for k, joint in enumerate(self.joints):
             arrays[f"{k} rows"] = joint.rows
-            heads.append(
-                {"name": joint.name, "bearing": joint.bearing, "time": joint.time, "memory": joint.memory is not None}
-            )
+            if joint.modes is not None:
+                arrays[f"{k} modes"] = joint.modes
+            has = {"memory": joint.memory is not None, "begin": joint.begin is not None}
+            heads.append({"name": joint.name, "bearing": joint.bearing, "time": joint.time, **has})
             for name, part in (("", joint.memory), ("begin ", joint.begin)):
                 for field in () if part is None else dataclasses.fields(part):
                     value = getattr(part, field.name)
@@ -229,35 +174,12 @@ def _joint(arrays: dict[str, np.ndarray], k: int, head: Data) -> JointState:
         }
         return kind(**values)
 
-    memory = read(History, "") if head["memory"] else None
-    begin = read(StepStart, "begin ") if f"{k} begin time" in arrays else None
     return JointState(
         name=head["name"],
         bearing=head["bearing"],
         time=head["time"],
-        memory=memory,
+        memory=read(History, "") if head["memory"] else None,
         rows=arrays[f"{k} rows"],
-        begin=begin,
+        begin=read(StepStart, "begin ") if head["begin"] else None,
+        modes=arrays.get(f"{k} modes"),
     )
-
-
-def digest(bearing: JournalBearing) -> str:
-    """Short digest of a bearing's description; meshes of bushes count by their type alone."""
-    described = repr(bearing)
-    bush = getattr(bearing, "bush", None)
-    if bush is not None and hasattr(bush, "mesh"):
-        described = repr((dataclasses.replace(bearing, bush=None), type(bush).__name__))
-    return hashlib.sha256(described.encode()).hexdigest()[:16]
-
-
-def check_owner(joint: Joint, state: JointState) -> None:
-    """Refuse a state of another joint or bearing."""
-    if state.name != joint.name:
-        raise InputError(
-            f"LubricatedJoint.restore_state: the state is of joint '{state.name}', this one is '{joint.name}'."
-        )
-    if state.bearing != digest(joint.bearing):
-        raise InputError(
-            f"LubricatedJoint.restore_state: the state of joint '{state.name}' comes from another bearing (geometry, "
-            "oil, grid or effects differ); build the joint with the bearing of the stored run."
-        )

@@ -10,6 +10,8 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.run.joint_state import digest
+from exudyn_ehd.coupling.run.restart import load_state
 
 CLEARANCE = 30e-6
 PLAIN = ehd.JournalBearing(
@@ -244,3 +246,77 @@ def test_states_of_other_systems_are_refused():
         ehd.SolveDynamic(mbs, settings(3, 6), restart=short)
     with pytest.raises(ehd.InputError, match="endTime"):
         ehd.SolveDynamic(mbs, settings(0, 2), restart=state)
+
+
+def other_bearings():
+    """Pairs of bearings that number the same coordinates and the same vertices, and are not the same."""
+    mesh = {"inner_radius": 0.02 + CLEARANCE, "thickness": 5e-3, "length": 0.02, "axial": 2, "circumferential": 16}
+    steel = {"youngs_modulus": 2e11, "poisson_ratio": 0.3, "density": 7800.0}
+
+    def modal(mesh_of=(), material_of=()):
+        return ehd.ModalBush(
+            mesh=ehd.HollowCylinder(**{**mesh, "radial": 1, **dict(mesh_of)}),
+            material=ehd.SaintVenantKirchhoff(**{**steel, **dict(material_of)}),
+            tolerance=0.2,
+        )
+
+    angles, places = np.linspace(0, 2 * np.pi, 60, endpoint=False), np.linspace(-0.01, 0.01, 21)
+    depths = 1e-6 * np.cos(2 * angles)[:, None] * np.ones(21)
+    other = depths.copy()
+    other[10:50] *= -3.0
+    table = {"angles": angles, "positions": places}
+    moved = modal().build_mesh()
+    nodes = moved.nodes.copy()
+    nodes[moved.outer.nodes[3]] *= 1.0 + 1e-9
+    imported = [ehd.mesh_from_arrays(x, moved.elements, bore_radius=0.02 + CLEARANCE) for x in (moved.nodes, nodes)]
+    yield "material", *({"bush": modal(material_of={"youngs_modulus": e})} for e in (2e11, 2e9))
+    yield "thickness", *({"bush": modal({"thickness": t})} for t in (5e-3, 6e-3))
+    yield "table", *({"profile": ehd.ProfileTable(**table, depths=d)} for d in (depths, other))
+    yield "one node", *({"bush": dataclasses.replace(modal(), mesh=mesh)} for mesh in imported)
+
+
+def test_states_of_other_bushes_materials_and_tables_are_refused():
+    """Descriptions count by content: numpy's text of 1260 numbers leaves out nearly all of them."""
+    for what, one, other in other_bearings():
+        marks = [digest(dataclasses.replace(PLAIN, **options)) for options in (one, one, other)]
+        assert marks[0] == marks[1] and marks[0] != marks[2], what
+
+
+def test_another_bush_is_refused_in_a_run(tmp_path):
+    _, one, other = next(other_bearings())
+    mbs, joint = system(dataclasses.replace(PLAIN, **one))
+    ehd.SolveDynamic(mbs, settings(0, 3))
+    ehd.SaveState(mbs, tmp_path / "state.npz")
+    with pytest.raises(ehd.InputError, match="'main' comes from another bearing"):
+        ehd.SolveDynamic(system(dataclasses.replace(PLAIN, **other))[0], settings(3, 6), restart=tmp_path / "state.npz")
+    again, joint = system(dataclasses.replace(PLAIN, **one))
+    ehd.SolveDynamic(again, settings(3, 6), restart=tmp_path / "state.npz")
+    assert joint.history.time.size == 7
+    # an eigenvalue problem that was solved again may have turned a mode around
+    state = load_state(tmp_path / "state.npz")
+    modes = state.joints[0].modes.copy()
+    modes[:-1, 2] *= -1.0
+    turned = dataclasses.replace(state, joints=(dataclasses.replace(state.joints[0], modes=modes),))
+    with pytest.raises(ehd.InputError, match="modes of joint 'main' are others"):
+        ehd.SolveDynamic(system(dataclasses.replace(PLAIN, **one))[0], settings(3, 6), restart=turned)
+
+
+def test_stored_memory_is_checked(tmp_path):
+    """Without the oil's mass a run would go on flooded, with other shapes numpy's own errors come through."""
+    mbs, joint = system(BEARINGS["oil content"])
+    ehd.SolveDynamic(mbs, settings(0, 3))
+    good = ehd.SaveState(mbs, tmp_path / "good.npz")
+    with np.load(tmp_path / "good.npz") as file:
+        arrays = dict(file)
+    spoilt = {
+        "memory": ({"0 mass": None}, {"0 mass": np.ones((3, 3))}, {"0 void": np.full((48, 7), np.nan)}),
+        "begin": ({"0 begin motion": np.zeros(4)}, {"0 begin step": None}),
+    }
+    for what, changes in spoilt.items():
+        for change in changes:
+            left = {name: array for name, array in (arrays | change).items() if array is not None}
+            np.savez(tmp_path / "bad.npz", **left)
+            with pytest.raises(ehd.InputError, match=f"{what} of joint 'main' must hold finite numbers of the shapes"):
+                ehd.SolveDynamic(mbs, settings(3, 6), restart=tmp_path / "bad.npz")
+    ehd.SolveDynamic(mbs, settings(3, 6), restart=good)
+    assert joint.history.time.size == 7
