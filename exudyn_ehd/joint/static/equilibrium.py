@@ -5,17 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
 from exudyn_ehd.status import InputError, require_number, require_size, require_vector
 
+# Of the difference quotients between settled films, as a share of the minimum film thickness.
+SETTLED_STEP = 1e-4
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 
 
@@ -30,7 +35,9 @@ class EquilibriumResult:
     eccentricity_ratio, attitude_angle : float
         e/c; angle from the load to the eccentricity in the sense of rotation, rad.
     stiffness, damping : (2, 2) arrays
-        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame, at ``frequency``.
+        K = -dF/d(x, y) in N/m and C = -dF/d(dx/dt, dy/dt) in N s/m, joint frame, at ``frequency``. With ``thermal``
+        the temperature is held: motions that are quick beside the exchange of the film's oil. A flexible bore follows
+        without inertia. See ``settled_stiffness`` for the other limit.
     frequency : float
         rad/s, of the small motions for which K and C hold. 0 where they do not depend on it; with `ElrodAdams` that of
         the whirl threshold, or half the spin if there is none.
@@ -61,6 +68,28 @@ class EquilibriumResult:
     frequency: float = 0.0
     response: FilmResponse | None = field(default=None, repr=False)
 
+    @cached_property
+    def settled_stiffness(self) -> np.ndarray:
+        """-dF/d(x, y) (2, 2) in N/m between steady films: how far the journal goes when the load changes for good.
+
+        The temperature settles in every position, the cavity's oil too; what has neither has one stiffness. With
+        ``thermal`` from central differences of films that are solved when it is first asked for.
+        """
+        b, motion = self.film.bearing, self.film.motion[:MOTION_SIZE]
+        if b.thermal is None:
+            return self.stiffness if self.response is None else self.response.at(0.0).real
+        model = build_study_model(b, 0.0)
+        step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
+        near, columns = History(temperature=self.film.temperature), []
+        for k in range(2):
+            forces = []
+            for shift in (step, -step):
+                moved = motion.copy()
+                moved[k] += shift
+                forces.append(evaluate_at(model, moved, "settled_stiffness", near)[0].wrench[:2])
+            columns.append((forces[1] - forces[0]) / (2.0 * step))
+        return np.array(columns).T
+
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C (k, 2, 2) in N/m at the frequencies nu (k,), rad/s: the force's amplitude is -Z x for a
         motion x exp(i nu t).
@@ -87,8 +116,10 @@ def equilibrium(
 
     With `ElrodAdams` stiffness and damping depend on the frequency of the motion, because the cavity's oil follows
     with a delay. The threshold is solved for with both at its own frequency, and these are the ones returned; others
-    come from `EquilibriumResult.dynamic_stiffness`. On a liner or a flexible bore the stiffness is that of the steady
-    film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with `ElrodAdams`).
+    come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
+    `EquilibriumResult.settled_stiffness` lets it follow. On a liner or a flexible bore the stiffness is that of the
+    steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
+    `ElrodAdams`).
 
     Parameters
     ----------

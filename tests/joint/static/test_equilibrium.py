@@ -9,6 +9,8 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.static.equilibrium import whirl_threshold
 from exudyn_ehd.reference import short_bearing
 
@@ -207,3 +209,69 @@ def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so(
     )
     with pytest.raises(ehd.FilmError, match=r"no position found that carries 3000 N.*supply area"):
         ehd.equilibrium(bearing, speed=100.0 * np.pi, load=(0.0, -3000.0))
+
+
+LAW = ehd.VogelTemperature(first=(313.15, 0.05), second=(373.15, 0.008))
+THERMAL = {
+    "one temperature": ehd.LumpedThermal(supply_temperature=313.15),
+    "field": ehd.FilmEnergy(supply_temperature=313.15),
+}
+
+
+def _hot(make_bearing, kind):
+    return make_bearing(1.0, film=FILM, lubricant=ehd.Lubricant(temperature_law=LAW), thermal=THERMAL[kind])
+
+
+@pytest.mark.parametrize("kind", THERMAL)
+class TestThermal:
+    def test_stiffness_holds_the_temperature_and_settled_stiffness_lets_it_follow(self, make_bearing, kind):
+        bearing, load = _hot(make_bearing, kind), np.array([800.0, -2500.0])
+        result = ehd.equilibrium(bearing, speed=600.0, load=tuple(load))
+        model, step = build_model(bearing), 1e-6 * 25e-6
+        held = np.zeros((2, 2))
+        for k in range(2):
+            for sign in (1.0, -1.0):
+                moved = result.film.motion.copy()
+                moved[k] += sign * step
+                force = model.evaluate(moved, History(temperature=result.film.temperature)).wrench[:2]
+                held[:, k] -= sign * force / (2 * step)
+        np.testing.assert_allclose(result.stiffness, held, atol=1e-5 * abs(held).max())
+        settled = result.settled_stiffness
+        assert np.abs(settled - held).max() > 0.05 * np.abs(settled).max()
+        # loads a little further on displace the journal as the settled stiffness says
+        for change in ([30.0, 0.0], [0.0, 30.0]):
+            ends = [
+                ehd.equilibrium(bearing, speed=600.0, load=tuple(load + s * np.array(change))).position
+                for s in (0.5, -0.5)
+            ]
+            np.testing.assert_allclose(settled @ (ends[0] - ends[1]), change, atol=0.03 * 30.0)
+
+    def test_few_positions_from_light_to_heavy_loads(self, make_bearing, kind):
+        for size in (100.0, 2e3, 2e4):
+            result = ehd.equilibrium(_hot(make_bearing, kind), speed=600.0, load=(0.6 * size, 0.8 * size))
+            assert result.residual < 1e-10
+            assert result.iterations <= 15
+
+    def test_a_load_beyond_reach_is_refused_after_a_bounded_number_of_film_solves(
+        self, make_bearing, kind, monkeypatch
+    ):
+        solves, evaluate = [0], BearingModel.evaluate
+
+        def counted(self, *args, **options):
+            solves[0] += 1
+            return evaluate(self, *args, **options)
+
+        monkeypatch.setattr(BearingModel, "evaluate", counted)
+        with pytest.raises(ehd.FilmError, match=r"no position found|temperature"):
+            ehd.equilibrium(_hot(make_bearing, kind), speed=600.0, load=(0.0, -2e6))
+        assert solves[0] < 8000
+
+
+def test_what_remembers_its_oil_has_its_settled_stiffness_at_rest(make_bearing):
+    bearing = make_bearing(1.0, film=FILM, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    result = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -300.0))
+    near = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -301.0))
+    change = result.settled_stiffness @ (near.position - result.position)
+    np.testing.assert_allclose(change, [0.0, -1.0], atol=0.02)
+    plain = ehd.equilibrium(make_bearing(1.0, film=FILM), speed=SPEED, load=(0.0, -300.0))
+    assert plain.settled_stiffness is plain.stiffness
