@@ -119,27 +119,23 @@ class LoadSearch:
         return Carried(motion.copy(), evaluation, film, unbalance, evaluation.steady_tangent())
 
     def _moved(self, place: Carried, step: np.ndarray) -> Carried:
-        """The film a step (2,) on; in a flexible bore after the part of the step that leaves a film."""
-        for k in range(STEP_HALVINGS if self.model.flexible else 1):
-            motion = place.motion.copy()
-            motion[:2] += step * 0.5**k
+        """The film a step (2,), shortened, on; in a flexible bore after the part of the step that leaves a film."""
+        step = np.pad(limited_step(self.model, place.motion, step), (0, place.motion.size - 2))
+        for _ in range(STEP_HALVINGS if self.model.flexible else 0):
             try:
-                reached = self.at(motion)
-                break
+                return self._learnt(place, self.at(place.motion + step))
             except FilmError:
-                if k + 1 == STEP_HALVINGS or not self.model.flexible:
-                    raise
-        self._learn(place, reached)
-        return reached
+                step = 0.5 * step
+        return self._learnt(place, self.at(place.motion + step))
 
-    def _learn(self, place: Carried, reached: Carried) -> None:
+    def _learnt(self, place: Carried, reached: Carried) -> Carried:
         """Broyden's update of what the temperature adds to the tangent."""
-        if self.model.effects.thermal is None:
-            return
-        step = reached.motion[:2] - place.motion[:2]
-        expected = (0.5 * (place.slope + reached.slope) + self._follows) @ step
-        missed = reached.unbalance - place.unbalance - expected
-        self._follows = self._follows + np.outer(missed, step) / float(step @ step + 1e-300)
+        if self.model.effects.thermal is not None:
+            step = reached.motion[:2] - place.motion[:2]
+            expected = (0.5 * (place.slope + reached.slope) + self._follows) @ step
+            missed = reached.unbalance - place.unbalance - expected
+            self._follows = self._follows + np.outer(missed, step) / float(step @ step + 1e-300)
+        return reached
 
     def newton(self, place: Carried, tolerance: float, most: int = LARGEST_LOAD_STEPS) -> Carried:
         """Newton's method from a place on, until the unbalance is below ``tolerance`` of the load, or ``most`` steps.
@@ -154,7 +150,7 @@ class LoadSearch:
                 break
             try:
                 step = np.linalg.solve(place.slope + self._follows, -place.unbalance)
-                place = self._moved(place, limited_step(self.model, place.motion, step))
+                place = self._moved(place, step)
             except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
                 break
         return place
@@ -173,13 +169,9 @@ class LoadSearch:
                 break
             try:
                 step = np.linalg.solve(resistance * np.eye(2) - place.slope - self._follows, place.unbalance)
-                motion = place.motion.copy()
-                motion[:2] += limited_step(self.model, motion, step)
-                reached = self.at(motion)
+                reached = self._moved(place, step)
             except (np.linalg.LinAlgError, FilmError):
-                resistance *= 4.0
-                continue
-            self._learn(place, reached)
+                reached = place
             if float(np.hypot(*reached.unbalance)) < float(np.hypot(*place.unbalance)):
                 place, resistance = reached, resistance / 5.0
             else:

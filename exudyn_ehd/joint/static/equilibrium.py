@@ -80,15 +80,12 @@ class EquilibriumResult:
             return self.stiffness if self.response is None else self.response.at(0.0).real
         model = build_study_model(b, 0.0)
         step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
-        near, columns = History(temperature=self.film.temperature), []
-        for k in range(2):
-            forces = []
-            for shift in (step, -step):
-                moved = motion.copy()
-                moved[k] += shift
-                forces.append(evaluate_at(model, moved, "settled_stiffness", near)[0].wrench[:2])
-            columns.append((forces[1] - forces[0]) / (2.0 * step))
-        return np.array(columns).T
+        near = History(temperature=self.film.temperature)
+
+        def force(shift: np.ndarray) -> np.ndarray:
+            return evaluate_at(model, motion + shift, "settled_stiffness", near)[0].wrench[:2]
+
+        return np.array([force(-s) - force(s) for s in step * np.eye(2, MOTION_SIZE)]).T / (2.0 * step)
 
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
         """Z = K + i nu C (k, 2, 2) in N/m at the frequencies nu (k,), rad/s: the force's amplitude is -Z x for a
