@@ -24,6 +24,8 @@ moments are taken about the joint's origin.
 import importlib
 from typing import Any
 
+# first of all: it finds a folder for compiled kernels
+import exudyn_ehd.storage  # noqa: F401
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams

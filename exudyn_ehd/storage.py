@@ -3,28 +3,37 @@
 Arrays that take seconds to compute and depend on few inputs are kept under a digest of all that determines them. Their
 file carries a digest of key and content, and must hold the arrays asked for: a damaged or foreign one warns and is
 replaced. Runs side by side don't disturb each other, since a file appears under its name only when complete. A folder
-that can't be written costs the computing time of every run and nothing else.
+that can't be written costs the computing time of every run and nothing else. What was not used for longest goes when
+the folder is full. numba keeps compiled kernels in folders of its own; where it finds none, the process gets one.
 """
 
 from __future__ import annotations
 
+import atexit
 import dataclasses
 import enum
 import hashlib
 import io
 import os
 import pathlib
+import shutil
 import tempfile
+import time
 import types
 import warnings
 import zipfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
+import numba
 import numpy as np
 
+from exudyn_ehd.status import EHDError
+
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
+# Bytes of all arrays kept, and s after which the temporary file of a writer that was killed goes too
+LARGEST_CACHE, LONGEST_WRITE = 3e8, 3600.0
 
 Arrays = dict[str, np.ndarray]
 Shapes = Mapping[str, tuple[int | str, ...]]
@@ -120,7 +129,42 @@ def cache_folder() -> pathlib.Path:
     chosen = os.environ.get(CACHE_VARIABLE)
     if chosen:
         return pathlib.Path(chosen)
-    return pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "exudyn_ehd"
+    # who has no home keeps nothing
+    user = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.path.expanduser("~"), ".cache")
+    return pathlib.Path(os.devnull if user.startswith("~") else user) / "exudyn_ehd"
+
+
+def give_kernels_a_cache() -> None:
+    """Give numba a folder for this process if it finds none for its cache; it refuses to compile without.
+
+    Raises
+    ------
+    EHDError
+        If there is no temporary folder either.
+    """
+    try:
+        numba.njit(cache=True)(_probe)
+        return
+    except RuntimeError:
+        remedy = "set NUMBA_CACHE_DIR to a folder that can be written."
+    try:
+        folder = tempfile.mkdtemp(prefix="exudyn_ehd_kernels_")
+    except OSError:
+        raise EHDError(
+            f"exudyn_ehd: numba has no folder for its compiled kernels, and there is none for temporary files; {remedy}"
+        ) from None
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    # processes that this one starts share it
+    numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = folder
+    warnings.warn(
+        "exudyn_ehd: numba can write its cache neither next to the package nor in the user's cache folder; kernels are "
+        f"compiled anew in every run (10 to 20 s). To keep them, {remedy}",
+        stacklevel=2,
+    )
+
+
+def _probe() -> None:
+    """A function for numba to look for a folder for."""
 
 
 def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], Arrays]) -> Arrays:
@@ -166,6 +210,9 @@ def _read(path: pathlib.Path, digest: bytes, shapes: Shapes) -> Arrays | None:
     if arrays.keys() != shapes.keys() or not _fit(arrays, shapes):
         _warn(path, "no file of this package's version")
         return None
+    # files that nobody reads go first, see _make_room
+    with suppress(OSError):
+        os.utime(path)
     return arrays
 
 
@@ -193,5 +240,26 @@ def _write(path: pathlib.Path, digest: bytes, arrays: Arrays) -> None:
     try:
         with replacing(path, binary=True) as file:
             file.write(hashlib.sha256(digest + payload).digest() + payload)
+        _make_room(path)
     except OSError:
         return
+
+
+def _make_room(newest: pathlib.Path) -> None:
+    """Remove the files that were not used for longest, until the others are within the limit; ``newest`` stays."""
+    files, total = [], newest.stat().st_size
+    for path in newest.parent.iterdir():
+        # another process may remove what this one looks at
+        with suppress(FileNotFoundError):
+            status = path.stat()
+            if path.suffix == ".bin" and path != newest:
+                files.append((status.st_mtime, status.st_size, path))
+            elif path.name.startswith(".") and ".bin." in path.name and time.time() - status.st_mtime > LONGEST_WRITE:
+                path.unlink()
+    for _, size, path in sorted(files, reverse=True):
+        total += size
+        if total > LARGEST_CACHE:
+            path.unlink(missing_ok=True)
+
+
+give_kernels_a_cache()
