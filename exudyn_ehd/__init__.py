@@ -53,7 +53,16 @@ from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.solve_film import FilmResult, solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult, steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult, stribeck
-from exudyn_ehd.status import EHDError, FilmError, InputError, RingingWarning, RunError, StarvationWarning, Status
+from exudyn_ehd.status import (
+    EHDError,
+    FilmError,
+    InputError,
+    MemoryWarning,
+    RingingWarning,
+    RunError,
+    StarvationWarning,
+    Status,
+)
 
 __version__ = "0.1.0"
 
@@ -167,6 +176,7 @@ __all__ = [
     "LubricatedJoint",
     "LumpedThermal",
     "MaximumGap",
+    "MemoryWarning",
     "ModalBush",
     "OutOfRound",
     "PatirCheng",

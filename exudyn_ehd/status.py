@@ -58,6 +58,10 @@ class RunError(EHDError, RuntimeError):
     """A solver of Exudyn failed although every film could be evaluated; names the joints and their state."""
 
 
+class MemoryWarning(UserWarning):
+    """The film of a joint goes on with what it remembers of another state than that of the run."""
+
+
 class RingingWarning(UserWarning):
     """The forces of a joint alternate from step to step: the steps are too large for the time integration."""
 

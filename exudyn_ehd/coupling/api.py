@@ -96,9 +96,11 @@ class LubricatedJoint(JointResults):
 
         Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
         current state, completed at this moment (during a run it is the start of the current step). A run that starts at
-        the end of the record goes on with it and with what the film remembers, e.g. after
-        ``SolveDynamic(..., updateInitialValues=True)``; any other starts a new one, also a run at that time from the
-        old initial values. A last state without a film is left out, and a warning says why.
+        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
+        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
+        and a warning says why.
+
+        What the film remembers follows the state, not the record: see `forget`.
         """
         return self.element.steps.history(self.mbs)
 
@@ -153,8 +155,18 @@ class LubricatedJoint(JointResults):
             modes=bore_modes_of(self.element),
         )
 
+    def forget(self) -> None:
+        """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
+
+        Without it what a film remembers follows the state: a run that starts where the last one has ended goes on with
+        the film of its end, at whatever time and with static solves in between; a run that starts where the last one
+        has started has the film of its start. At any other state the film of the last end goes on, with a
+        `MemoryWarning`.
+        """
+        self.element.steps.forget()
+
     def restore_state(self, state: JointState) -> None:
-        """Let the next run, if it starts at the state's time, go on with its memory and record.
+        """Let the next run go on with the memory of a state, and with its record if it starts at its time.
 
         `SolveDynamic` does it with ``restart``.
 

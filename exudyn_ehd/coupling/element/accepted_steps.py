@@ -3,6 +3,10 @@
 Exudyn has no call for an accepted step. A step is accepted when the start of the step has moved on: the state at the
 new start is then evaluated once more, recorded, watched for runs that ring or chatter, and what the film remembers
 there serves the next step. A rejected step leaves nothing behind.
+
+What a film remembers follows the state. A run begins with what the film remembered when the system was there: at the
+end of the run before, or at its beginning where the run starts there again. The clock does not matter, and static
+solves in between, in which films are steady, change nothing of it.
 """
 
 from __future__ import annotations
@@ -31,6 +35,8 @@ from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
+# A run goes on with the last step of the run before if it starts at its end, share of that step.
+SAME_TIME = 1e-3
 
 
 class Film(Protocol):
@@ -40,13 +46,10 @@ class Film(Protocol):
     ----------
     model : JointModel
     failures : Failures
-    seen : list of float
-        Coordinates where the film was asked for last.
     """
 
     model: JointModel
     failures: Failures
-    seen: list[float]
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -87,6 +90,8 @@ class AcceptedSteps:
         The one of them that is at work.
     memory : History or None
         What the film remembers at ``start``; None for a film that remembers nothing, or is steady.
+    asked : (float, list of float)
+        Time and coordinates for which a solver has asked last.
     begin : StepStart or None
         Where the present step begins; None where the film takes the velocities as they are.
     control : GapWatch or None
@@ -111,8 +116,22 @@ class AcceptedSteps:
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
         self._uses_memory = self._may_starve = False
+        self.asked: tuple[float, list[float]] = (np.nan, [])
+        self.forget()
+
+    def forget(self) -> None:
+        """Let the next run start with a new record and a film that remembers nothing."""
         self._resumed: tuple[float, History | None, StepStart | None] | None = None
+        # coordinates and memory where the run began, and the memory that waits while a static solver is at work
         self._first: list[float] = []
+        self._first_memory: History | None = None
+        self._aside: History | None = None
+        self.memory = self.begin = None
+        self.start = np.nan
+        self._record.clear()
+        # the next run is a new one, whatever was run before
+        self.solvers = solver_state.NO_RUN
+        self.film.forget()
 
     def accept(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> None:
         """Take the state at the start of the current step as accepted.
@@ -122,11 +141,9 @@ class AcceptedSteps:
         FilmError
             If the film there is none that can go on.
         """
-        resumed = False
-        if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
-            resumed = self._begin_run(mbs, start, solvers)
-        elif start < self.start:
-            self.memory = self.begin = None
+        # without a stored solver it is the clock put back that tells of a new run
+        begins = solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1] or start < self.start
+        resumed = begins and self._begin_run(mbs, start, solvers)
         if self._uses_memory and self.memory is None:
             self.start = start
             motion = self.film.motion(mbs, _START_OF_STEP)
@@ -146,14 +163,26 @@ class AcceptedSteps:
                 observe(trial)
             if start > self.start:
                 self._advance_memory(trial)
+                if begins:
+                    self._first_memory = self.memory
         last, self.start = self.start, start
         self._check(start, trial, start - last, row is not None)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
-        film = self.film
-        self.solver = solver_state.running_solver(self.solvers, solvers)
-        self.solvers = solvers
+        film, place, before = self.film, self.film.read(mbs, _START_OF_STEP)[0], self._first
+        # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
+        # nothing has moved either run starts where the other ended
+        goes_on = start > self._record.last_time and (place != before or self.asked[1] == before)
+        resumed = self._resumed is not None and start == self._resumed[0]
+        solver = self.solver
+        if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
+            solver = solver_state.running_solver(self.solvers, solvers)
+        if self._resumed is None and place == before and not goes_on:
+            memory, self.begin, self.start = self._first_memory, None, start
+        else:
+            memory = self._take_up(mbs, start, place, solver)
+        self.solver, self.solvers = solver, solvers
         explicit, static = solver_state.is_explicit(self.solver), solver_state.is_static(self.solver)
         bearing = film.model.bearing
         self._chatter = ChatterWatch(bearing) if explicit else None
@@ -162,28 +191,44 @@ class AcceptedSteps:
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
-        goes_on = self._goes_on(mbs, start)
-        if not self._uses_memory or not goes_on:
-            self.memory = None
-        state, self._resumed = self._resumed, None
-        if state is not None and start == state[0]:
-            self.start, self.memory, self.begin = state
-            return True
-        if not goes_on:
-            self.begin = None
+        self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
+        self._first, self._first_memory = place, memory
+        if not resumed and not goes_on:
             self._record.clear()
             if self.recorder is not None:
                 self.recorder.begin_anew()
-        return False
+        return resumed
 
-    def _goes_on(self, mbs: exu.MainSystem, start: float) -> bool:
-        """Whether a run goes on with the record.
+    def _take_up(
+        self, mbs: exu.MainSystem, start: float, place: list[float], solver: solver_state.Solver | None
+    ) -> History | None:
+        """Memory for a run of ``solver`` that goes on from a stored state, or from where the run before has ended.
 
-        It starts behind it, and elsewhere than the run before: that one's end is now the initial state. Where nothing
-        has moved either run starts where the other ended.
+        Sets start and begin of its first step; that of a run which continues the last one in time is the last step
+        itself, whose end is still to be accepted.
         """
-        before, self._first = self._first, self.film.read(mbs, _START_OF_STEP)[0]
-        return start > self._record.last_time and (self._first != before or self.film.seen == before)
+        film, memory, last = self.film, self.memory if self._uses_memory else self._aside, self.start
+        if self._resumed is not None:
+            (time, memory, begin), self._resumed = self._resumed, None
+            self.start, self.begin = start, begin if start == time else None
+            return memory
+        end = last
+        if solver_state.is_finished(self.solver):
+            end = self.asked[0] if self.solver is None else self.solver.it.currentTime
+        static = solver_state.is_static(self.solver) or solver_state.is_static(solver)
+        if not static and abs(start - end) <= SAME_TIME * (end - last):
+            return memory
+        if memory is not None:
+            # explicit solvers do not ask at the end of a step
+            if place != self.asked[1] and not solver_state.is_explicit(self.solver):
+                film.failures.warn_of_memory(start, end)
+            if self._uses_memory and end > last:
+                trial = film.look(mbs, end, _START_OF_STEP)
+                if trial.evaluation is not None and trial.status == Status.CONVERGED:
+                    memory = trial.evaluation.history()
+                film.forget()
+        self.start, self.begin = start, None
+        return memory
 
     def _begin_of_next(self, time: float, trial: Trial) -> StepStart | None:
         """Where the step after the state at hand begins, under solvers whose formulas are known."""
@@ -240,7 +285,7 @@ class AcceptedSteps:
     def remembered(self, mbs: exu.MainSystem) -> tuple[float, History | None, StepStart | None, np.ndarray]:
         """Time of the last accepted state, the film's memory there, where the next step begins, and the record."""
         time, trial, _ = self.look_at_accepted(mbs)
-        row, memory = self.film.row(time, trial), self.memory
+        row, memory = self.film.row(time, trial), self.memory if self._uses_memory else self._aside
         begin = self._begin_of_next(time, trial)
         if self._uses_memory and time > self.start and row is not None:
             assert trial.evaluation is not None
@@ -252,15 +297,10 @@ class AcceptedSteps:
         self, time: float, memory: History | None, rows: np.ndarray | None = None, begin: StepStart | None = None
     ) -> None:
         """Go on with ``memory``, record and start of the next step, by default none, in a run from ``time`` on."""
-        if rows is None:
-            self._record.clear()
-        else:
+        self.forget()
+        if rows is not None:
             self._record.restore(rows)
         self._resumed = (time, memory, begin)
-        self.memory, self.begin, self.start = None, None, np.nan
-        self.film.forget()
-        # the next run is a new one, whatever was run before
-        self.solvers = solver_state.NO_RUN
 
     def history(self, mbs: exu.MainSystem) -> JointHistory:
         """The record, completed by the current state if that is later than the last step; warns if it has no film."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
-from exudyn_ehd.status import FilmError, Status
+from exudyn_ehd.status import FilmError, MemoryWarning, Status
 
 # Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are
 # none.
@@ -80,6 +82,16 @@ class Failures:
                 f"the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial.motion)}its heat has no way out; "
                 f"{WAY_OUT}"
             ),
+        )
+
+    def warn_of_memory(self, start: float, end: float) -> None:
+        """A run starts elsewhere than the run before has started and ended."""
+        warnings.warn(
+            f"LubricatedJoint '{self.name}': the run from t = {start:.9g} s starts at a state that no run has led to; "
+            f"its film goes on with what it remembers of t = {end:.9g} s (oil content, wear, temperature, deflection). "
+            "Call joint.forget() before a run whose film shall start anew.",
+            MemoryWarning,
+            stacklevel=2,
         )
 
     def _at(self, time: float, message: str) -> FilmError:

@@ -47,8 +47,6 @@ class FilmElement:
     failures : Failures
     evaluations : int
         How often the film was asked.
-    seen : list of float
-        Coordinates where it was asked last.
     """
 
     def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
@@ -56,9 +54,8 @@ class FilmElement:
         self.sides = (housing, journal)
         self.failures = Failures(name, model.bearing)
         self.evaluations = 0
-        self.seen: list[float] = []
-        self.steps = AcceptedSteps(self)
         self._trial: Trial | None = None
+        self.steps = AcceptedSteps(self)
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -69,7 +66,10 @@ class FilmElement:
         solvers = solver_state.stored_solvers(mbs)
         if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
             steps.accept(mbs, start, solvers)
-        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not steps.is_idle)
+        stepping = not steps.is_idle
+        if stepping or steps.solver is None:
+            steps.asked = t, q
+        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
         if steps.control is not None and t > start and steps.control.rejects(trial.motion, steps.solver):
@@ -127,7 +127,6 @@ class FilmElement:
         bodies = motion = self._move(mbs, q, q_t, configuration)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
-        self.seen = q
         evaluation = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
