@@ -4,6 +4,7 @@ Module map
 ----------
 attach          from a joint's description to its element
 rigid           `FilmElement`: user functions for a rigid bore
+settled_start   bores in balance with the films at the start
 accepted_steps  what was accepted: record, memory, watches, runs that go on
 failures        messages of films that can't go on
 modal           bore by modes

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable
-
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
@@ -14,21 +11,15 @@ from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
 from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
+from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settle_body, undeformed
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
-from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
-from exudyn_ehd.joint.model.build import collect_effects
+from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.bush import ANCFBush
-from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.static_modes import BoreModes
-from exudyn_ehd.status import Status
 
 # Period over 2 pi of a mode on its numerical mass, s.
 NUMERICAL_PERIOD = 1e-6
@@ -66,13 +57,15 @@ def attach_bush(
         What the element's ObjectGenericODE2 needs besides nodes and functions.
     """
     assert isinstance(model, ElasticBearingModel)
+    if isinstance(sides[0], FloatingBoreSide):
+        items = (undeformed(mbs, items[0], sides[0]), items[1])
     for item, side in zip(items, sides, strict=True):
         side.frame[:] = initial_frame(mbs, item, side)
     if not isinstance(model.bore, ModalBore):
         return _attach_nodes(mbs, model, sides, place, name, show), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
-        _settle_modes(mbs, model, sides)
+        settle_body(mbs, model, sides)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
     start = initial_coordinates(model, sides)
     k = model.bore.size
@@ -99,18 +92,6 @@ def attach_bush(
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": _mass_matrix(rigid, mass)}
-
-
-def _settle_modes(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
-    """Let the modes of a reduced body start in equilibrium with the film, unless the scene has set them."""
-    bush, node = model.bearing.bush, sides[0].nodes[-1]
-    assert isinstance(bush, ReducedBore)
-    if not bush.settled or np.any(mbs.GetNodeParameter(node, "initialCoordinates")):
-        return
-    held = bush.held()
-    start = initial_coordinates(model, sides, lambda grid: ModalBore(held, grid))
-    if start is not None:
-        mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
 
 
 def _attach_nodes(
@@ -146,25 +127,3 @@ def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass
     return whole
-
-
-def initial_coordinates(
-    model: ElasticBearingModel, sides: tuple[Side, Side], make_bore: Callable[[FilmGrid], Bore] | None = None
-) -> np.ndarray | None:
-    """Coordinates (k,) of the bore in equilibrium with the film of the initial configuration, None if there is none.
-
-    The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
-    flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
-    ``make_bore`` takes the place of the model's own.
-    """
-    bearing = model.bearing
-    if bearing.cavitation.conserves_mass:
-        closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
-        bearing = dataclasses.replace(bearing, cavitation=closure)
-    film = ElasticBearingModel(
-        bearing, make_bore or model.make_bore, elasticity=model.elasticity, effects=collect_effects(bearing)
-    )
-    motion = np.empty(MOTION_SIZE)
-    relative.relative_motion(sides[0].frame, sides[1].frame, motion)
-    settled = film.evaluate_steady(motion, film.initial_history(motion))
-    return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None

@@ -1,13 +1,17 @@
 """Flexible bores start in balance with their film: with pressures at the ends, and at the temperature of the run."""
 
+import functools
 import itertools
 import math
 
+import bodies
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
+from exudyn.FEM import ObjectFFRFreducedOrderInterface
+from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
 from tests.sampling import sample
@@ -97,3 +101,82 @@ def test_dynamic_modes_that_lack_nothing(thickness):
         journal_radius=R, length=L, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.02), bush=bush
     )
     assert ehd.steady(bearing, speed=SPEED, eccentricity_ratio=0.5).status is ehd.Status.CONVERGED
+
+
+ENDS = [[0, 0, -0.05], [0, 0, 0.05]]
+
+
+@functools.cache
+def tube():
+    """A steel tube held around its middle, with modes for a bore at either end; made once, solvers turn its modes."""
+    size = {"inner_radius": R, "thickness": 0.008, "length": 0.12}
+    mesh = ehd.HollowCylinder(**size, axial=6, radial=1, circumferential=12).mesh()
+    fem = bodies.fem_of(mesh, ehd.SaintVenantKirchhoff(youngs_modulus=2.1e10, poisson_ratio=0.3, density=7800.0))
+    outer = mesh.outer.nodes
+    middle = outer[np.abs(mesh.nodes[outer, 2]) < 0.011]
+    fem.ComputeHurtyCraigBamptonModes([list(middle)], 4)
+    for end in ENDS:
+        ehd.add_bore_modes(
+            fem, position=end, axis=[0, 0, 1], radius=R, length=L, fixed_nodes=middle, tolerance=0.15, tilted=False
+        )
+    return fem
+
+
+def carrier(order, clearances=(C, C), moved=False):
+    """The tube, and a journal in its two bores; joints are made in ``order``."""
+    fem = tube()
+    mbs = scenes.new_system()
+    parts = ObjectFFRFreducedOrderInterface(fem, rigidBodyNodeType="NodeType.RotationRxyz").AddObjectFFRFreducedOrder(
+        mbs
+    )
+    if moved:
+        size = len(mbs.GetNodeParameter(parts["nGenericODE2"], "referenceCoordinates"))
+        mbs.SetNodeParameter(parts["nGenericODE2"], "initialCoordinates", [1e-7] * size)
+    journal = mbs.CreateRigidBody(
+        inertia=RigidBodyInertia(2.0, np.diag([4e-3, 4e-3, 1e-3])),
+        nodeType=exu.NodeType.RotationRxyz,
+        initialAngularVelocity=[0, 0, SPEED],
+        initialDisplacement=[PLACE[0] * C, PLACE[1] * C, 0],
+    )
+    joints = {}
+    for k in order:
+        bearing = ehd.JournalBearing(
+            journal_radius=R - clearances[k],
+            length=L,
+            radial_clearance=clearances[k],
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=48, n_z=6),
+            bush=ehd.FEBore(fem=fem),
+        )
+        joints[k] = ehd.CreateLubricatedJoint(
+            mbs,
+            name=f"end {k}",
+            itemNumbers=[parts["oFFRFreducedOrder"], journal],
+            position=ENDS[k],
+            axis=[0, 0, 1],
+            bearing=bearing,
+        )
+    modes = np.array(mbs.GetNodeParameter(parts["nGenericODE2"], "initialCoordinates"))
+    mbs.Assemble()
+    return mbs, joints, modes
+
+
+def test_bores_of_one_body_start_in_balance_together():
+    """What is the same at both ends is so in the run."""
+    mbs, joints, modes = carrier((0, 1))
+    assert np.abs(modes).max() > 1e-8
+    mbs.SolveDynamic(scenes.settings(1e-4, 10, tolerance=1e-7))
+    near, far = (joints[k].history for k in (0, 1))
+    np.testing.assert_allclose(far.force[:, :2], near.force[:, :2], rtol=1e-5)
+    # out of balance the bores swing by as much as they deflect
+    assert np.ptp(near.bore_displacement[:5]) < 0.05 * near.bore_displacement[0]
+
+
+@pytest.mark.slow
+def test_balance_of_several_bores_knows_no_order():
+    plain = carrier((0, 1))[2]
+    first, second = (carrier(order, (C, 1.4 * C))[2] for order in ((0, 1), (1, 0)))
+    np.testing.assert_allclose(second, first, rtol=0.0, atol=1e-8 * np.abs(first).max())
+    assert np.abs(first - plain).max() > 1e-3 * np.abs(plain).max()
+    # what the scene has set stays
+    np.testing.assert_array_equal(carrier((0, 1), moved=True)[2], 1e-7)
