@@ -258,7 +258,11 @@ def peak_of(P):
 
 
 def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) -> tuple[float, float, float]:
-    """Peak of P and its position from parabolas through the largest vertex and its neighbours in x and in z."""
+    """Peak of P and its position from parabolas through the largest vertex and its neighbours in x and in z.
+
+    In the row beside an end, to which the pressure falls steeply, a parabola overshoots; there it may rise above the
+    vertex by a quarter of the smaller drop to its neighbours.
+    """
     value, i, j = peak_of(P)
     n, m = P.shape
     peak, position_x, position_z = value, x[i], z[j]
@@ -276,7 +280,8 @@ def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) ->
         second = (d1 - d0) / (h0 + h1)
         slope = (d0 * h1 + d1 * h0) / (h0 + h1)
         if second < 0.0:
-            peak += -0.25 * slope * slope / second
+            rise = -0.25 * slope * slope / second
+            peak += min(rise, 0.25 * min(d0 * h0, -d1 * h1)) if j in (1, m - 2) else rise
             position_z += -0.5 * slope / second
     return float(peak), float(position_x), float(position_z)
 

@@ -24,7 +24,8 @@ class LumpedThermal:
     ``C dT/dt = P - rho c_p Q (T - T_supply) - G (T - T_housing)``: P mechanical and pumping power that the film
     dissipates, Q flow out of the bearing's ends (replaced by supply oil), G conductance to the housing,
     ``C = rho c_p 2 pi R L c + capacity`` (with a density law, too: the mass in it at ambient pressure). Backward Euler
-    at every accepted step, first order; the force of a step sees the temperature at its start. `steady` and
+    at every accepted step, first order; the force of a step sees the temperature at its start, and so does the heat P
+    of steps that are short beside the exchange of the oil; in longer ones P follows the temperature. `steady` and
     `equilibrium` take the steady temperature; a static solution of a multibody model takes the initial one.
 
     Parameters
@@ -64,8 +65,9 @@ class FilmEnergy:
     (first order), of second order in z without new extrema. Oil enters through the ends and supplies with the supply
     temperature. Cavitation models that do not conserve mass lose oil at the end of the film and find it again at its
     beginning: it returns fully mixed, the leakage replaced by supply oil. The viscosity of a step follows from the
-    temperatures at its start: the coupling is explicit, of first order. `steady` and `equilibrium` take the steady
-    field; a static solution of a multibody model takes the initial temperature.
+    temperatures at its start: the coupling is explicit, of first order; in steps that are long beside the exchange of
+    the oil the heat follows the temperature, or the film would swing from step to step. `steady` and `equilibrium`
+    take the steady field; a static solution of a multibody model takes the initial temperature.
 
     Accuracy, against solutions with the profile across the film of a long bearing that heats by 13 to 58 K
     (``tests/validation/test_thd_cross_film.py``): between adiabatic walls load and peak pressure to 5 %, mean rise to 4

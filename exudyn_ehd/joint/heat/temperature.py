@@ -26,6 +26,9 @@ from exudyn_ehd.joint.solved_film import SolvedFilm
 STAGNANT = 1e-14
 # Rounding of the flow through the ends, as a share of the largest flow over a link.
 NO_FLOW = 1e-11
+# 1/K; no oil thins faster with the temperature.
+STEEPEST = 0.2
+Field = float | np.ndarray
 
 
 class _Temperature:
@@ -45,6 +48,19 @@ class _Temperature:
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """mu(T) / mu at the lubricant's own temperature."""
         return self.law.viscosity(temperature, self.density) / self.reference
+
+    def follows(self, T: Field, heat: Field, store: Field) -> Field:
+        """What heat loses per kelvin by which a step raises the temperature T; heat, W, and store, W/K, scaled alike.
+
+        Viscosity, and the heat with it, are those at the start of the step. Where the oil stores less than that heat
+        gains or loses by the temperature, a step would overshoot and the next one swing back: there the heat follows
+        the temperature, linearised, by as much as the store lacks. Steps that are short beside the exchange of the oil
+        are explicit. In a steady state, which stores nothing, repeated use converges where the heating is strong.
+        """
+        if not np.any(STEEPEST * heat > store):
+            return 0.0
+        thicker, thinner = (self.viscosity_ratio(T + d) for d in (-0.05, 0.05))
+        return np.maximum(np.log(thicker / thinner) / 0.1 * heat - store, 0.0)
 
 
 class LumpedTemperature(_Temperature):
@@ -87,8 +103,9 @@ class LumpedTemperature(_Temperature):
             return T
         heat, flow = self._rates(film)
         store, G = self.capacity / film.step, self.spec.housing_conductance
-        rise = heat + flow * self.supply + G * self.housing + store * T
-        return rise / (store + flow + G)
+        follows = float(self.follows(T, heat, store))
+        rise = heat + flow * self.supply + G * self.housing + (store + follows) * T
+        return rise / (store + flow + G + follows)
 
     def steady_temperature(self, film: SolvedFilm) -> float:
         """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
@@ -101,9 +118,10 @@ class LumpedTemperature(_Temperature):
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
         heat, flow = self._rates(film)
-        stored = self.capacity * (temperature - _number(film)) / film.step if film.step > 0.0 else 0.0
+        T, store = _number(film), self.capacity / film.step if film.step > 0.0 else 0.0
+        stored = store * (temperature - T)
         return {
-            "heat_in": heat,
+            "heat_in": heat - float(self.follows(T, heat, store)) * (temperature - T),
             "convected": flow * (temperature - self.supply),
             "conducted": self.spec.housing_conductance * (temperature - self.housing),
             "stored": stored,
@@ -197,8 +215,7 @@ class FilmTemperature(_Temperature):
     def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
         """Temperatures in balance with the heat of a solved film (n, m); not finite without a way out for the heat.
 
-        The heat is taken to follow the viscosity, linearised at the film's temperatures, so that repeated use
-        converges where the heating is strong; the fixed point is that of the heat itself.
+        The heat follows the temperature, see `follows`; the fixed point is that of the heat itself.
         """
         flows = OilFlows(film)
         stagnant = flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
@@ -262,13 +279,12 @@ class FilmTemperature(_Temperature):
         store = area * flows.content / step if step > 0.0 else np.zeros(shape)
         transfer, wall = self._wall(film)
         walls = transfer * area * film.grid.reference_length**2 / scale
+        follows = self.follows(old, heat / scale, store)
         if known is None:
             rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
-            # Heat of the steady film follows its viscosity: heat (1 - thinning (T - T_old)).
-            thinning = self._thinning(old) * heat / scale if step == 0.0 else 0.0
-            diagonal = thinning + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
+            diagonal = follows + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
             rhs = np.empty((2, *shape))
-            rhs[0] = heat / scale + (store + rigid + thinning) * (old - supply) + walls * (wall - supply)
+            rhs[0] = heat / scale + (store + rigid + follows) * (old - supply) + walls * (wall - supply)
             rhs[1] = back * found
             held = store if step > 0.0 else np.full(shape, np.inf)
             slopes = np.empty((5, area.size))
@@ -283,16 +299,11 @@ class FilmTemperature(_Temperature):
         stored = float(np.sum(store * (T - old))) if step > 0.0 else 0.0
         convected = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
         return T, {
-            "heat_in": float(heat.sum()),
+            "heat_in": float(np.sum(heat - scale * follows * (T - old))),
             "convected": scale * convected,
             "conducted": scale * float(np.sum(walls * (T - wall))),
             "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
         }
-
-    def _thinning(self, T: np.ndarray) -> np.ndarray:
-        """-d ln(mu) / dT at temperatures T, 1/K (n, m)."""
-        thicker, thinner = (self.viscosity_ratio(T + d) for d in (-0.05, 0.05))
-        return np.log(thicker / thinner) / 0.1
 
     def _solve_band(self, qx: np.ndarray, qz: np.ndarray, slopes: np.ndarray, rhs: np.ndarray) -> np.ndarray:
         """Solve the system of ``slopes`` for the fields rhs (k, n, m)."""

@@ -298,3 +298,39 @@ def test_input_errors_name_what_is_missing():
         ehd.LumpedThermal(supply_temperature=-5.0)
     with pytest.raises(ehd.InputError, match=r"FilmEnergy\.bush_coefficient"):
         ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=-1.0)
+
+
+@pytest.mark.parametrize(
+    "thermal", [ehd.LumpedThermal(supply_temperature=313.15), ehd.FilmEnergy(supply_temperature=313.15)]
+)
+def test_long_steps_do_not_swing_and_short_ones_are_explicit(thermal):
+    """Steps of ten exchanges of the oil, hot by 60 to 110 K: every film after the first few is the steady one.
+
+    A step whose heat is held would swing between a third and twice the load.
+    """
+    law = ehd.VogelTemperature(first=(313.15, 0.05), second=(373.15, 0.008))
+    b = ehd.JournalBearing(
+        journal_radius=0.02,
+        length=0.02,
+        radial_clearance=20e-6,
+        lubricant=ehd.Lubricant(temperature_law=law),
+        thermal=thermal,
+        film=ehd.FiniteLength(n_theta=48, n_z=8),
+    )
+    model, at = build_model(b), np.zeros(10)
+    at[0], at[8] = 0.7 * 20e-6, 1000.0
+    steady = float(np.hypot(*model.evaluate(at, settled_history(model, at)).wrench[:2]))
+    for step in (0.03, 0.1, 1.0):
+        history, worst = run(model, at, step, 12)
+        assert worst < BALANCE
+        loads = []
+        for _ in range(4):
+            evaluation = model.evaluate(at, history, step)
+            loads.append(float(np.hypot(*evaluation.wrench[:2])))
+            history = evaluation.history()
+        np.testing.assert_allclose(loads, steady, rtol=2e-3)
+    # a thousandth of an exchange: what the oil stores is the power at the temperature of the step's start
+    start = model.initial_history(at)
+    film = model.evaluate(at, start, 1e-5)
+    balance = model.effects.thermal.balance(film.film, film.history().temperature)
+    assert balance["heat_in"] == model.effects.thermal.balance(film.film, start.temperature)["heat_in"]

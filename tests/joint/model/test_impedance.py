@@ -171,6 +171,24 @@ def test_at_rest_force_vanishes_and_damping_is_that_of_closing():
     np.testing.assert_array_equal(tangent[:, :2], 0.0)
 
 
+def test_stiffness_of_a_concentric_spinning_journal(make_bearing):
+    """Cross-coupled, half the spin times the damping, in the centre as next to it; eccentric at half speed likewise."""
+    model = build_model(make_bearing(film=SMALL))
+    tangents = []
+    for shift in (0.0, 1e-9 * C):
+        motion = np.zeros(10)
+        motion[0], motion[8] = shift, 300.0
+        tangents.append(model.evaluate(motion).tangent())
+    K, near, damping = -tangents[0][:2, :2], -tangents[1][:2, :2], -tangents[0][:2, 4:6]
+    np.testing.assert_allclose(K, near, atol=1e-6 * abs(near).max())
+    np.testing.assert_allclose(K, 150.0 * damping @ [[0.0, 1.0], [-1.0, 0.0]], atol=1e-9 * abs(near).max())
+    # whirl at half speed makes no pressure at any eccentricity: a shift across the velocity's direction
+    motion = np.zeros(10)
+    motion[0], motion[5], motion[8] = 0.4 * C, 0.4 * C * 150.0, 300.0
+    tangent = model.evaluate(motion).tangent()[:2]
+    np.testing.assert_allclose(tangent[:, 1], 150.0 * tangent[:, 4], atol=1e-9 * abs(tangent).max())
+
+
 def test_outside_the_map_and_tilted(make_bearing):
     model = build_model(make_bearing(film=SMALL))
     motion = np.zeros(10)
