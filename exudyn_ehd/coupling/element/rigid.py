@@ -55,6 +55,7 @@ class FilmElement:
         self.failures = Failures(name, model.bearing)
         self.evaluations = 0
         self._trial: Trial | None = None
+        self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self.steps = AcceptedSteps(self)
         self._bound = False
         self._loads = np.zeros((4, 3))
@@ -124,7 +125,9 @@ class FilmElement:
         known = last is not None and last.q == q and last.q_t == q_t and last.step == step and last.memory is memory
         if last is not None and known and last.begin is begin:
             return last
-        bodies = motion = self._move(mbs, q, q_t, configuration)
+        peeked, self._peeked = self._peeked, None
+        here = peeked is not None and peeked[0] == q and peeked[1] == q_t
+        bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, configuration)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         evaluation = None
@@ -209,6 +212,11 @@ class FilmElement:
         relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_q, motion_qt, stiffness, damping)
         return stiffness, damping, motion_q, motion_qt
 
+    @property
+    def last(self) -> Trial | None:
+        """The state evaluated last, if it is still known."""
+        return self._trial
+
     def require_pressure(self, time: float) -> None:
         """Raise if the run has ended behind the end of a pressure law."""
         if self._trial is not None and self._trial.status == Status.NO_PRESSURE:
@@ -233,9 +241,17 @@ class FilmElement:
         self.forget()
         return motion
 
+    def peek(self, mbs: exu.MainSystem) -> np.ndarray:
+        """Motion at Exudyn's current state, for which the film will be asked next."""
+        q, q_t = self.read(mbs, _CURRENT)
+        motion = self._move(mbs, q, q_t, _CURRENT)
+        self.forget()
+        self._peeked = q, q_t, motion
+        return motion
+
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self._trial = None
+        self._trial = self._peeked = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""

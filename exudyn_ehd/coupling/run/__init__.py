@@ -5,6 +5,7 @@ Module map
 solve              SolveDynamic, SolveStatic
 settings           ConfigureSolver
 start_guess        where Newton starts in a step
+gap_limit          how far it goes in one of its own steps
 equilibrium_start  joints placed in equilibrium
 restart            states to go on from
 joint_state        what a joint knows besides coordinates, and whose it is

@@ -229,6 +229,7 @@ class _Newton:
                 # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
             self._update(solver, mbs)
+            self.guess(mbs, mbs.systemData.GetTime(), iteration, 0)
             age += 1
             if self.guess.before is not None:
                 self.guess.before(mbs, data.GetTime(), iteration, turn)

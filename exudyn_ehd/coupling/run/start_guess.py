@@ -28,6 +28,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.run.gap_limit import GapLimit
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -40,18 +41,22 @@ LARGEST_BEND = 0.1
 
 
 class StartGuess:
-    """Pre-Newton user function of a system that sets the start of Newton's method.
+    """Pre-Newton user function of a system that sets the start of Newton's method and keeps it within the films.
 
     Parameters
     ----------
     mbs : exudyn.MainSystem
+    limit : GapLimit
     before : callable or None
         The user's own function, called after it.
     bushes : collection of int
         Numbers of the nodes that hold the deformation of bushes: without inertia they follow the film at once.
     """
 
-    def __init__(self, mbs: exu.MainSystem, before: UserFunction | None, bushes: Collection[int] = ()) -> None:
+    def __init__(
+        self, mbs: exu.MainSystem, limit: GapLimit, before: UserFunction | None, bushes: Collection[int] = ()
+    ) -> None:
+        self.limit = limit
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
         self.bushes = bushes
@@ -62,11 +67,15 @@ class StartGuess:
         self.guess: np.ndarray | None = None
 
     def __call__(self, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
-        if iteration == 0 and discontinuous == 0:
-            solver = mbs.sys.get("dynamicSolver")
-            # a stored solver outlives its run
-            if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
-                self._set_start(mbs, solver)
+        solver = mbs.sys.get("dynamicSolver")
+        # a stored solver outlives its run
+        if solver is not self.old_solver and isinstance(solver, exu.MainSolverImplicitSecondOrder):
+            if iteration > 0:
+                self.limit.shorten(mbs, self.additive)
+            else:
+                if discontinuous == 0:
+                    self._set_start(mbs, solver)
+                self.limit.start(mbs)
         if self.before is not None:
             self.before(mbs, t, iteration, discontinuous)
 
@@ -88,10 +97,10 @@ class StartGuess:
             return
         h = solver.it.currentStepSize
         change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
-        q, q_t, q_tt = data.GetODE2Coordinates(), data.GetODE2Coordinates_t(), data.GetODE2Coordinates_tt()
-        data.SetODE2Coordinates((np.array(q) + solver.newmarkBeta * h * h * change).tolist(), _CURRENT)
-        data.SetODE2Coordinates_t((np.array(q_t) + solver.newmarkGamma * h * change).tolist(), _CURRENT)
-        data.SetODE2Coordinates_tt((np.array(q_tt) + self.guess).tolist(), _CURRENT)
+        state = data.GetSystemStateDict(_CURRENT, True)
+        state["ODE2Coords"] += solver.newmarkBeta * h * h * change
+        state["ODE2Coords_t"] += solver.newmarkGamma * h * change
+        state["ODE2Coords_tt"] += self.guess
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:

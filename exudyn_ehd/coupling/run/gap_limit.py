@@ -1,0 +1,126 @@
+"""Newton's method kept within the films.
+
+Exudyn's Newton method takes its steps whole. A film hardens towards the wall as 1 / gap^3 and more, and where it is
+hollow, or opens, it has hardly any stiffness: a step from there goes through the wall, where the film can't be
+evaluated or pushes back with 1e12 N, and the time step is halved for no fault of its own. From the thin side Newton's
+method converges step by step, from the thick side it overshoots. None of its steps may therefore close more than half
+of a film (the fraction to the boundary of interior point methods). With the ends of the journal's axis at p, moved by
+d, and the gap g = c - max |p| before, the part s of the step that is taken holds
+
+    |p + s d| <= c - g / 2,   s = (sqrt((p d)^2 + d^2 ((c - g / 2)^2 - p^2)) - p d) / d^2,
+
+the smallest s of all films and ends. Coordinates, velocities and accelerations satisfy Newmark's formulas one by one,
+after a part of a step too: the solution stays what it is. Rotations of Lie groups don't add up, and keep their step.
+Films thinner than a thousandth of the clearance, on a contact, are left alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from typing import Protocol
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.record.history import eccentricity_ratios
+
+_CURRENT = exu.ConfigurationType.Current
+# Share of a film's gap that a step of Newton's method may close.
+SHARE = 0.5
+# Gap below which a journal stands on its contact, share of the clearance.
+SMALLEST_GAP_SHARE = 1e-3
+
+
+class Film(Protocol):
+    """What the limit asks of a joint's element.
+
+    Attributes
+    ----------
+    model : JointModel
+    last : Trial or None
+        The state evaluated last.
+    """
+
+    model: JointModel
+
+    @property
+    def last(self) -> Trial | None: ...
+    def peek(self, mbs: exu.MainSystem) -> np.ndarray:
+        """Motion of the journal at the current state, for which the film will be asked next."""
+
+
+class GapLimit:
+    """Takes back what a step of Newton's method closes too much.
+
+    Parameters
+    ----------
+    films : collection of Film
+        Elements of all joints of a system.
+    """
+
+    def __init__(self, films: Collection[Film]) -> None:
+        self.films = films
+        self.before: list[np.ndarray] = []
+
+    def start(self, mbs: exu.MainSystem) -> None:
+        """Remember where Newton's method starts."""
+        self.before = [values.copy() for values in _state(mbs)]
+
+    def shorten(self, mbs: exu.MainSystem, additive: np.ndarray) -> None:
+        """Shorten the step that Newton's method has taken, where it closes a film by more than `SHARE`.
+
+        Parameters
+        ----------
+        mbs : exudyn.MainSystem
+            Holds the state after the step.
+        additive : (n,) array
+            Zero at the coordinates that keep their step, one elsewhere.
+        """
+        part = 1.0
+        for film in self.films:
+            last = film.last
+            if last is not None:
+                bearing = film.model.bearing
+                allowed = allowed_part(last.bodies, film.peek(mbs), bearing.radial_clearance, bearing.length)
+                part = min(part, allowed)
+        state = _state(mbs)
+        if part < 1.0:
+            kept = np.where(additive, 1.0 - part, 0.0)
+            for share, old, new in zip((kept, kept, kept, 1.0 - part), self.before, state, strict=True):
+                new += share * (old - new)
+        for old, new in zip(self.before, state, strict=True):
+            old[:] = new
+
+
+def allowed_part(before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
+    """Part of a step between two motions that closes the film of the rigid surfaces by `SHARE`, 1 if none does.
+
+    Parameters
+    ----------
+    before, after : (10,) array
+        Motion of the journal's axis, m and rad first.
+    clearance, length : float
+        m.
+    """
+    gap = clearance * (1.0 - eccentricity_ratios(before, clearance, length)[1])
+    farthest = clearance - SHARE * gap
+    # not true for what is not finite
+    if not gap > SMALLEST_GAP_SHARE * clearance:
+        return 1.0
+    if not clearance * eccentricity_ratios(after, clearance, length)[1] > farthest:
+        return 1.0
+    part = 1.0
+    for z in (-0.5 * length, 0.5 * length):
+        p, d = before[:2] + z * before[2:4], after[:2] - before[:2] + z * (after[2:4] - before[2:4])
+        along, square, rest = float(p @ d), float(d @ d), farthest * farthest - float(p @ p)
+        if 2.0 * along + square > rest:
+            part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
+    return part
+
+
+def _state(mbs: exu.MainSystem) -> list[np.ndarray]:
+    """Coordinates, velocities, accelerations and multipliers, as Exudyn holds them."""
+    state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
+    return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt", "AECoords")]

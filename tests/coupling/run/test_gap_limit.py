@@ -1,0 +1,83 @@
+"""Newton's method is kept within the films, and ends where it did."""
+
+import math
+
+import exudyn as exu
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.coupling.run import gap_limit
+from exudyn_ehd.coupling.run.gap_limit import SHARE, SMALLEST_GAP_SHARE, allowed_part
+
+C, LENGTH, CYCLE = 25e-6, 0.02, 0.02
+
+
+def smallest_gap(motion):
+    """At the ends of the length, m."""
+    ends = [motion[:2] + z * motion[2:4] for z in (-0.5 * LENGTH, 0.5 * LENGTH)]
+    return C - max(np.hypot(*end) for end in ends)
+
+
+def test_part_of_a_step():
+    """Random steps from anywhere, tilted too: half of the gap at most, and all that half allows."""
+    rng = np.random.default_rng(3)
+    scale, shortened = np.array([1.0, 1.0, 1.0 / LENGTH, 1.0 / LENGTH]), 0
+    for _ in range(2000):
+        before, after = np.zeros(10), np.zeros(10)
+        before[:4] = rng.normal(size=4) * scale * rng.choice([[1, 1, 0, 0], [1, 1, 1, 1]])
+        before[:4] *= C * rng.uniform(0.0, 0.9999) / (C - smallest_gap(before))
+        after[:4] = before[:4] + rng.normal(size=4) * scale * C * 10.0 ** rng.uniform(-3.0, 2.0)
+        gap, part = smallest_gap(before), allowed_part(before, after, C, LENGTH)
+        if smallest_gap(after) >= (1.0 - SHARE) * gap or gap <= SMALLEST_GAP_SHARE * C:
+            assert part == 1.0
+            continue
+        shortened += 1
+        assert 0.0 < part < 1.0
+        assert smallest_gap(before + part * (after - before)) == pytest.approx((1.0 - SHARE) * gap, rel=1e-6)
+    assert shortened > 500
+
+
+@pytest.mark.parametrize("motion", [np.full(10, np.nan), np.r_[C, np.zeros(9)], np.r_[2.0 * C, np.zeros(9)]])
+def test_nothing_to_keep(motion):
+    """Journals on the wall, behind it, or nowhere."""
+    assert allowed_part(motion, np.zeros(10), C, LENGTH) == 1.0
+    assert allowed_part(np.zeros(10), np.full(10, np.nan), C, LENGTH) == 1.0
+
+
+def thrown(planar_rotor, steps):
+    """History of a journal that a load throws to and fro through a film with cavities."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.01,
+        length=LENGTH,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=0.01),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+        cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
+    )
+    turn = 2.0 * math.pi / CYCLE
+    rotor = planar_rotor(
+        bearing,
+        mass=0.5,
+        speed=(lambda t: 300.0 * t, lambda t: 300.0),
+        position=(0.0, -0.5 * C),
+        load=lambda t: (0.0, 3000.0 * math.tanh(20.0 * math.sin(turn * t))),
+    )
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 2.0 * CYCLE, 2 * steps
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    ehd.SolveDynamic(rotor.mbs, ehd.ConfigureSolver(settings))
+    return rotor.joint.history
+
+
+def test_steps_are_not_halved_for_newtons_method(planar_rotor, monkeypatch):
+    """A step that would go through the wall is not halved; where no step goes there nothing changes."""
+    coarse, fine = thrown(planar_rotor, 100), thrown(planar_rotor, 400)
+    assert coarse.minimum_gap.min() == pytest.approx(fine.minimum_gap.min(), rel=0.02)
+    monkeypatch.setattr(gap_limit, "allowed_part", lambda *_: 1.0)
+    halved, same = thrown(planar_rotor, 100), thrown(planar_rotor, 400)
+    # 200 steps; without the limit sixty are added
+    assert coarse.time.size < 225 < 250 < halved.time.size
+    assert np.array_equal(fine.force, same.force)
