@@ -253,6 +253,7 @@ def CreateLubricatedJoint(
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
     stepControl: StepControl | None = None,
+    bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -269,6 +270,7 @@ def CreateLubricatedJoint(
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
     stepControl: StepControl | None = None,
+    bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -285,6 +287,7 @@ def CreateLubricatedJoint(
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
     stepControl: StepControl | None = None,
+    bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
@@ -324,6 +327,10 @@ def CreateLubricatedJoint(
     stepControl : StepControl or None
         Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
         halved.
+    bushGravity : (3,) [m/s^2], optional
+        Of every bush mass, inertia and weight are the housing's, whose values contain them, so that a model weighs the
+        same whatever its bush is made of. For a housing that does not contain its `ANCFBush` (a beam, a cable, a mesh):
+        the bush's mass then counts beside the housing's, and this gravity, global, pulls at it.
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
@@ -358,6 +365,7 @@ def CreateLubricatedJoint(
             "choose another."
         )
     require_vector(f"{_WHERE}.color", color, 4)
+    gravity = None if bushGravity is None else require_vector(f"{_WHERE}.bushGravity", bushGravity, 3, "m/s^2")
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
     if mbs.systemIsConsistent:
@@ -376,7 +384,9 @@ def CreateLubricatedJoint(
         # what stands still needs no modes for its acceleration
         bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
     model = cast(JointModel, build_model(bearing))
-    joint = attach(mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color)
+    joint = attach(
+        mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color, gravity=gravity
+    )
     if stepControl is not None:
         joint.element.steps.control = GapWatch(stepControl, bearing)
     if returnDict:
@@ -396,6 +406,7 @@ def attach(
     axial: Free | Held = Free(),
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    gravity: np.ndarray | None = None,
 ) -> LubricatedJoint:
     """Put a film model between two resolved items; what `CreateLubricatedJoint` does after its checks of arguments.
 
@@ -411,7 +422,7 @@ def attach(
         Joint point of either side in the reference configuration, global [m].
     rotation : ndarray (3, 3)
         Joint frame in the reference configuration.
-    name, axial, show, color
+    name, axial, show, color, gravity
         As in `CreateLubricatedJoint`.
     """
     for item in (housing, journal):
@@ -430,8 +441,10 @@ def attach(
         # imported here: a rigid bearing needs no solid
         from exudyn_ehd.coupling.element.attach import attach_bush
 
-        element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show)
+        element, more = attach_bush(mbs, model, (housing, journal), sides, (points[0], rotation), name, show, gravity)
         nodes += element.bore_nodes
+    elif gravity is not None:
+        raise InputError(f"{_WHERE}.bushGravity: joint '{name}' has no bush with mass; leave it out.")
     display = FilmDisplay(element)
     number = mbs.AddObject(
         eii.ObjectGenericODE2(

@@ -1,4 +1,4 @@
-"""Loads on a bush: on a line, on a surface, and pressure, as consistent nodal forces.
+"""Loads on a bush: on a line, on a surface, pressure, and gravity, as consistent nodal forces.
 
 Every load has a ``history``, a function of time [s] that multiplies its value; without one the value holds at all
 times.
@@ -13,6 +13,7 @@ import numpy as np
 
 from exudyn_ehd.solid.hex20 import face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, Line, Surface
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 History = Callable[[float], float]
@@ -162,7 +163,34 @@ class FollowerPressure(_SurfacePressure):
         return block.reshape(len(corners), 24, 24)
 
 
-Load = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Gravity:
+    """Weight of the bush: its density times an acceleration.
+
+    Parameters
+    ----------
+    acceleration : three numbers
+        [m/s^2], global frame.
+    history : function of time, optional
+        Factor on it.
+    """
+
+    acceleration: tuple[float, float, float] | np.ndarray
+    history: History | None = None
+
+    def __post_init__(self) -> None:
+        require_vector("Gravity.acceleration", self.acceleration, 3, "m/s^2")
+        _require_history("Gravity.history", self.history)
+
+
+Load = LineLoad | SurfaceLoad | DeadPressure | FollowerPressure | Gravity
+
+
+def dead_forces(load: LineLoad | SurfaceLoad | DeadPressure | Gravity, solid: TotalLagrange) -> np.ndarray:
+    """Nodal forces (n, 3) of a load that does not follow the surface, at history = 1 [N]."""
+    if isinstance(load, Gravity):
+        return np.outer(solid.scalar_mass.sum(axis=1), load.acceleration)
+    return load.nodal_forces(solid.mesh)
 
 
 def factor(load: Load, time: float) -> float:

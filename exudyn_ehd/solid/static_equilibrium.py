@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import csc_matrix, csr_matrix, spmatrix
 from scipy.sparse.linalg import SuperLU, splu
 
-from exudyn_ehd.solid.loads import FollowerPressure, Load
+from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import EHDError, require_integer
 
@@ -73,7 +73,7 @@ def equilibrium(
     followers = [load for load in loads if isinstance(load, FollowerPressure)]
     for load in loads:
         if not isinstance(load, FollowerPressure):
-            dead += load.nodal_forces(solid.mesh)
+            dead += dead_forces(load, solid)
     u = np.zeros(held.shape) if start is None else np.array(start, dtype=float)
     count = 0
     for step in range(1, steps + 1):

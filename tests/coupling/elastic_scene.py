@@ -6,7 +6,7 @@ from __future__ import annotations
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
-from exudyn.utilities import InertiaCylinder
+from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 from scenes import new_system, rotation
 
 import exudyn_ehd as ehd
@@ -31,6 +31,18 @@ def bearing(bush=None, n_theta=48, n_z=8, **options):
         "bush": bush,
     }
     return ehd.JournalBearing(**(given | options))
+
+
+def with_bush(own, material=STEEL):
+    """Inertia of housing and bush together."""
+    mesh = CYLINDER.mesh()
+    mass = TotalLagrange(mesh=mesh, material=material).scalar_mass
+    second = mesh.nodes.T @ (mass @ mesh.nodes)
+    return RigidBodyInertia(
+        mass=own.Mass() + mass.sum(),
+        com=np.zeros(3),
+        inertiaTensor=np.array(own.InertiaCOM()) + np.trace(second) * np.eye(3) - second,
+    )
 
 
 def journal_load(t):
@@ -92,13 +104,14 @@ class Scene:
         if moving:
             A = rotation([0.4, -0.7, 0.3])
             turn = A @ [3.0, -2.0, 5.0]
+            inertia = with_bush(HOUSING) if isinstance(bearing.bush, ehd.ANCFBush) else HOUSING
             item = mbs.CreateRigidBody(
                 referenceRotationMatrix=A,
-                inertia=HOUSING,
+                inertia=inertia,
                 initialVelocity=[0.3, -0.2, 0.1],
                 initialAngularVelocity=list(turn),
             )
-            self.solids.append((item, HOUSING))
+            self.solids.append((item, inertia))
             self._push(item, 0.0, lambda t: housing_load(t)[0])
             self._twist(item, lambda t: housing_load(t)[1])
         else:

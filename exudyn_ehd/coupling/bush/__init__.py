@@ -4,4 +4,5 @@ Module map
 ----------
 object     CreateFlexibleBush
 equations  its forces, matrices and Jacobians
+rigid_part  what its housing has of it
 """

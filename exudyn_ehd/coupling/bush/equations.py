@@ -2,6 +2,7 @@
 
 Mesh nodes are moving (three coordinates each), grounded (none), or slaved to a carrier with coordinates q_c.
 With u = T(q) the reduced equations are T^T (M u_tt + f_int - f_load) = 0, and u_tt = T q_tt + (velocity accelerations).
+A bush that the carrier's own mass contains is taken off it again as a rigid body (`rigid_part`).
 """
 
 from __future__ import annotations
@@ -12,9 +13,12 @@ from functools import cached_property
 import exudyn as exu
 import numpy as np
 from scipy.sparse import bmat, csr_matrix, identity
+from scipy.sparse.linalg import splu
 
+from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.items.carrier import Carrier
-from exudyn_ehd.solid.loads import FollowerPressure, Load, factor
+from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
+from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 HOLD = 1e9
@@ -37,6 +41,8 @@ class BushEquations:
     loads : tuple of loads
     mass_rate : float
         Mass-proportional damping [1/s].
+    contained : RigidPart or None
+        The bush in the carrier's frame, if the carrier's mass contains it.
     """
 
     solid: TotalLagrange
@@ -45,6 +51,7 @@ class BushEquations:
     carrier: Carrier | None
     loads: tuple[Load, ...]
     mass_rate: float
+    contained: RigidPart | None = None
 
     def motion(
         self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
@@ -72,6 +79,8 @@ class BushEquations:
         if self.carrier is not None:
             B = self.carrier.jacobian()
             result[self._count :] = B.T @ nodal[self.slaved].ravel()
+            if self.contained is not None:
+                result[self._count :] += self.contained.velocity_force(self.carrier.side, q_t[self._count :])
         result[self._held] = -self._spring * q[self._held]
         return result
 
@@ -115,7 +124,18 @@ class BushEquations:
         coupling = M[self._moving_rows][:, self._slaved_rows] @ B
         coupling[self._held] = 0.0
         own = B.T @ (M[self._slaved_rows][:, self._slaved_rows] @ B)
+        if self.contained is not None:
+            own -= self.contained.matrix(self.carrier.side)
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
+
+    def warn_if_light(self, mbs: exu.MainSystem, name: str, q: np.ndarray) -> None:
+        """Warn if the carrier must contain the bush and has less mass than it, once the system is assembled."""
+        if self.contained is None or self.carrier is None:
+            return
+        M, k = self.mass(q).tocsc(), self._count
+        coupling = M[:k, k:].toarray()
+        change = M[k:, k:].toarray() - coupling.T @ splu(M[:k, :k]).solve(coupling)
+        warn_if_indefinite(mbs, self.carrier.side.nodes, change, self.contained.describe(), name)
 
     def _nodal_forces(self, t: float, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Loads minus internal and mass-proportional damping forces, shape (n, 3) [N]."""
@@ -184,7 +204,7 @@ class BushEquations:
 
     @cached_property
     def _dead_vectors(self) -> list[tuple[Load, np.ndarray]]:
-        return [(s, s.nodal_forces(self.solid.mesh)) for s in self.loads if not isinstance(s, FollowerPressure)]
+        return [(s, dead_forces(s, self.solid)) for s in self.loads if not isinstance(s, FollowerPressure)]
 
     @cached_property
     def _followers(self) -> list[FollowerPressure]:

@@ -16,6 +16,7 @@ import numpy as np
 from exudyn import itemInterface as items
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
+from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.resolve import resolve
@@ -63,9 +64,9 @@ class CarriedOuter:
     itemNumber : exudyn.ObjectIndex, NodeIndex or MarkerIndex
         The body, its node or a rigid marker on it, as in ``CreateLubricatedJoint.itemNumbers``: rigid and planar
         bodies, beams and cables, links of kinematic trees, finite-element bodies. Its own mass and inertia stay
-        untouched: the bush adds its own. With a Lie group node (RotationRotationVector) use full Newton: Exudyn 1.13.6
-        was seen to end at a wrong attitude, without a message, when its modified Newton restarts often. Euler
-        parameters and Rxyz show no such effect.
+        untouched: the bush adds its own, and weighs by a `Gravity` among its loads. With a Lie group node
+        (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
+        when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
     """
 
     itemNumber: Index
@@ -122,18 +123,28 @@ class FlexibleBush:
         return StressRecovery(mesh=self.solid.mesh, material=self.solid.material)
 
     def energy(self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current) -> tuple[float, float]:
-        """Return strain and kinetic energy [J]."""
-        v = self.velocities(configuration)
+        """Return strain and kinetic energy [J]; without what a housing that contains the bush has of it."""
+        u, v = self._motion(configuration)
         kinetic = 0.5 * float(np.einsum("ni,ni->", v, self.solid.scalar_mass @ v))
-        return self.solid.energy(self.displacements(configuration)), kinetic
+        return self.solid.energy(u), kinetic - self._contained()[0]
 
     def momentum(
         self, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s]."""
-        flow = self.solid.scalar_mass @ self.velocities(configuration)
-        positions = self.solid.mesh.nodes + self.displacements(configuration)
-        return flow.sum(axis=0), np.cross(positions, flow).sum(axis=0)
+        """Return linear momentum [kg m/s] and angular momentum about the global origin [kg m^2/s].
+
+        Without what a housing that contains the bush has of it.
+        """
+        u, v = self._motion(configuration)
+        flow, (_, linear, angular) = self.solid.scalar_mass @ v, self._contained()
+        return flow.sum(axis=0) - linear, np.cross(self.solid.mesh.nodes + u, flow).sum(axis=0) - angular
+
+    def _contained(self) -> tuple[float, np.ndarray, np.ndarray]:
+        """Kinetic energy and momenta of the bush that the carrier has, at the state that `_motion` was asked for."""
+        equations = self.equations
+        if equations.contained is None or equations.carrier is None:
+            return 0.0, np.zeros(3), np.zeros(3)
+        return equations.contained.momenta(equations.carrier.side.frame)
 
 
 def CreateFlexibleBush(
@@ -166,7 +177,7 @@ def CreateFlexibleBush(
     rotationMatrix : ndarray, shape (3, 3), optional
         Bush frame to global frame; identity by default.
     supports : sequence of Support
-    loads : sequence of LineLoad, SurfaceLoad, DeadPressure or FollowerPressure
+    loads : sequence of LineLoad, SurfaceLoad, DeadPressure, FollowerPressure or Gravity
         Vectors are global.
     initialVelocity, initialAngularVelocity : three numbers
         Rigid initial motion [m/s], [rad/s], global, about ``position``. A carried bush takes the carrier's instead.
@@ -229,11 +240,14 @@ class Mount:
         The side's frame in the initial configuration.
     point : ndarray (3,)
         Global position of the side's frame in the reference configuration [m].
+    contains : bool
+        Whether the mass of what carries the bush contains the bush's.
     """
 
     side: Side
     initial: np.ndarray
     point: np.ndarray
+    contains: bool = False
 
 
 def add_bush(
@@ -288,7 +302,13 @@ def add_bush(
             "the carrier; use stiffness_time."
         )
     equations = BushEquations(
-        solid=solid, held=held, slaved=slaved, carrier=carrier, loads=tuple(loads), mass_rate=mass_rate
+        solid=solid,
+        held=held,
+        slaved=slaved,
+        carrier=carrier,
+        loads=tuple(loads),
+        mass_rate=mass_rate,
+        contained=RigidPart(local, solid.scalar_mass) if mount is not None and mount.contains else None,
     )
     X = solid.mesh.nodes
     if mount is None:
@@ -345,7 +365,12 @@ def _add_object(
     def jacobian(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
         return equations.jacobian(t, np.array(q), np.array(q_t), fODE2, fODE2_t)
 
+    weighed: list[bool] = []
+
     def mass(mbs, t, itemNumber, q, q_t):
+        if not weighed:
+            weighed.append(True)
+            equations.warn_if_light(mbs, name.removesuffix(" bush"), np.array(q))
         return equations.mass(np.array(q))
 
     nodes = [NodeIndex(int(i)) for i in numbers[numbers >= 0]]

@@ -9,17 +9,20 @@ import numpy as np
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
 from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
-from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, require_heavy_housing
+from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, describe
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settle_body, undeformed
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.status import InputError
 
 # Period over 2 pi of a mode on its numerical mass, s.
 NUMERICAL_PERIOD = 1e-6
@@ -33,6 +36,7 @@ def attach_bush(
     place: tuple[np.ndarray, np.ndarray],
     name: str,
     show: bool,
+    gravity: np.ndarray | None,
 ) -> tuple[BoreFilmElement, dict[str, object]]:
     """Add the bush of ``model`` (an `ElasticBearingModel`).
 
@@ -48,6 +52,8 @@ def attach_bush(
         Of the joint.
     show : bool
         Draw the bush.
+    gravity : ndarray (3,) or None
+        For a nodal bush whose mass counts beside the housing's; None: the housing contains it [m/s^2].
 
     Returns
     -------
@@ -62,7 +68,12 @@ def attach_bush(
     for item, side in zip(items, sides, strict=True):
         side.frame[:] = initial_frame(mbs, item, side)
     if not isinstance(model.bore, ModalBore):
-        return _attach_nodes(mbs, model, sides, place, name, show), {}
+        return _attach_nodes(mbs, model, items[0], sides, place, name, show, gravity), {}
+    if gravity is not None:
+        raise InputError(
+            f"CreateLubricatedJoint.bushGravity: mass and weight of the {type(model.bearing.bush).__name__} of joint "
+            f"'{name}' are its housing's; leave it out, and let the housing's mass and loads contain them."
+        )
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)
@@ -82,7 +93,7 @@ def attach_bush(
     mass = modes.mass if isinstance(modes, BoreModes) else None
     element = ModalFilmElement(model, *sides, [node], name, model.bore)
     if isinstance(modes, BoreModes) and mass is not None and sides[0].nodes:
-        require_heavy_housing(mbs, items[0].node, modes, name)
+        require_heavy_housing(mbs, items[0].node, describe(modes), name)
         element.inertia = ModalInertia(mbs, sides[0], modes)
         return element, {"massMatrixUserFunction": element.mass}
     if mass is None and start is not None:
@@ -97,15 +108,20 @@ def attach_bush(
 def _attach_nodes(
     mbs: exu.MainSystem,
     model: ElasticBearingModel,
+    item: Item,
     sides: tuple[Side, Side],
     place: tuple[np.ndarray, np.ndarray],
     name: str,
     show: bool,
+    gravity: np.ndarray | None,
 ) -> NodalFilmElement:
     solid = model.bearing.bush
     assert isinstance(solid, ANCFBush)
-    mount = Mount(sides[0], sides[0].frame.copy(), place[0]) if sides[0].nodes else None
-    bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show)
+    mount = Mount(sides[0], sides[0].frame.copy(), place[0], gravity is None) if sides[0].nodes else None
+    weight = [] if gravity is None else [Gravity(acceleration=gravity)]
+    bush = add_bush(mbs, f"{name} bush", solid, mount, place, fixed=mount is None, show=show, loads=weight)
+    if bush.equations.contained is not None:
+        require_heavy_housing(mbs, item.node, bush.equations.contained.describe(), name)
     start = initial_coordinates(model, sides)
     if start is not None:
         u = displacements_at_rest(solid, model.elasticity.force(start)) @ sides[0].frame[:, :3].T

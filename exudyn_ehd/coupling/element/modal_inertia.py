@@ -20,44 +20,22 @@ as the mesh does, else within 5 to 20 %.
 
 from __future__ import annotations
 
-import warnings
-
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, ObjectIndex, Side
-from exudyn_ehd.coupling.items.object_mass import object_mass
-from exudyn_ehd.coupling.items.resolve import body_of_node
+from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import bind, detached
 from exudyn_ehd.solid.static_modes import BoreModes
-from exudyn_ehd.status import InputError
 
 _CURRENT = exu.ConfigurationType.Current
 
 
-# Negative eigenvalue of a scaled mass matrix that is none of rounding.
-INDEFINITE = -1e-6
-
-
-def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, modes: BoreModes, name: str) -> None:
-    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it."""
-    body = None if node is None else body_of_node(mbs, node)
-    if body is None:
-        return
-    mass, own = float(mbs.GetObject(body)["mass"]), bush_mass(modes)
-    if mass < own * (1.0 - 1e-6):
-        raise InputError(
-            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its bush "
-            f"with dynamics=True has {own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's "
-            "to the body, or take dynamics=False."
-        )
-
-
-def bush_mass(modes: BoreModes) -> float:
-    """Mass of the whole bush, kg."""
+def describe(modes: BoreModes) -> tuple[str, float, str]:
+    """What messages say of a bush with mass: its kind, its mass [kg], and what else to do."""
     assert modes.moments is not None
-    return float(modes.moments[:, 0].sum())
+    return "bush with dynamics=True", float(modes.moments[:, 0].sum()), "take ModalBush(dynamics=False)"
 
 
 class ModalInertia:
@@ -89,34 +67,13 @@ class ModalInertia:
         return J.T @ own @ J, J.T @ self._both, self.modal_mass
 
     def warn_if_indefinite(self, modes: BoreModes, name: str) -> None:
-        """Warn if what carries the bush has not its mass: the mass matrix is then indefinite.
-
-        To be called once the system is assembled. No error: constraints may hold what is too light.
-        """
-        data, mbs = self.mbs.systemData, self.mbs
-        places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in self.side.nodes])
-        n, k = len(places), len(self.modal_mass)
-        whole = np.zeros((n + k, n + k))
-        for number in range(data.NumberOfObjects()):
-            item = ObjectIndex(number)
-            coordinates = np.asarray(data.GetObjectLTGODE2(item), dtype=int)
-            here, there = np.nonzero(coordinates[:, None] == places)
-            matrix = object_mass(mbs, item) if len(here) else None
-            if matrix is not None:
-                whole[np.ix_(there, there)] += matrix[here][:, here]
+        """Warn if what carries the bush has not its mass, once the system is assembled."""
+        data, nodes = self.mbs.systemData, self.side.nodes
+        places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in nodes])
         q = np.asarray(data.GetODE2Coordinates())[places]
-        _, coupling, whole[n:, n:] = self.mass(q, np.zeros(k))
-        whole[:n, n:], whole[n:, :n] = coupling, coupling.T
-        size = np.sqrt(np.maximum(np.diag(whole), 0.0))
-        moved = size > 1e-9 * size.max()
-        scaled = whole[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
-        if np.linalg.eigvalsh(scaled)[0] < INDEFINITE:
-            warnings.warn(
-                f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the bush "
-                f"of {bush_mass(modes):.4g} kg is lighter than it there, or has less rotary inertia, but must contain "
-                "the bush's: add them to the housing, or take ModalBush(dynamics=False).",
-                stacklevel=2,
-            )
+        _, coupling, mass = self.mass(q, np.zeros(len(self.modal_mass)))
+        change = -coupling @ np.linalg.solve(mass, coupling.T)
+        warn_if_indefinite(self.mbs, nodes, change, describe(modes), name)
 
     def force(
         self, q: np.ndarray, q_t: np.ndarray, modes: np.ndarray, modes_t: np.ndarray

@@ -1,14 +1,20 @@
-"""Mass matrices of Exudyn's objects, also of those that don't return them."""
+"""Mass matrices of Exudyn's objects, also of those that don't return them; whether a housing contains its bush."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Sequence
 
 import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
 
-from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.contract import Index, ObjectIndex
+from exudyn_ehd.coupling.items.resolve import body_of_node
+from exudyn_ehd.status import InputError
+
+# Negative eigenvalue of a scaled mass matrix that is none of rounding.
+INDEFINITE = -1e-6
 
 
 def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | None:
@@ -61,3 +67,58 @@ def as_sparse(value) -> coo_matrix | None:
         return value.tocoo()
     dense = np.atleast_2d(np.asarray(value, dtype=float))
     return None if dense.size == 0 else coo_matrix(dense)
+
+
+def require_heavy_housing(mbs: exu.MainSystem, node: Index | None, bush: tuple[str, float, str], name: str) -> None:
+    """Raise `InputError` if the rigid body on a node is lighter than the bush, which is a part of it.
+
+    ``bush`` is what messages call it, its mass [kg], and what else to do.
+    """
+    body = None if node is None else body_of_node(mbs, node)
+    if body is None:
+        return
+    mass, (kind, own, remedy) = float(mbs.GetObject(body)["mass"]), bush
+    if mass < own * (1.0 - 1e-6):
+        raise InputError(
+            f"CreateLubricatedJoint '{name}': the housing (object {int(body)}) has a mass of {mass:.4g} kg, its {kind} "
+            f"has {own:.4g} kg, but the body's mass and inertia contain the bush's: add the bush's to the body, or "
+            f"{remedy}."
+        )
+
+
+def warn_if_indefinite(
+    mbs: exu.MainSystem, nodes: Sequence[Index], change: np.ndarray, bush: tuple[str, float, str], name: str
+) -> None:
+    """Warn if what carries the bush has not its mass: the mass matrix is then indefinite.
+
+    To be called once the system is assembled. No error: constraints may hold what is too light.
+
+    Parameters
+    ----------
+    nodes : sequence
+        Nodes of the housing's side, with n coordinates.
+    change : (n, n) array
+        What the bush adds to their mass when its own coordinates move as they like (the Schur complement).
+    bush, name
+        As in `require_heavy_housing`.
+    """
+    data, (kind, own, remedy) = mbs.systemData, bush
+    places = np.concatenate([data.GetNodeLTGODE2(int(node)) for node in nodes])
+    whole = np.zeros_like(change)
+    for number in range(data.NumberOfObjects()):
+        item = ObjectIndex(number)
+        coordinates = np.asarray(data.GetObjectLTGODE2(item), dtype=int)
+        here, there = np.nonzero(coordinates[:, None] == places)
+        matrix = object_mass(mbs, item) if len(here) else None
+        if matrix is not None:
+            whole[np.ix_(there, there)] += matrix[here][:, here]
+    size = np.sqrt(np.maximum(np.diag(whole), np.abs(np.diag(change))))
+    moved = size > 1e-9 * size.max()
+    scaled = (whole + change)[np.ix_(moved, moved)] / np.outer(size[moved], size[moved])
+    if np.linalg.eigvalsh(scaled)[0] < INDEFINITE:
+        warnings.warn(
+            f"LubricatedJoint '{name}': the mass matrix of housing and bush is indefinite; what carries the {kind} of "
+            f"{own:.4g} kg is lighter than it there, or has less rotary inertia, but must contain the bush's: add them "
+            f"to the housing, or {remedy}.",
+            stacklevel=2,
+        )

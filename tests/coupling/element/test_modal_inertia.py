@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import scenes
 from bodies import ancf_beam
-from elastic_scene import CLEARANCE, CYLINDER, HOUSING, SPEED, STEEL, Nodes, bearing
+from elastic_scene import CLEARANCE, CYLINDER, HOUSING, SPEED, STEEL, Nodes, bearing, with_bush
 from exudyn.rigidBodyUtilities import RigidBodyInertia
 from exudyn.utilities import InertiaCylinder
 from rods import PUSH, rod, total
@@ -22,7 +22,6 @@ from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.solid.static_modes import bore_modes
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
 
 STATIC = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False)
 DYNAMIC = dataclasses.replace(STATIC, dynamics=True)
@@ -140,21 +139,13 @@ def accelerated(kind, density, acceleration, spin, steps=25, end=5e-4):
     """Path of a light journal in a bush on a free housing, pushed within 0.2 ms to an acceleration, turning; body and
     bush weigh the same."""
     material = dataclasses.replace(STEEL, density=density)
-    own, mesh = HOUSING, CYLINDER.mesh()
-    mass = TotalLagrange(mesh=mesh, material=material).scalar_mass
-    second = mesh.nodes.T @ (mass @ mesh.nodes)
-    whole = RigidBodyInertia(
-        mass=own.Mass() + mass.sum(),
-        com=np.zeros(3),
-        inertiaTensor=np.array(own.InertiaCOM()) + np.trace(second) * np.eye(3) - second,
-    )
+    whole = with_bush(HOUSING, material)
     light = InertiaCylinder(780, 0.3, 0.03, 2)
     push = (whole.Mass() + light.Mass()) * acceleration
     mbs = scenes.new_system()
     place = CLEARANCE * np.array([-0.5, 0.1, 0.0])
     common = {"nodeType": exu.NodeType.RotationRxyz}
-    # the mesh of a nodal bush weighs by itself
-    body = mbs.CreateRigidBody(inertia=own if kind == "nodal" else whole, initialAngularVelocity=[0, 0, spin], **common)
+    body = mbs.CreateRigidBody(inertia=whole, initialAngularVelocity=[0, 0, spin], **common)
     journal = mbs.CreateRigidBody(
         inertia=light,
         initialDisplacement=list(place),

@@ -69,6 +69,8 @@ class Run:
             position=[] if item.is_marker else list(point),
             axis=[0, 0, 1],
             bearing=bearing(BUSH, n_theta=32, n_z=6, length=0.05, lubricant=ehd.Lubricant(viscosity=2e-3)),
+            # the housings do not contain the steel
+            bushGravity=(0.0, 0.0, 0.0),
         )
         mbs.Assemble()
         self.modes = self.body.nodes[1:] if kind == "reduced FE body" else ()
