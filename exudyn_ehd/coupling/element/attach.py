@@ -96,10 +96,9 @@ def attach_bush(
         require_heavy_housing(mbs, items[0].node, describe(modes), name)
         element.inertia = ModalInertia(mbs, sides[0], modes)
         return element, {"massMatrixUserFunction": element.mass}
-    if mass is None and start is not None:
-        mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
     if mass is None:
-        return element, {}
+        element.is_massless = True
+        mass = np.diag(element.stiffness * NUMERICAL_PERIOD**2)
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": _mass_matrix(rigid, mass)}
@@ -137,8 +136,8 @@ def _attach_nodes(
 def _mass_matrix(n: int, mass: np.ndarray) -> np.ndarray:
     """Mass (n + k, n + k) of the element: that of the modes (k, k), nothing on the n coordinates of the sides.
 
-    A quasi-static bore gets a numerical mass that gives Exudyn's initial accelerations a solution, far too small to be
-    felt; only if it starts in equilibrium: elsewhere it would start with a huge acceleration.
+    A quasi-static bore gets a numerical mass, far too small to be felt: without one Exudyn finds no initial
+    accelerations of the whole system. Those of the modes are zero, see `ModalFilmElement.force`.
     """
     whole = np.zeros((n + len(mass), n + len(mass)))
     whole[n:, n:] = mass

@@ -15,6 +15,7 @@ from exudyn_ehd.coupling.contract import Index, Side, Trial
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -100,6 +101,8 @@ class ModalFilmElement(BoreFilmElement):
         Modal stiffness, N/m.
     inertia : ModalInertia or None
         Of modes with mass on a housing that moves.
+    is_massless : bool
+        Whether the mass of the modes is a numerical one.
     """
 
     def __init__(
@@ -115,7 +118,21 @@ class ModalFilmElement(BoreFilmElement):
         self.modes = bore.modes
         self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
+        self.is_massless = False
         self._weighed = False
+
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """As `FilmElement.force`.
+
+        An implicit solver that asks at the start of its step looks for initial accelerations. Modes that no inertia
+        resists have none, whether they are in balance or not; on their numerical mass a lack of balance would throw
+        them.
+        """
+        force = super().force(mbs, t, item, q, q_t)
+        steps = self.steps
+        if self.is_massless and t == steps.start and not steps.is_idle and solver_state.is_implicit(steps.solver):
+            force[self.rigid_size :] = 0.0
+        return force
 
     def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""
