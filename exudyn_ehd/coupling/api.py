@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, cast, overload
 
@@ -13,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel
+from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.axial import hold_axially
 from exudyn_ehd.coupling.items.item import Item
@@ -24,7 +26,7 @@ from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
 from exudyn_ehd.coupling.record.sensors import add_sensor
 from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
-from exudyn_ehd.coupling.run.solve import joints_of, require_system
+from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, require_bool, require_type, require_vector
@@ -88,7 +90,9 @@ class LubricatedJoint(JointResults):
         self.display = display
         self.bearing = element.model.bearing
         self.objectNumber, self.constraintNumber = numbers
-        self.bush = getattr(element, "bush", None)
+        bush = getattr(element, "bush", None)
+        # the element's own does not keep the system alive
+        self.bush = None if bush is None else dataclasses.replace(bush, mbs=mbs)
 
     @property
     def history(self) -> JointHistory:
@@ -102,7 +106,7 @@ class LubricatedJoint(JointResults):
 
         What the film remembers follows the state, not the record: see `forget`.
         """
-        return self.element.steps.history(self.mbs)
+        return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
 
     def place_in_equilibrium(
         self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
@@ -133,6 +137,7 @@ class LubricatedJoint(JointResults):
         """
         from exudyn_ehd.coupling.run.equilibrium_start import place
 
+        self.element.require_items(self.mbs)
         return place(self.mbs, self.element, self.name, load, speed)
 
     def state(self) -> JointState:
@@ -144,6 +149,7 @@ class LubricatedJoint(JointResults):
             raise InputError(
                 f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
+        self.element.require_items(self.mbs)
         time, memory, begin, rows = self.element.steps.remembered(self.mbs)
         return JointState(
             name=self.name,
@@ -238,6 +244,7 @@ class LubricatedJoint(JointResults):
         if not isinstance(quantity, Quantity):
             raise InputError(f"LubricatedJoint.AddSensor: quantity must be a member of Quantity, got {quantity!r}.")
         write = bool(fileName) if writeToFile is None else writeToFile
+        self.element.require_items(self.mbs)
         label = name or f"{self.name} {quantity.value}"
         return add_sensor(self.mbs, self.element, quantity, label, fileName, write)
 
@@ -459,6 +466,7 @@ def attach(
         )
     )
     constraint = hold_axially(mbs, name, housing, journal, points, rotation) if held else None
-    joint = LubricatedJoint(mbs, name, element, display, (number, constraint))
-    joints_of(mbs).append(joint)
-    return joint
+    element.presence = Presence(mbs, name, element, number, sides)
+    make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
+    register_joint(mbs, make)
+    return make(mbs)

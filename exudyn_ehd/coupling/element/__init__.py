@@ -6,6 +6,7 @@ attach          from a joint's description to its element
 rigid           `FilmElement`: user functions for a rigid bore
 settled_start   bores in balance with the films at the start
 accepted_steps  what was accepted: record, memory, watches, runs that go on
+presence        items of the joint, still in the system
 failures        messages of films that can't go on
 modal           bore by modes
 modal_inertia   inertia of the modes

@@ -12,6 +12,7 @@ solves in between, in which films are steady, change nothing of it.
 from __future__ import annotations
 
 import warnings
+import weakref
 from collections.abc import Callable
 from typing import Protocol
 
@@ -50,6 +51,9 @@ class Film(Protocol):
 
     model: JointModel
     failures: Failures
+
+    def require_items(self, mbs: exu.MainSystem) -> None:
+        """Refuse a system of which items were deleted that the joint was made on."""
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element."""
@@ -103,7 +107,8 @@ class AcceptedSteps:
     """
 
     def __init__(self, film: Film) -> None:
-        self.film = film
+        # the element holds its steps: without a circle it goes as soon as its system does
+        self.film: Film = weakref.proxy(film)
         self.start = np.nan
         self.solvers = solver_state.NO_RUN
         self.solver: solver_state.Solver | None = None
@@ -170,6 +175,7 @@ class AcceptedSteps:
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
+        self.film.require_items(mbs)
         film, place, before = self.film, self.film.read(mbs, _START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended
@@ -302,10 +308,14 @@ class AcceptedSteps:
             self._record.restore(rows)
         self._resumed = (time, memory, begin)
 
-    def history(self, mbs: exu.MainSystem) -> JointHistory:
+    def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the current state if that is later than the last step; warns if it has no film."""
         final = None
-        if mbs.systemIsConsistent and (time := mbs.systemData.GetTime(self._accepted)) > self._record.last_time:
+        if (
+            complete
+            and mbs.systemIsConsistent
+            and (time := mbs.systemData.GetTime(self._accepted)) > self._record.last_time
+        ):
             trial = self.film.look(mbs, time, self._accepted)
             final = self.film.row(time, trial)
             if final is None and self.is_idle:

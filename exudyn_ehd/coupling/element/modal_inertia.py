@@ -20,6 +20,8 @@ as the mesh does, else within 5 to 20 %.
 
 from __future__ import annotations
 
+import weakref
+
 import exudyn as exu
 import numpy as np
 
@@ -52,7 +54,8 @@ class ModalInertia:
 
     def __init__(self, mbs: exu.MainSystem, side: Side, modes: BoreModes) -> None:
         assert modes.mass is not None
-        self.mbs = mbs
+        # held by the system's own functions: what they refer to must not keep it alive
+        self.mbs: exu.MainSystem = weakref.proxy(mbs)
         self.side: Side = detached(side)
         self.modal_mass = modes.mass
         self.P, self.Theta, self.K = modes.participation()

@@ -11,6 +11,9 @@ The housing itself is loaded through the bush.
 
 from __future__ import annotations
 
+import dataclasses
+import weakref
+
 import exudyn as exu
 import numpy as np
 
@@ -49,7 +52,8 @@ class NodalFilmElement(BoreFilmElement):
         bush: FlexibleBush,
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
-        self.bush = bush
+        # the system holds this element: it must not keep the system alive
+        self.bush = dataclasses.replace(bush, mbs=weakref.proxy(bush.mbs))
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)

@@ -17,6 +17,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Evaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
@@ -44,6 +45,8 @@ class FilmElement:
     Attributes
     ----------
     steps : AcceptedSteps
+    presence : Presence
+        Set once the element is in a system.
     failures : Failures
     evaluations : int
         How often the film was asked.
@@ -57,6 +60,7 @@ class FilmElement:
         self._trial: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self.steps = AcceptedSteps(self)
+        self.presence: Presence
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -164,7 +168,12 @@ class FilmElement:
         turn = housing.frame[:, :3].T @ journal.frame[:, 0]
         return math.atan2(turn[1], turn[0])
 
+    def require_items(self, mbs: exu.MainSystem) -> None:
+        """Refuse a system of which items were deleted that the joint was made on."""
+        self.presence.require(mbs)
+
     def _bind(self, mbs: exu.MainSystem) -> None:
+        self.require_items(mbs)
         bind(mbs, *self.sides)
         self._bound = True
 

@@ -12,6 +12,8 @@ count them as zero.
 
 from __future__ import annotations
 
+import weakref
+
 import exudyn as exu
 import numpy as np
 
@@ -40,7 +42,8 @@ class Carrier:
     """
 
     def __init__(self, mbs: exu.MainSystem, side: Side, initial: np.ndarray, local: np.ndarray) -> None:
-        self.mbs = mbs
+        # held by the system's own functions: what they refer to must not keep it alive
+        self.mbs: exu.MainSystem = weakref.proxy(mbs)
         self.side: Side = detached(side)
         self.initial = initial
         self.local = local

@@ -50,6 +50,9 @@ class Element(Protocol):
     def steps(self) -> Steps:
         """The accepted steps."""
 
+    def require_items(self, mbs: exu.MainSystem) -> None:
+        """Refuse a system of which items were deleted that the joint was made on."""
+
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
 

@@ -51,6 +51,7 @@ class JointResults(FilmPictures, HistoryPictures):
             raise InputError(
                 f"LubricatedJoint.film: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
             )
+        self.element.require_items(self.mbs)
         time, trial, configuration = self.element.steps.look_at_accepted(self.mbs)
         if trial.evaluation is None or trial.status is not Status.CONVERGED:
             raise FilmError(

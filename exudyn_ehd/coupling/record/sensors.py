@@ -30,6 +30,7 @@ def add_sensor(
         factors: list[float],
         configuration: exu.ConfigurationType,
     ) -> list[float]:
+        element.require_items(mbs)
         row = element.current_row(mbs)
         values = np.full(size, np.nan) if row is None else column(row, quantity)
         return values.tolist()

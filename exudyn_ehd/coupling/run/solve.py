@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pathlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from typing import Any
 
@@ -38,9 +38,29 @@ def require_time(where: str, settings: exu.SimulationSettings) -> None:
         )
 
 
+def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Joint]) -> None:
+    """Let a system know a joint by a function of the system that makes its handle.
+
+    The handle itself would keep the system alive for ever: Python can't see that the system's variables refer to it.
+    """
+    mbs.variables.setdefault(JOINTS, []).append(make)
+
+
 def joints_of(mbs: exu.MainSystem) -> list[Joint]:
-    """The lubricated joints of a system, in the order in which they were created."""
-    return mbs.variables.setdefault(JOINTS, [])
+    """The lubricated joints of a system, in the order in which they were created; none of before ``mbs.Reset()``."""
+    known = mbs.variables.get(JOINTS, [])
+    joints = [make(mbs) for make in known]
+    # Exudyn's Reset leaves variables as they are
+    present = [joint.element.presence.found(mbs) is not None for joint in joints]
+    if not all(present):
+        mbs.variables[JOINTS] = [make for make, there in zip(known, present, strict=True) if there]
+    return [joint for joint, there in zip(joints, present, strict=True) if there]
+
+
+def require_items(mbs: exu.MainSystem) -> None:
+    """Refuse a system of which items were deleted that a joint was made on."""
+    for joint in joints_of(mbs):
+        joint.element.require_items(mbs)
 
 
 def SolveDynamic(
@@ -95,6 +115,7 @@ def SolveDynamic(
         going_on = _restarted(mbs, simulationSettings, state)
     else:
         require_time("SolveDynamic", simulationSettings)
+    require_items(mbs)
     with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 
@@ -121,6 +142,7 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     """
     require_system("SolveStatic", mbs)
     require_settings("SolveStatic", simulationSettings)
+    require_items(mbs)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **options))
 

@@ -26,6 +26,7 @@ Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend 
 from __future__ import annotations
 
 import time
+import weakref
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -34,7 +35,14 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
 from exudyn_ehd.coupling.run.settings import require_settings
-from exudyn_ehd.coupling.run.solve import own_errors, require_system, require_time, start_guess, user_function
+from exudyn_ehd.coupling.run.solve import (
+    own_errors,
+    require_items,
+    require_system,
+    require_time,
+    start_guess,
+    user_function,
+)
 from exudyn_ehd.coupling.run.start_guess import StartGuess
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.status import InputError, require_integer, require_number
@@ -148,6 +156,7 @@ def SolveDynamicSparse(
     require_settings("SolveDynamicSparse", settings)
     require_time("SolveDynamicSparse", settings)
     _require_offered(settings.timeIntegration)
+    require_items(mbs)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
@@ -159,7 +168,8 @@ def SolveDynamicSparse(
         run=run,
     )
     solver: Solver = exu.MainSolverImplicitSecondOrder()
-    solver.SetUserFunctionNewton(mbs, loop)
+    # the loop knows the films, and these the solver: a circle that Python can't see would keep the system alive
+    solver.SetUserFunctionNewton(mbs, weakref.proxy(loop))
     # where Exudyn's own SolveDynamic leaves its solver; objects of a model look there for the one at work
     mbs.sys["dynamicSolver"] = solver
     start = time.perf_counter()
