@@ -90,14 +90,17 @@ CELLS = {
 }
 
 
-def gudgeon_pin(bar, law, effects, steps, rho):
+CONSERVING = ehd.ElrodAdams(cavity_pressure=-1e5)
+
+
+def gudgeon_pin(bar, law, effects, steps, rho, closure=CONSERVING):
     """History of the gudgeon pin of an engine at 3000 rpm, one turn from bottom dead centre, and its warnings."""
     speed, crank_radius, rod_length = 100.0 * math.pi, 0.04, 0.13
     turn = 2.0 * math.pi / speed
     oil = dataclasses.replace(ehd.oil("SAE 5W-30", temperature=373.15), pressure_law=law)
     bearing = ehd.JournalBearing(
         journal_radius=0.01, length=0.022, radial_clearance=10e-6, lubricant=oil,
-        film=ehd.FiniteLength(n_theta=64, n_z=8), cavitation=ehd.ElrodAdams(cavity_pressure=-1e5), **effects,
+        film=ehd.FiniteLength(n_theta=64, n_z=8), cavitation=closure, **effects,
     )  # fmt: skip
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.CreateGround()
@@ -154,6 +157,18 @@ def test_gudgeon_pin_at_exudyns_spectral_radius():
     """Degree by degree; a film that rings reaches 4e10 MPa here. Newton's method stays within the film."""
     history, _ = check_pin("plain", 360, 0.9, 0.05)
     assert history.time.size < 375
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rho", [0.9, 0.5])
+def test_forces_alternate_no_more_than_without_memory(rho):
+    """Shares of the steps, of two degrees, behind which a force turns back."""
+
+    def alternates(closure):
+        change = np.diff(gudgeon_pin(60.0, None, {}, 180, rho, closure)[0].force[:, :2], axis=0)
+        return np.mean(np.sum(change[1:] * change[:-1], axis=1) < 0.0)
+
+    assert alternates(CONSERVING) <= alternates(ehd.SwiftStieber()) + 0.02
 
 
 @pytest.mark.slow
