@@ -47,10 +47,13 @@ class Film(Protocol):
     ----------
     model : JointModel
     failures : Failures
+    is_massless : bool
+        Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
     model: JointModel
     failures: Failures
+    is_massless: bool
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
@@ -190,6 +193,8 @@ class AcceptedSteps:
             memory = self._take_up(mbs, start, place, solver)
         self.solver, self.solvers = solver, solvers
         explicit, static = solver_state.is_explicit(self.solver), solver_state.is_static(self.solver)
+        if explicit and film.is_massless:
+            raise film.failures.no_mass()
         bearing = film.model.bearing
         self._chatter = ChatterWatch(bearing) if explicit else None
         area = 2.0 * bearing.journal_radius * bearing.length

@@ -10,7 +10,7 @@ from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
-from exudyn_ehd.status import FilmError, MemoryWarning, Status
+from exudyn_ehd.status import FilmError, InputError, MemoryWarning, Status
 
 # Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are
 # none.
@@ -42,6 +42,15 @@ class Failures:
         if explicit:
             message += " An explicit solver can't repeat a step: use smaller ones, or an implicit solver."
         return FilmError(f"LubricatedJoint '{self.name}' {message}")
+
+    def no_mass(self) -> InputError:
+        """Modes without mass under an explicit solver, which would integrate their numerical mass."""
+        return InputError(
+            f"LubricatedJoint '{self.name}': the modes of its {type(self.bearing.bush).__name__} have no mass, which "
+            "explicit solvers can't integrate: forces and motion would be wrong; use an implicit solver "
+            "(exu.DynamicSolverType.GeneralizedAlpha), or ModalBush(dynamics=True) with steps that resolve its "
+            "vibrations."
+        )
 
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
         """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""

@@ -101,8 +101,6 @@ class ModalFilmElement(BoreFilmElement):
         Modal stiffness, N/m.
     inertia : ModalInertia or None
         Of modes with mass on a housing that moves.
-    is_massless : bool
-        Whether the mass of the modes is a numerical one.
     """
 
     def __init__(
@@ -118,7 +116,6 @@ class ModalFilmElement(BoreFilmElement):
         self.modes = bore.modes
         self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
-        self.is_massless = False
         self._weighed = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:

@@ -48,6 +48,8 @@ class FilmElement:
     presence : Presence
         Set once the element is in a system.
     failures : Failures
+    is_massless : bool
+        Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
         How often the film was asked.
     """
@@ -56,6 +58,7 @@ class FilmElement:
         self.model = model
         self.sides = (housing, journal)
         self.failures = Failures(name, model.bearing)
+        self.is_massless = False
         self.evaluations = 0
         self._trial: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None

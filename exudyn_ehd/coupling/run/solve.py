@@ -17,6 +17,7 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
 from exudyn_ehd.status import EHDError, InputError, RunError
 
 JOINTS = "lubricatedJoints"
+_IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
 
 
 def require_system(where: str, mbs: exu.MainSystem) -> None:
@@ -116,6 +117,10 @@ def SolveDynamic(
     else:
         require_time("SolveDynamic", simulationSettings)
     require_items(mbs)
+    if options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) not in _IMPLICIT:
+        for joint in joints_of(mbs):
+            if joint.element.is_massless:
+                raise joint.element.failures.no_mass()
     with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **options))
 

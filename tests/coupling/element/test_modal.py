@@ -182,3 +182,43 @@ def test_modes_follow_the_film_at_every_accepted_step():
     # modes in equilibrium apart from the inertia of their numerical mass
     assert np.allclose(element.stiffness * q, load, rtol=0, atol=1e-3 * np.abs(load).max())
     assert np.abs(q).max() > 1e-7
+
+
+def free_pair(bush, moving):
+    """Journal in a bush on ground or on a body, on coordinates that explicit solvers take."""
+    mbs, kind = new_system(), {"nodeType": exu.NodeType.RotationRxyz}
+    housing = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.08, 2, 0.05), **kind)
+    journal = mbs.CreateRigidBody(
+        inertia=InertiaCylinder(7800, 0.3, 0.03, 2), initialAngularVelocity=[0, 0, SPEED], **kind
+    )
+    joint = ehd.CreateLubricatedJoint(
+        mbs,
+        name="b",
+        itemNumbers=[housing if moving else mbs.CreateGround(), journal],
+        position=[0, 0, 0],
+        axis=[0, 0, 1],
+        bearing=dataclasses.replace(BEARING, bush=bush),
+    )
+    mbs.Assemble()
+    return mbs, joint
+
+
+@pytest.mark.parametrize("moving", [False, True])
+def test_explicit_solvers_refuse_modes_without_mass(moving):
+    """Their numerical mass would be integrated: half the force, or none, without a word."""
+    mbs, joint = free_pair(BEARING.bush, moving)
+    solvers = exu.DynamicSolverType
+    for kind in (solvers.RK44, solvers.DOPRI5, solvers.ExplicitEuler):
+        with pytest.raises(ehd.InputError, match=r"'b'.*ModalBush have no mass.*implicit solver.*dynamics=True"):
+            ehd.SolveDynamic(mbs, settings(1e-6, 2), solverType=kind, storeSolver=False)
+        with pytest.raises(exu.ExudynError) as caught:
+            mbs.SolveDynamic(settings(1e-6, 2), solverType=kind)
+        assert isinstance(caught.value.__cause__, ehd.InputError)
+    ehd.SolveDynamic(mbs, settings(1e-6, 2))
+    assert len(joint.history.time) == 3
+
+
+def test_explicit_solvers_take_modes_with_mass():
+    mbs, joint = free_pair(dataclasses.replace(BEARING.bush, dynamics=True), False)
+    ehd.SolveDynamic(mbs, settings(2e-8, 2), solverType=exu.DynamicSolverType.RK44)
+    assert len(joint.history.time) == 3
