@@ -239,10 +239,8 @@ class _Newton:
                 # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
             self._update(solver, mbs)
-            self.guess(mbs, mbs.systemData.GetTime(), iteration, 0)
+            self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
-            if self.guess.before is not None:
-                self.guess.before(mbs, data.GetTime(), iteration, turn)
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
             if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1

@@ -179,7 +179,10 @@ def test_every_user_function_of_the_system_takes_part():
             calls[what] += 1
             return result
 
-        def spring(mbs, t, iteration, discontinuous, force=force, count=count):
+        iterations = []
+
+        def spring(mbs, t, iteration, discontinuous, force=force, count=count, iterations=iterations):
+            iterations.append((t, iteration))
             lift = mbs.GetNodeOutput(0, exu.OutputVariableType.Displacement)[2]
             mbs.SetLoadParameter(force, "loadVector", [0, 0, -stiffness * lift])
             count("before residual")
@@ -196,6 +199,7 @@ def test_every_user_function_of_the_system_takes_part():
         mbs.SetPostNewtonUserFunction(lambda mbs, t, count=count: count("after Newton", [0, -1]))
         solve(mbs, _settings())  # assembles the system, as Exudyn's solver does
         assert all(calls.values())
+        assert len(set(iterations)) == len(iterations)
         assert (calls["before step"], calls["after step"], calls["after Newton"]) == (40, 41, 40)
         results.append(_end(mbs))
     assert np.allclose(results[0], results[1], atol=1e-9 * np.abs(results[1]).max())
