@@ -5,13 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from exudyn_ehd.film.models import LongBearing
+import numpy as np
+
+from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
 from exudyn_ehd.joint.audit.ringing import REMEDY, WINDOW, watched
+from exudyn_ehd.joint.audit.switches import refined
 
 # Grids this many times finer than needed cost time for nothing.
 TOO_FINE = 6.0
+# Grids that are so much finer than needed are not compared with finer ones.
+SURELY_FINE = 2.0
 
 
 def _reynolds(case: Case) -> float:
@@ -54,18 +60,27 @@ def inertia(case: Case) -> Finding:
 
 
 def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
-    if isinstance(case.bearing.film, ImpedanceMap):
+    film = case.bearing.film
+    if isinstance(film, ImpedanceMap):
         return None
-    value, size = case.smallest(field), getattr(case.bearing.film, name)
+    value, size = case.smallest(field), getattr(film, name)
+    sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
     needed = LIMITS[effect].value
-    found = finding(effect, f"intervals across the peak at half its height, {name} = {size}", value, None)
+    change = None if value > SURELY_FINE * needed else case.films.change(refined(**sizes | {name: 2 * size}))
+    indicator = f"intervals across the peak at half its height, {name} = {size}"
+    found = replace(finding(effect, indicator, value, None), change=change)
+    if change is not None and change.size > MATTERS:
+        found = replace(found, matters=True)
     unit = 8 if name == "n_theta" else 2
     wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))
     if found.matters:
-        return replace(found, advice=f"the pressure peak is too narrow for the grid: {name}={wanted}.")
+        wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
+        advice = f"the pressure peak is too narrow for the grid: {name}={wanted}."
+        return replace(found, advice=advice, remedy=refined(**sizes | {name: wanted}))
     wanted = max(wanted, 48 if name == "n_theta" else 6)
     if value > TOO_FINE * needed and wanted < size:
-        return replace(found, unneeded=True, advice=f"finer than the pressure needs: {name}={wanted} would do.")
+        advice = f"finer than the pressure needs: {name}={wanted} would do."
+        return replace(found, unneeded=True, advice=advice, remedy=refined(**sizes | {name: wanted}))
     return found
 
 
@@ -77,6 +92,26 @@ def grid_columns(case: Case) -> Finding | None:
 def grid_rows(case: Case) -> Finding | None:
     """Rows across the pressure peak; the slices of a long bearing are no grid."""
     return None if isinstance(case.bearing.film, LongBearing) else _grid(case, "n_z", "rows", "grid along")
+
+
+def supply_resolution(case: Case) -> Finding | None:
+    """Vertices on the areas of the supply."""
+    b, film = case.bearing, case.bearing.film
+    if not b.supply or not isinstance(film, FiniteLength):
+        return None
+    grid = case.films.model.grid
+    masks = [area.covers(grid.x, grid.z * b.journal_radius, b.journal_radius) for area in b.supply]
+    value = min(int(np.count_nonzero(mask.any(axis=axis))) for mask in masks for axis in (0, 1))
+    n_theta, n_z = 2 * film.n_theta, 2 * film.n_z
+    return finding(
+        "supply resolution",
+        "columns or rows of vertices on the smallest area of supply",
+        float(value),
+        None,
+        mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
+        change=case.films.change(refined(n_theta, n_z)),
+        switch=refined(n_theta, n_z),
+    )
 
 
 def time_step(case: Case) -> Finding | None:

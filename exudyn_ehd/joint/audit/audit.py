@@ -11,10 +11,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.audit.changes import Comparison
 from exudyn_ehd.joint.audit.findings import Case, Finding
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
+from exudyn_ehd.joint.audit.switches import two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -66,13 +69,37 @@ class Audit:
         raise KeyError(f"Audit: no finding about {effect!r}; there are {', '.join(f.effect for f in self.findings)}.")
 
     def __str__(self) -> str:
-        rows: list[tuple[str, ...]] = [("effect", "", "value", "limit", "time", "verdict", "indicator")]
+        rows: list[tuple[str, ...]] = [("effect", "", "change", "value", "limit", "time", "verdict", "indicator")]
         rows += [_row(finding) for finding in self.findings]
-        widths = [max(len(row[k]) for row in rows) for k in range(6)]
-        lines = ["  ".join(text.ljust(w) for text, w in zip((*row[:6], row[6]), (*widths, 0))).rstrip() for row in rows]
+        widths = [max(len(row[k]) for row in rows) for k in range(7)]
+        lines = ["  ".join(text.ljust(w) for text, w in zip(row, (*widths, 0))).rstrip() for row in rows]
         lines.insert(1, "-" * max(map(len, lines)))
         advice = [f"{f.effect}: {f.advice}" for f in self.findings if f.advice]
-        return "\n".join([*lines, *([""] if advice else []), *advice])
+        changes = [f"{f.effect}: {f.change}" for f in self.findings if f.change is not None and f.matters]
+        return "\n".join([*lines, *([""] if advice else []), *advice, *([""] if changes else []), *changes])
+
+    def improved(self, bearing: JournalBearing) -> JournalBearing:
+        """The bearing with what is missing switched on, with typical numbers, and what is unneeded switched off.
+
+        Every advice that a description can follow. Effects act on each other: audit the bearing's own film or run
+        again, until nothing is left to change.
+
+        Parameters
+        ----------
+        bearing : JournalBearing
+            The one that was audited.
+
+        Raises
+        ------
+        InputError
+            If its film model or closure does not go with what is missing.
+        """
+        remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
+        if remedies and isinstance(bearing.film, ImpedanceMap):
+            bearing = two_dimensional(bearing)
+        for remedy in remedies:
+            bearing = remedy(bearing)
+        return bearing
 
 
 def _row(f: Finding) -> tuple[str, ...]:
@@ -82,8 +109,9 @@ def _row(f: Finding) -> tuple[str, ...]:
     if f.matters and f.on is None:
         verdict = "beyond limit"
     share = "" if f.time_share is None else f"{f.time_share:.0%}"
+    change = "" if f.change is None else f"{f.change.size:.1%}"
     limit = f"{'<' if f.below else '>'} {f.threshold:.3g}"
-    return f.effect, _ON[f.on], f"{f.value:.3g}", limit, share, verdict, f.indicator
+    return f.effect, _ON[f.on], change, f"{f.value:.3g}", limit, share, verdict, f.indicator
 
 
 def audit_states(
@@ -119,7 +147,7 @@ def audit_states(
             "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result "
             "of `steady`."
         )
-    case = Case(model.bearing, samples, record, liner)
+    case = Case(model.bearing, samples, Comparison(model, states, record), record, liner)
     findings = []
     for indicator in INDICATORS:
         finding = indicator.find(case)

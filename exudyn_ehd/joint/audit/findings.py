@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.audit.changes import MATTERS, NOTHING, Change, Comparison
 from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
+from exudyn_ehd.joint.audit.switches import Switch
 
 
 class Limit(NamedTuple):
@@ -19,8 +21,8 @@ class Limit(NamedTuple):
     below: bool = False
 
 
-# An effect matters where leaving it out would change load, peak pressure, friction or minimum film thickness by some 5
-# to 10 %.
+# Where an effect is not computed, it matters where leaving it out would change load, peak pressure, friction or minimum
+# film thickness by some 5 to 10 %.
 # Shares without another source: of a bearing with L/D = 0.75 at eccentricity ratio 0.8, with Swift-Stieber.
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),
@@ -36,12 +38,14 @@ LIMITS = {
     "wear": Limit(1e-4, "of the load: wear asks for less contact than friction"),
     "squeeze": Limit(0.05, "of the sources of the Reynolds equation"),
     "cavitation": Limit(0.01, "of the bore"),
+    "rupture": Limit(0.01, "of the bore"),
     "mass conservation": Limit(0.05, "of the bore, moving or refilled"),
     "Taylor vortices": Limit(41.2, "concentric journal: G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923) 289"),
     "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow"),
     "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
     "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
     "grid along": Limit(3.0, "intervals: as around", below=True),
+    "supply resolution": Limit(3.0, "intervals across the narrowest area", below=True),
     "time step": Limit(0.2, "of the minimum film thickness"),
     "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
 }
@@ -62,11 +66,16 @@ class Finding:
     on : bool or None
         Whether the bearing has it; None for an assumption or a number that can't be switched.
     matters : bool
-        Value beyond the threshold.
+        The effect changes something by more than 3 %; where no change was computed, ``value`` beyond ``threshold``.
     unneeded : bool
         It takes time although it does not matter.
     advice : str
         What to do about it; empty if nothing.
+    change : Change or None
+        What switching the effect changes, computed at the audited states; None where ``value`` says plainly that it is
+        nothing, or where the other film was not found.
+    remedy : function or None
+        What ``advice`` does to a bearing.
     time_share : float or None
         Share of the time of a film evaluation with tangent that the effect takes, 0 to 1; None if not measured.
     """
@@ -80,6 +89,8 @@ class Finding:
     matters: bool
     unneeded: bool = False
     advice: str = ""
+    change: Change | None = None
+    remedy: Switch | None = field(default=None, repr=False, compare=False)
     time_share: float | None = None
 
     @property
@@ -92,11 +103,13 @@ class Finding:
 class Case:
     """What is audited.
 
-    Worst films, the record they come from if there is one, and a liner that the bearing does not have.
+    Worst films, those of other bearings to compare with, the record they come from if there is one, and a liner that
+    the bearing does not have.
     """
 
     bearing: JournalBearing
     samples: list[Sample]
+    films: Comparison
     record: RecordedSteps | None = None
     liner: ElasticLiner | None = None
 
@@ -118,15 +131,22 @@ def finding(
     limit: Limit | None = None,
     mattering: str = "",
     needless: str | None = None,
+    change: Change | None = None,
+    switch: Switch | None = None,
 ) -> Finding:
     """A finding with the advice for the case at hand.
 
     ``limit`` in place of the effect's own of `LIMITS`; ``mattering``: advice if it matters but is off; ``needless``: if
-    it is on and does not matter, None for an effect that is never unneeded.
+    it is on and does not matter, None for an effect that is never unneeded; ``change``: by ``switch``, which adds what
+    is off and drops what is on.
     """
     limit = LIMITS[effect] if limit is None else limit
-    matters = value < limit.value if limit.below else value > limit.value
-    unneeded = on is True and not matters and needless is not None
+    if change is None:
+        matters = value < limit.value if limit.below else value > limit.value
+        unneeded = not matters
+    else:
+        matters, unneeded = change.size > MATTERS, change.size < NOTHING
+    unneeded = unneeded and on is True and needless is not None
     advice = mattering if matters and not on else ""
     if unneeded and needless:
         advice = needless
@@ -140,4 +160,6 @@ def finding(
         matters=matters,
         unneeded=unneeded,
         advice=advice,
+        change=change,
+        remedy=switch if advice else None,
     )

@@ -9,18 +9,54 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, SwiftStieber
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit import assumptions
-from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
+from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, Limit, finding
 from exudyn_ehd.joint.audit.samples import Sample
+from exudyn_ehd.joint.audit.switches import (
+    STEEL,
+    TYPICAL_PRESSURE_COEFFICIENT,
+    TYPICAL_SHEAR_ONSET,
+    TYPICAL_TEMPERATURE_COEFFICIENT,
+    Switch,
+    cavity_pressure,
+    coarse_ring,
+    heated,
+    isothermal,
+    isoviscous,
+    mass_conserving,
+    newtonian,
+    piezoviscous,
+    rigid,
+    rough,
+    roughness_height,
+    smooth,
+    steel_ring,
+    swift_stieber,
+    thinning,
+    touching,
+    two_dimensional,
+    untouching,
+    unworn,
+    warmer,
+)
 
-# Mineral oils, where a bearing names nothing: pressure and temperature coefficients of the viscosity, onset of shear
-# thinning.
-TYPICAL_PRESSURE_COEFFICIENT = 2e-8  # 1/Pa
-TYPICAL_TEMPERATURE_COEFFICIENT = 0.03  # 1/K, ISO VG 46 near 70 degrees Celsius
-TYPICAL_SHEAR_ONSET = 1e6  # 1/s, multigrade oils
-TYPICAL_ROUGHNESS = 0.5e-6  # m, ground journal in a finely turned bore
+# Values beyond which an effect is plainly nothing, so that no other film is solved for it.
+PLAINLY_NOTHING = {
+    "elasticity": 0.01,
+    "profile": 0.01,
+    "piezoviscosity": 0.01,
+    "heating": 0.01,
+    "shear thinning": 0.2,
+    "roughness": 10.0,
+    "contact": 6.0,
+    "mass conservation": 1e-3,
+}
+# From here on the bore is plainly elastic; the search for its film at such loads is long.
+PLAINLY_ELASTIC = 5.0
+# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
+RING_COMPLIANCE = 0.7
 
 
 @dataclass(frozen=True)
@@ -31,6 +67,37 @@ class Indicator:
     without: Callable[[JournalBearing], JournalBearing] | None = None
 
 
+def _judged(
+    case: Case,
+    effect: str,
+    indicator: str,
+    value: float,
+    on: bool | None,
+    switch: Switch,
+    *,
+    probe: Switch | None = None,
+    limit: Limit | None = None,
+    mattering: str = "",
+    needless: str | None = None,
+) -> Finding:
+    """A finding by the change that ``switch`` makes (seen by ``probe``), unless its value says enough."""
+    limit = LIMITS[effect] if limit is None else limit
+    nothing = PLAINLY_NOTHING.get(effect, 0.0)
+    plain = value > nothing if limit.below else value < nothing
+    plain = plain or (effect == "elasticity" and value > PLAINLY_ELASTIC)
+    return finding(
+        effect,
+        indicator,
+        value,
+        on,
+        limit=limit,
+        mattering=mattering,
+        needless=needless,
+        change=None if plain else case.films.change(switch if probe is None else probe),
+        switch=switch,
+    )
+
+
 def misalignment(case: Case) -> Finding:
     """Tilt of the journal, which every film but the impedance map includes."""
     return finding(
@@ -39,31 +106,42 @@ def misalignment(case: Case) -> Finding:
         case.largest("tilt_loss"),
         not isinstance(case.bearing.film, ImpedanceMap),
         mattering="use film=FiniteLength(...), which follows the tilt.",
+        switch=two_dimensional,
     )
 
 
-def elasticity(case: Case) -> Finding | None:
-    """Deflection of a liner: measured, or by Winkler elements for one that is only asked about."""
-    bush = case.bearing.bush
-    if bush is None and case.liner is None:
-        return None
+def elasticity(case: Case) -> Finding:
+    """Deflection of the bore: as it is, of a liner that is only asked about, or of a steel ring."""
+    b, liner = case.bearing, case.liner
 
     def gap(s: Sample) -> float:
         # surfaces that touch count as a thousandth of the clearance apart
-        return max(s.minimum_gap, 1e-3 * case.bearing.radial_clearance)
+        return max(s.minimum_gap, 1e-3 * b.radial_clearance)
 
-    if bush is not None:
+    if b.bush is not None:
         value = max(s.deflection / gap(s) for s in case.samples)
-    else:
-        assert case.liner is not None
-        value = max(case.liner.compliance * s.peak_pressure / gap(s) for s in case.samples)
-    return finding(
+        return _judged(
+            case,
+            "elasticity",
+            "deflection / minimum film thickness",
+            value,
+            True,
+            rigid,
+            needless="the bush is stiff enough to be rigid: bush=None.",
+        )
+    ring = RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"]
+    compliance = ring if liner is None else liner.compliance
+    return _judged(
+        case,
         "elasticity",
-        "deflection / minimum film thickness",
-        value,
-        bush is not None,
-        mattering="give the bearing bush=ElasticLiner(...), or a bush with a mesh.",
-        needless="the bush is stiff enough to be rigid: bush=None.",
+        f"deflection of {'a steel ring' if liner is None else 'the liner'} / minimum film thickness",
+        max(compliance * s.peak_pressure / gap(s) for s in case.samples),
+        False,
+        steel_ring if liner is None else lambda bearing: replace(bearing, bush=liner),
+        probe=coarse_ring if liner is None else None,
+        mattering="even steel gives way: give the bearing bush=ModalBush(...) of its housing."
+        if liner is None
+        else "give the bearing bush=ElasticLiner(...), or a bush with a mesh.",
     )
 
 
@@ -72,11 +150,13 @@ def shape(case: Case) -> Finding | None:
     if not case.bearing.profiles:
         return None
     value = max(s.shape / s.minimum_gap for s in case.samples)
-    return finding(
+    return _judged(
+        case,
         "profile",
         "profile height / minimum film thickness",
         value,
         True,
+        lambda bearing: replace(bearing, profile=None),
         needless="the film is much thicker than the profile: profile=None.",
     )
 
@@ -85,11 +165,13 @@ def piezoviscosity(case: Case) -> Finding:
     """Viscosity under pressure."""
     law = case.bearing.lubricant.pressure_law
     alpha = TYPICAL_PRESSURE_COEFFICIENT if law is None else law.coefficient
-    return finding(
+    return _judged(
+        case,
         "piezoviscosity",
         f"alpha p_max, alpha = {alpha:g} 1/Pa",
         alpha * case.largest("peak_pressure"),
         law is not None,
+        piezoviscous if law is None else isoviscous,
         mattering="give the lubricant pressure_law=RoelandsPressure(coefficient=...).",
         needless="pressures are low: pressure_law=None.",
     )
@@ -123,11 +205,14 @@ def heating(case: Case) -> Finding:
         hot, cold = float(law.viscosity(T + 1.0, rho)), float(law.viscosity(T - 1.0, rho))
         coefficient = 0.5 * abs(math.log(hot / cold))
     rise = case.largest("rise") if b.thermal is not None else temperature_rise(case)
-    return finding(
+    return _judged(
+        case,
         "heating",
         f"{coefficient:.3g} 1/K x rise of {rise:.3g} K",
         coefficient * rise,
         b.thermal is not None,
+        heated if b.thermal is None else isothermal,
+        probe=warmer(rise, coefficient) if b.thermal is None and case.record is not None else None,
         mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, "
         "or the viscosity at its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
@@ -139,33 +224,31 @@ def shear_thinning(case: Case) -> Finding:
     law = case.bearing.lubricant.shear_law
     onset = TYPICAL_SHEAR_ONSET if law is None else law.onset
     rate = max(s.speed / s.minimum_gap for s in case.samples)
-    return finding(
+    return _judged(
+        case,
         "shear thinning",
         f"U / minimum film thickness over its onset, {onset:g} 1/s",
         rate / onset,
         law is not None,
+        thinning if law is None else newtonian,
         mattering="for a multigrade oil: shear_law=CarreauShear(...); a plain mineral oil does not thin yet.",
         needless="shear rates are low: shear_law=None.",
     )
 
 
-def _roughness_height(b: JournalBearing) -> float:
-    if b.asperity is not None:
-        return b.asperity.composite_roughness
-    return TYPICAL_ROUGHNESS if b.roughness is None else b.roughness.composite_roughness
-
-
 def _roughness_ratio(case: Case) -> float:
-    return case.smallest("minimum_gap") / _roughness_height(case.bearing)
+    return case.smallest("minimum_gap") / roughness_height(case.bearing)
 
 
 def roughness(case: Case) -> Finding:
     """Flow factors: film thickness over roughness."""
-    return finding(
+    return _judged(
+        case,
         "roughness",
-        f"minimum film thickness / sigma, sigma = {_roughness_height(case.bearing):g} m",
+        f"minimum film thickness / sigma, sigma = {roughness_height(case.bearing):g} m",
         _roughness_ratio(case),
         case.bearing.roughness is not None,
+        rough if case.bearing.roughness is None else smooth,
         mattering="give the bearing roughness=PatirCheng(composite_roughness=...).",
         needless="the film is thick next to the roughness: roughness=None.",
     )
@@ -175,11 +258,13 @@ def contact(case: Case) -> Finding:
     """Load that the contacts carry, how often and when, or the film thickness at which there should be one."""
     b, record = case.bearing, case.record
     if b.contact is None and b.asperity is None:
-        return finding(
+        return _judged(
+            case,
             "contact",
-            f"minimum film thickness / sigma, sigma = {_roughness_height(b):g} m",
+            f"minimum film thickness / sigma, sigma = {roughness_height(b):g} m",
             _roughness_ratio(case),
             False,
+            touching,
             limit=LIMITS["roughness"],
             mattering="surfaces touch: asperity=GreenwoodTripp(...), or contact=RegularisedWall(...).",
         )
@@ -197,6 +282,7 @@ def contact(case: Case) -> Finding:
         share,
         True,
         needless="contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None."),
+        switch=untouching,
     )
 
 
@@ -211,6 +297,7 @@ def wear(case: Case) -> Finding | None:
         touching.value,
         True,
         needless="surfaces hardly touch, nothing wears: wear=None.",
+        switch=unworn,
     )
 
 
@@ -222,6 +309,7 @@ def squeeze(case: Case) -> Finding:
         case.largest("squeeze_share"),
         case.bearing.squeeze,
         mattering="use squeeze=True: without it the film has no damping.",
+        switch=lambda bearing: replace(bearing, squeeze=True),
     )
 
 
@@ -234,49 +322,62 @@ def cavitation(case: Case) -> Finding:
             case.largest("tension"),
             False,
             mattering="oil does not carry such tension: cavitation=SwiftStieber().",
+            switch=swift_stieber,
         )
     return finding("cavitation", "cavitated share of the bore", case.largest("cavitated"), True)
 
 
-def mass_conservation(case: Case) -> Finding | None:
-    """Oil content of cavities that move, or that a supply refills."""
-    closure = case.bearing.cavitation
-    if isinstance(closure, FullSommerfeld):
+def rupture(case: Case) -> Finding | None:
+    """Half Sommerfeld's rupture against Reynolds' condition."""
+    if not case.bearing.cavitation.clips:
         return None
-    fed = bool(case.bearing.supply)
-    value = max(s.cavitated * (1.0 if fed else s.squeeze_share) for s in case.samples)
-    return finding(
-        "mass conservation",
-        "cavitated share" + (", refilled by a supply" if fed else " x squeeze share"),
-        value,
-        closure.conserves_mass,
-        mattering="cavities move or are refilled: cavitation=ElrodAdams(...) keeps their oil.",
-        needless="cavities are small or at rest: cavitation=SwiftStieber() gives nearly the same load.",
+    return _judged(
+        case,
+        "rupture",
+        "cavitated share of the bore",
+        case.largest("cavitated"),
+        False,
+        swift_stieber,
+        mattering="the film breaks where its pressure still falls: cavitation=SwiftStieber() keeps the flow there.",
     )
 
 
-def _without_mass(bearing: JournalBearing) -> JournalBearing:
-    return replace(bearing, cavitation=SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure))
+def mass_conservation(case: Case) -> Finding | None:
+    """Oil content and pressure of cavities: against a film whose cavities keep their oil."""
+    closure = case.bearing.cavitation
+    if isinstance(closure, FullSommerfeld):
+        return None
+    indicator, value = "cavitated share of the bore", case.largest("cavitated")
+    if closure.conserves_mass:
+        needless = f"cavities hardly matter: cavitation=SwiftStieber(cavity_pressure={closure.cavity_pressure:g})."
+        return _judged(case, "mass conservation", indicator, value, True, swift_stieber, needless=needless)
+    pressure = cavity_pressure(case.bearing)
+    keeping = (
+        f"cavities keep their oil: cavitation=ElrodAdams(cavity_pressure={pressure:g}), or at the pressure of yours."
+    )
+    return _judged(case, "mass conservation", indicator, value, False, mass_conserving, mattering=keeping)
 
 
 INDICATORS = (
     Indicator(misalignment),
-    Indicator(elasticity, lambda b: replace(b, bush=None)),
+    Indicator(elasticity, rigid),
     Indicator(shape, lambda b: replace(b, profile=None)),
-    Indicator(piezoviscosity, lambda b: replace(b, lubricant=replace(b.lubricant, pressure_law=None))),
+    Indicator(piezoviscosity, isoviscous),
     Indicator(heating, lambda b: replace(b, thermal=None)),
-    Indicator(shear_thinning, lambda b: replace(b, lubricant=replace(b.lubricant, shear_law=None))),
-    Indicator(roughness, lambda b: replace(b, roughness=None)),
-    Indicator(contact, lambda b: replace(b, asperity=None, contact=None, wear=None)),
-    Indicator(wear, lambda b: replace(b, wear=None)),
+    Indicator(shear_thinning, newtonian),
+    Indicator(roughness, smooth),
+    Indicator(contact, untouching),
+    Indicator(wear, unworn),
     Indicator(squeeze),
     Indicator(cavitation),
-    Indicator(mass_conservation, _without_mass),
+    Indicator(rupture),
+    Indicator(mass_conservation, swift_stieber),
     Indicator(assumptions.vortices),
     Indicator(assumptions.turbulence),
     Indicator(assumptions.inertia),
     Indicator(assumptions.grid_columns),
     Indicator(assumptions.grid_rows),
+    Indicator(assumptions.supply_resolution),
     Indicator(assumptions.time_step),
     Indicator(assumptions.ringing),
 )

@@ -16,8 +16,13 @@ from exudyn_ehd.status import FilmError, Status
 def lacks_oil(bearing: JournalBearing) -> bool:
     """Whether the film conserves mass and has no source of oil, unless the journal slides along."""
     closure = bearing.cavitation
-    supplied = bearing.supply or isinstance(bearing.inlet, MaximumGap)
-    return closure.conserves_mass and not supplied and max(bearing.end_pressures) <= closure.cavity_pressure
+    return closure.conserves_mass and not is_fed(bearing, closure.cavity_pressure)
+
+
+def is_fed(bearing: JournalBearing, cavity_pressure: float) -> bool:
+    """Whether oil comes to cavities of this pressure, Pa, from ends, supply or an open inlet."""
+    supplied = bool(bearing.supply) or isinstance(bearing.inlet, MaximumGap)
+    return supplied or max(bearing.end_pressures) > cavity_pressure
 
 
 def history_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> History | None:

@@ -9,6 +9,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_share, tilt_loss
+from exudyn_ehd.joint.audit.switches import steel_ring
 from exudyn_ehd.joint.model.build import build_model
 
 C, SPEED = 20e-6, 300.0
@@ -55,8 +56,7 @@ FLIPS = {
     "roughness": ({"eps": 0.8}, {"eps": 0.95}),
     "contact": ({"eps": 0.8}, {"eps": 0.95}),
     "squeeze": ({}, {"velocity": (1e-3, 0.0)}),
-    "mass conservation": ({"eps": 0.8}, {"eps": 0.8, "velocity": (0.0, 2e-3)}),
-    "heating": ({"speed": 0.5}, {"speed": 300.0}),
+    "heating": ({"speed": 0.1}, {"speed": 300.0}),
     "grid around": ({"eps": 0.8}, {"eps": 0.99}),
     "grid along": ({}, {"tilt": (9.8e-4, 0.0)}),
 }
@@ -116,16 +116,82 @@ def test_supply_asks_for_mass_conservation():
     )
     elrod = ehd.ElrodAdams()
     assert not audit(bearing(supply=(groove,), cavitation=elrod), eps=0.8).unneeded
-    still = audit(bearing(end_pressures=SUPPLIED, cavitation=elrod), eps=0.8)
-    assert still["mass conservation"].unneeded
+    flooded = audit(bearing(end_pressures=(1e7, 1e7), cavitation=elrod), eps=0.5)
+    assert flooded["mass conservation"].unneeded
+
+
+# Cases that a cavitated share times a squeeze share called nothing: light and heavy, on the move and at rest.
+CAVITIES = [
+    ((0.02, 0.02, 25e-6), 0.02, 300.0, 0.5),
+    ((0.05, 0.05, 60e-6), 0.02, 300.0, 0.5),
+    ((0.0092, 0.021, 12.1e-6), 0.032, 609.0, 0.715),
+    ((0.0415, 0.103, 16.9e-6), 0.084, 22.0, 0.675),
+]
+
+
+def sized(sizes, viscosity, **options):
+    R, L, c = sizes
+    oil = ehd.Lubricant(viscosity=viscosity)
+    return ehd.JournalBearing(journal_radius=R, length=L, radial_clearance=c, lubricant=oil, **options)
+
+
+@pytest.mark.parametrize(("sizes", "viscosity", "speed", "eps"), CAVITIES)
+def test_cavities_that_keep_their_oil_are_solved_for(sizes, viscosity, speed, eps):
+    made = sized(sizes, viscosity)
+    film = ehd.steady(made, speed=speed, eccentricity_ratio=eps)
+    finding = film.audit()["mass conservation"]
+    keeping = dataclasses.replace(made, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    same_place = ehd.steady(keeping, speed=speed, eccentricity_ratio=eps)
+    true = ehd.equilibrium(keeping, speed=speed, load=tuple(-film.force[:2])).film
+    assert finding in film.audit().neglected
+    change = finding.change
+    assert change.load == pytest.approx(np.hypot(*same_place.force[:2]) / np.hypot(*film.force[:2]) - 1.0, abs=1e-9)
+    for name in ("minimum_gap", "peak_pressure", "power_loss"):
+        assert getattr(change, name) == pytest.approx(getattr(true, name) / getattr(film, name) - 1.0, abs=1e-3)
+    # followed, the advice ends
+    followed = film.audit().improved(made)
+    assert followed.cavitation == keeping.cavitation
+    on = ehd.steady(keeping, speed=speed, eccentricity_ratio=eps).audit()["mass conservation"]
+    assert on.matters and not on.advice
+
+
+@pytest.mark.parametrize(("speed", "eps"), [(628.0, 0.85), (314.0, 0.4)])
+def test_steel_gives_way(speed, eps):
+    made = sized((0.03, 0.066, 30e-6), 9e-3)
+    film = ehd.steady(made, speed=speed, eccentricity_ratio=eps)
+    finding = film.audit()["elasticity"]
+    ring = steel_ring(made)
+    true = ehd.equilibrium(ring, speed=speed, load=tuple(-film.force[:2])).film
+    peak, gap = (getattr(true, n) / getattr(film, n) - 1.0 for n in ("peak_pressure", "minimum_gap"))
+    assert finding.matters is (max(abs(peak), abs(gap)) > 0.03) and finding.on is False
+    # by a coarse ring
+    assert finding.change.peak_pressure == pytest.approx(peak, abs=0.01 + 0.1 * abs(peak))
+    assert finding.change.minimum_gap == pytest.approx(gap, abs=0.01 + 0.1 * abs(gap))
+
+
+def test_half_sommerfeld_is_compared_with_the_rupture_that_keeps_the_flow():
+    found = audit(bearing(cavitation=ehd.Gumbel()), eps=0.8)["rupture"]
+    assert found.matters and "SwiftStieber" in found.advice
+    assert found.change.peak_pressure < -0.03 or found.change.minimum_gap > 0.03
+    with pytest.raises(KeyError):
+        audit(bearing())["rupture"]
+
+
+def test_coarse_areas_of_supply_are_told():
+    hole = ehd.Hole(angle=1.0, diameter=1.5e-3, pressure=2e6)
+    coarse = audit(bearing(supply=(hole,), film=ehd.FiniteLength(n_theta=96, n_z=20)), eps=0.6)["supply resolution"]
+    groove = ehd.AxialGroove(angle=math.pi, width_angle=0.5, pressure=1e5)
+    fine = audit(bearing(supply=(groove,), film=ehd.FiniteLength(n_theta=144, n_z=12)), eps=0.6)["supply resolution"]
+    assert coarse.change.size > 2.0 * fine.change.size
+    assert not fine.matters
 
 
 def test_elasticity_of_a_liner_given_and_asked_about():
     soft, stiff = (ehd.ElasticLiner(thickness=0.002, youngs_modulus=E) for E in (2e9, 2e11))
-    assert "elasticity" not in str(audit(bearing()))
+    assert not audit(bearing())["elasticity"].matters and "steel ring" in audit(bearing())["elasticity"].indicator
     asked = audit(bearing(), eps=0.8, liner=soft)
     assert asked["elasticity"] in asked.neglected
-    assert not audit(bearing(), eps=0.8, liner=stiff)["elasticity"].matters
+    assert not audit(bearing(), eps=0.5, liner=stiff)["elasticity"].matters
     named = audit(bearing(bush=soft), eps=0.8)
     assert named["elasticity"].matters and named["elasticity"].on and not named["elasticity"].advice
     # a soft liner lowers the peak and widens the gap: Winkler elements under the rigid film's pressure overestimate
@@ -150,7 +216,7 @@ ON = {
 @pytest.mark.parametrize("effect", list(ON))
 def test_effects_that_do_not_matter_are_unneeded(effect):
     # slow and nearly concentric: no pressure, no heat, a thick film
-    found = audit(bearing(**ON[effect]), eps=0.05, speed=0.2, measure_time=True)
+    found = audit(bearing(**ON[effect]), eps=0.05, speed=0.1, measure_time=True)
     finding = found[effect]
     assert finding.on and finding.unneeded and finding in found.unneeded
     assert finding.time_share is not None and 0.0 <= finding.time_share < 1.0

@@ -1,0 +1,159 @@
+"""What another description of a bearing changes at the audited states: computed, not guessed.
+
+At a steady state the journal of the other bearing is moved to where its film carries the same load; minimum film
+thickness, peak pressure and loss are compared there, the load at the same position. The films of a record that remember
+are compared at the same motion with the same memory, where the peak is related to the load, and the minimum film
+thickness estimated from it: a film pressed together carries about 1 / h^2.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states
+from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
+from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.balance.position import newton
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.quantities import refined_peak
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.status import FilmError, InputError, Status
+
+# From this change on an effect matters; below the second one nobody needs it.
+MATTERS, NOTHING = 0.03, 0.02
+# Of the search for the same load: unbalance, steps from each start, and starts, shares of the eccentricity.
+TOLERANCE, MOST_STEPS, STARTS = 1e-4, 15, (1.0, 0.95, 0.7)
+# Loads below it, over L D mu omega / psi^2, have no relative changes.
+NO_LOAD = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True)
+class Change:
+    """What another description changes, relative to the bearing as it is, at the state where it changes most.
+
+    Attributes
+    ----------
+    load : float
+        At the same position or motion; nan if there is no such film.
+    minimum_gap, peak_pressure, power_loss : float
+        At the same load.
+    """
+
+    load: float
+    minimum_gap: float
+    peak_pressure: float
+    power_loss: float
+
+    @property
+    def size(self) -> float:
+        """Largest change at the same load."""
+        return max(abs(self.minimum_gap), abs(self.peak_pressure), abs(self.power_loss))
+
+    def __str__(self) -> str:
+        load = "" if math.isnan(self.load) else f"load {self.load:+.1%} at the same position; "
+        rest = f"minimum film thickness {self.minimum_gap:+.1%}, peak {self.peak_pressure:+.1%}"
+        return f"{load}{rest}, loss {self.power_loss:+.1%} at the same load"
+
+
+class Comparison:
+    """Films of a bearing at the audited states, to compare others with.
+
+    Parameters
+    ----------
+    model : BearingModel
+    states : sequence of FilmState
+    record : RecordedSteps, optional
+        Where the states come from.
+    """
+
+    def __init__(self, model: BearingModel, states: Sequence[FilmState], record: RecordedSteps | None) -> None:
+        self.model, self.states, self.record = model, states, record
+        if isinstance(model.bearing.film, ImpedanceMap):
+            self.model = build_study_model(two_dimensional(model.bearing), float(model.grid.x[0]))
+
+    def change(self, switch: Switch) -> Change | None:
+        """Worst change by a switch; None where no state could be compared."""
+        try:
+            other = build_study_model(switch(self.model.bearing), float(self.model.grid.x[0]))
+        except InputError:
+            return None
+        states: Sequence[FilmState] = self.states
+        remembers = self.record is not None and (other.remembers or self.model.remembers or self.model.needs_spin)
+        # without a memory of its own to add, another bearing takes that of this one
+        own = (other.remembers_mass and not self.model.remembers_mass) or other.grid.shape != self.model.grid.shape
+        if self.record is not None and remembers and own:
+            states = recorded_states(other, self.record)
+        found = [self._at(other, mine, its, remembers) for mine, its in zip(self.states, states, strict=True)]
+        changes = [change for change in found if change is not None]
+        return max(changes, key=lambda change: change.size, default=None)
+
+    def _at(self, other: BearingModel, mine: FilmState, its: FilmState, remembers: bool) -> Change | None:
+        film = mine.evaluate(self.model)
+        if film.status is not Status.CONVERGED:
+            return None
+        force, q = film.wrench[:2].copy(), _numbers(film)
+        if not np.hypot(*force) > NO_LOAD * _reference(self.model.bearing, mine.motion):
+            return None
+        if remembers:
+            motion = its.motion[:MOTION_SIZE]
+            return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
+        load = _load_at(other, mine.motion[:MOTION_SIZE])
+        moved = _same_load(other, mine.motion[:MOTION_SIZE], force)
+        if moved is None:
+            return None
+        p, share = _numbers(moved), load / float(np.hypot(*force)) - 1.0
+        gap, peak, loss = (new / old - 1.0 if old > 0.0 else 0.0 for new, old in zip(p, q, strict=True))
+        return Change(load=share, minimum_gap=gap, peak_pressure=peak, power_loss=loss)
+
+
+def _reference(bearing: JournalBearing, motion: np.ndarray) -> float:
+    """Unit of the film's force, of spin and squeeze, N."""
+    rates = float(np.max(np.abs(motion[4:6]))) + 0.5 * bearing.length * float(np.max(np.abs(motion[6:8])))
+    return bearing.reference_force(abs(float(motion[8])) + rates / bearing.radial_clearance)
+
+
+def _numbers(evaluation: Evaluation) -> tuple[float, float, float]:
+    """Minimum film thickness, m, refined peak pressure, Pa, and loss, W."""
+    q, film = evaluation.quantities(), evaluation.film
+    assert film is not None
+    return q["minimum_gap"], refined_peak(film)[0], q["power_loss"]
+
+
+def _load_at(model: BearingModel, motion: np.ndarray) -> float:
+    """Force of the steady film at a motion, N; nan without one."""
+    try:
+        evaluation, _ = evaluate_at(model, motion, "audit")
+    except FilmError:
+        return math.nan
+    return float(np.hypot(*evaluation.wrench[:2]))
+
+
+def _same_load(model: BearingModel, motion: np.ndarray, force: np.ndarray) -> Evaluation | None:
+    """The film where it exerts ``force`` (2,), N, near a motion; None if it is not found."""
+    for start in STARTS:
+        trial = motion.copy()
+        trial[:2] *= start
+        try:
+            _, residual, evaluation, _ = newton(model, trial, -force, TOLERANCE, "audit", MOST_STEPS)
+        except FilmError:
+            continue
+        if residual <= TOLERANCE:
+            return evaluation
+    return None
+
+
+def _same_motion(evaluation: Evaluation, force: np.ndarray, q: tuple[float, float, float]) -> Change | None:
+    """Change of a film that remembers, whose step can't be taken again elsewhere."""
+    if evaluation.status is not Status.CONVERGED:
+        return None
+    share = max(float(np.hypot(*evaluation.wrench[:2])) / float(np.hypot(*force)), 1e-12)
+    gap, peak, loss = (new / old if old > 0.0 else 1.0 for new, old in zip(_numbers(evaluation), q, strict=True))
+    gap, peak = gap * math.sqrt(share), peak / share
+    return Change(load=share - 1.0, minimum_gap=gap - 1.0, peak_pressure=peak - 1.0, power_loss=loss - 1.0)
