@@ -19,7 +19,7 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
 from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.balance.position import newton
+from exudyn_ehd.joint.balance.position import LoadSearch
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.quantities import refined_peak
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -28,8 +28,9 @@ from exudyn_ehd.status import FilmError, InputError, Status
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
-# Of the search for the same load: unbalance, steps from each start, and starts, shares of the eccentricity.
-TOLERANCE, MOST_STEPS, STARTS = 1e-4, 15, (1.0, 0.95, 0.7)
+# Of the search for the same load: unbalance, film solves, steps from each start, and starts, shares of the
+# eccentricity.
+TOLERANCE, EFFORT, MOST_STEPS, STARTS = 1e-4, 600, 15, (1.0, 0.95, 0.7)
 # Loads below it, over L D mu omega / psi^2, have no relative changes.
 NO_LOAD = 1e-6
 
@@ -137,15 +138,18 @@ def _load_at(model: BearingModel, motion: np.ndarray) -> float:
 
 def _same_load(model: BearingModel, motion: np.ndarray, force: np.ndarray) -> Evaluation | None:
     """The film where it exerts ``force`` (2,), N, near a motion; None if it is not found."""
+    search = LoadSearch(model, -force, "audit", EFFORT)
     for start in STARTS:
         trial = motion.copy()
         trial[:2] *= start
         try:
-            _, residual, evaluation, _ = newton(model, trial, -force, TOLERANCE, "audit", MOST_STEPS)
+            found = search.newton(search.at(trial), TOLERANCE, MOST_STEPS)
         except FilmError:
             continue
-        if residual <= TOLERANCE:
-            return evaluation
+        if search.residual(found) <= TOLERANCE:
+            if found.film.serial != model.parts.evaluations.count:
+                found = search.at(found.motion)
+            return found.evaluation
     return None
 
 

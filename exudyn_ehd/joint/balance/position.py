@@ -67,10 +67,12 @@ class LoadSearch:
         Load on the journal, N.
     where : str
         Who asks, for messages.
+    effort : int
+        Film solves after which it gives up.
     """
 
-    def __init__(self, model: BearingModel, force: np.ndarray, where: str) -> None:
-        self.model, self.force, self.where = model, force, where
+    def __init__(self, model: BearingModel, force: np.ndarray, where: str, effort: int = LARGEST_EFFORT) -> None:
+        self.model, self.force, self.where, self.effort = model, force, where, effort
         self.size = float(np.hypot(*force))
         self.count, self.first = 0, model.parts.evaluations.count
         self._history: History | None = None
@@ -108,7 +110,7 @@ class LoadSearch:
         return float(np.max(np.abs(place.unbalance))) / self.size
 
     def _spent(self) -> bool:
-        return self.model.parts.evaluations.count - self.first > LARGEST_EFFORT
+        return self.model.parts.evaluations.count - self.first > self.effort
 
     def at(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), which is kept."""
