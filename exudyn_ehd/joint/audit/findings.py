@@ -51,6 +51,21 @@ LIMITS = {
 }
 
 
+# Values beyond which an effect is plainly nothing, so that no other film is solved for it.
+PLAINLY_NOTHING = {
+    "elasticity": 0.01,
+    "profile": 0.01,
+    "piezoviscosity": 0.01,
+    "heating": 0.01,
+    "shear thinning": 0.2,
+    "roughness": 10.0,
+    "contact": 6.0,
+    "mass conservation": 1e-3,
+}
+# From here on the bore is plainly elastic; the search for its film at such loads is long.
+PLAINLY_ELASTIC = 5.0
+
+
 @dataclass(frozen=True, kw_only=True)
 class Finding:
     """What an audit says about one effect.
@@ -162,4 +177,35 @@ def finding(
         advice=advice,
         change=change,
         remedy=switch if advice else None,
+    )
+
+
+def judged(
+    case: Case,
+    effect: str,
+    indicator: str,
+    value: float,
+    on: bool | None,
+    switch: Switch,
+    *,
+    probe: Switch | None = None,
+    limit: Limit | None = None,
+    mattering: str = "",
+    needless: str | None = None,
+) -> Finding:
+    """A finding by the change that ``switch`` makes (seen by ``probe``), unless its value says enough."""
+    limit = LIMITS[effect] if limit is None else limit
+    nothing = PLAINLY_NOTHING.get(effect, 0.0)
+    plain = value > nothing if limit.below else value < nothing
+    plain = plain or (effect == "elasticity" and value > PLAINLY_ELASTIC)
+    return finding(
+        effect,
+        indicator,
+        value,
+        on,
+        limit=limit,
+        mattering=mattering,
+        needless=needless,
+        change=None if plain else case.films.change(switch if probe is None else probe),
+        switch=switch,
     )

@@ -1,0 +1,96 @@
+"""Indicators of the oil: its viscosity under pressure, heat and shear."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.joint.audit.findings import Case, Finding, judged
+from exudyn_ehd.joint.audit.switches import (
+    TYPICAL_PRESSURE_COEFFICIENT,
+    TYPICAL_SHEAR_ONSET,
+    TYPICAL_TEMPERATURE_COEFFICIENT,
+    heated,
+    isothermal,
+    isoviscous,
+    newtonian,
+    piezoviscous,
+    thinning,
+    warmer,
+)
+
+
+def piezoviscosity(case: Case) -> Finding:
+    """Viscosity under pressure."""
+    law = case.bearing.lubricant.pressure_law
+    alpha = TYPICAL_PRESSURE_COEFFICIENT if law is None else law.coefficient
+    return judged(
+        case,
+        "piezoviscosity",
+        f"alpha p_max, alpha = {alpha:g} 1/Pa",
+        alpha * case.largest("peak_pressure"),
+        law is not None,
+        piezoviscous if law is None else isoviscous,
+        mattering="give the lubricant pressure_law=RoelandsPressure(coefficient=...).",
+        needless="pressures are low: pressure_law=None.",
+    )
+
+
+def temperature_rise(case: Case) -> float:
+    """Adiabatic rise P / (rho c_p Q), K, averaged over a record.
+
+    Without flow through the bearing, that of one turn's Couette flow.
+    """
+    b, r = case.bearing, case.record
+    pairs = [(s.power_loss, s.flow, s.speed) for s in case.samples]
+    if r is not None and np.all(np.isfinite(r.leakage)):
+        speed = float(np.mean(np.abs(r.motion[:, 8]))) * b.journal_radius
+        pairs = [(float(np.mean(r.power_loss)), float(np.mean(r.leakage)), speed)]
+    rises = []
+    for power, flow, speed in pairs:
+        couette = 0.5 * speed * b.radial_clearance * b.length
+        flow = flow if flow > 1e-2 * couette else couette
+        rises.append(power / (b.lubricant.density * b.lubricant.specific_heat * flow) if flow > 0.0 else 0.0)
+    return max(0.0, *rises)
+
+
+def heating(case: Case) -> Finding:
+    """Change of viscosity by the film's own heat."""
+    b = case.bearing
+    law = b.lubricant.temperature_law
+    coefficient = TYPICAL_TEMPERATURE_COEFFICIENT
+    if law is not None:
+        T, rho = b.lubricant.temperature, b.lubricant.density
+        hot, cold = float(law.viscosity(T + 1.0, rho)), float(law.viscosity(T - 1.0, rho))
+        coefficient = 0.5 * abs(math.log(hot / cold))
+    rise = case.largest("rise") if b.thermal is not None else temperature_rise(case)
+    return judged(
+        case,
+        "heating",
+        f"{coefficient:.3g} 1/K x rise of {rise:.3g} K",
+        coefficient * rise,
+        b.thermal is not None,
+        heated if b.thermal is None else isothermal,
+        probe=warmer(rise, coefficient) if b.thermal is None and case.record is not None else None,
+        mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, "
+        "or the viscosity at its running temperature.",
+        needless="the film stays at its supply temperature: thermal=None.",
+    )
+
+
+def shear_thinning(case: Case) -> Finding:
+    """Largest shear rate against the onset of thinning."""
+    law = case.bearing.lubricant.shear_law
+    onset = TYPICAL_SHEAR_ONSET if law is None else law.onset
+    rate = max(s.speed / s.minimum_gap for s in case.samples)
+    return judged(
+        case,
+        "shear thinning",
+        f"U / minimum film thickness over its onset, {onset:g} 1/s",
+        rate / onset,
+        law is not None,
+        thinning if law is None else newtonian,
+        mattering="for a multigrade oil: shear_law=CarreauShear(...); a plain mineral oil does not thin yet.",
+        needless="shear rates are low: shear_law=None.",
+    )

@@ -1,0 +1,141 @@
+"""Indicators of the surfaces: elasticity, profile, roughness, contact, wear."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.samples import Sample
+from exudyn_ehd.joint.audit.switches import (
+    STEEL,
+    coarse_ring,
+    rigid,
+    rough,
+    roughness_height,
+    smooth,
+    steel_ring,
+    touching,
+    untouching,
+    unworn,
+)
+
+# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
+RING_COMPLIANCE = 0.7
+
+
+def elasticity(case: Case) -> Finding:
+    """Deflection of the bore: as it is, of a liner that is only asked about, or of a steel ring."""
+    b, liner = case.bearing, case.liner
+
+    def gap(s: Sample) -> float:
+        # surfaces that touch count as a thousandth of the clearance apart
+        return max(s.minimum_gap, 1e-3 * b.radial_clearance)
+
+    if b.bush is not None:
+        value = max(s.deflection / gap(s) for s in case.samples)
+        return judged(
+            case,
+            "elasticity",
+            "deflection / minimum film thickness",
+            value,
+            True,
+            rigid,
+            needless="the bush is stiff enough to be rigid: bush=None.",
+        )
+    ring = RING_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"]
+    compliance = ring if liner is None else liner.compliance
+    return judged(
+        case,
+        "elasticity",
+        f"deflection of {'a steel ring' if liner is None else 'the liner'} / minimum film thickness",
+        max(compliance * s.peak_pressure / gap(s) for s in case.samples),
+        False,
+        steel_ring if liner is None else lambda bearing: replace(bearing, bush=liner),
+        probe=coarse_ring if liner is None else None,
+        mattering="even steel gives way: give the bearing bush=ModalBush(...) of its housing."
+        if liner is None
+        else "give the bearing bush=ElasticLiner(...), or a bush with a mesh.",
+    )
+
+
+def shape(case: Case) -> Finding | None:
+    """Profile of the surfaces and worn depth."""
+    if not case.bearing.profiles:
+        return None
+    value = max(s.shape / s.minimum_gap for s in case.samples)
+    return judged(
+        case,
+        "profile",
+        "profile height / minimum film thickness",
+        value,
+        True,
+        lambda bearing: replace(bearing, profile=None),
+        needless="the film is much thicker than the profile: profile=None.",
+    )
+
+
+def _roughness_ratio(case: Case) -> float:
+    return case.smallest("minimum_gap") / roughness_height(case.bearing)
+
+
+def roughness(case: Case) -> Finding:
+    """Flow factors: film thickness over roughness."""
+    return judged(
+        case,
+        "roughness",
+        f"minimum film thickness / sigma, sigma = {roughness_height(case.bearing):g} m",
+        _roughness_ratio(case),
+        case.bearing.roughness is not None,
+        rough if case.bearing.roughness is None else smooth,
+        mattering="give the bearing roughness=PatirCheng(composite_roughness=...).",
+        needless="the film is thick next to the roughness: roughness=None.",
+    )
+
+
+def contact(case: Case) -> Finding:
+    """Load that the contacts carry, how often and when, or the film thickness at which there should be one."""
+    b, record = case.bearing, case.record
+    if b.contact is None and b.asperity is None:
+        return judged(
+            case,
+            "contact",
+            f"minimum film thickness / sigma, sigma = {roughness_height(b):g} m",
+            _roughness_ratio(case),
+            False,
+            touching,
+            limit=LIMITS["roughness"],
+            mattering="surfaces touch: asperity=GreenwoodTripp(...), or contact=RegularisedWall(...).",
+        )
+    share = max(s.contact_load / max(s.load, s.contact_load, 1e-300) for s in case.samples)
+    often = ""
+    if record is not None:
+        acting = record.contact_load > 1e-6 * case.largest("load")
+        often = f", acting in {np.mean(acting):.0%} of the steps"
+        if np.any(acting):
+            times, most = record.time[acting], record.time[int(np.nanargmax(record.contact_load))]
+            often += f", {times[0]:.4g} to {times[-1]:.4g} s, most at {most:.4g} s"
+    return finding(
+        "contact",
+        f"share of the load{often}",
+        share,
+        True,
+        needless="contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None."),
+        switch=untouching,
+    )
+
+
+def wear(case: Case) -> Finding | None:
+    """Wear goes with the contact's load, however small."""
+    if case.bearing.wear is None:
+        return None
+    touching = contact(case)
+    return finding(
+        "wear",
+        touching.indicator,
+        touching.value,
+        True,
+        needless="surfaces hardly touch, nothing wears: wear=None.",
+        switch=unworn,
+    )
