@@ -10,6 +10,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings
@@ -228,7 +229,7 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
     elements = [joint.element for joint in joints_of(mbs)]
     bodies = {int(node) for element in elements for side in element.sides for node in side.nodes}
     bushes = {int(node) for element in elements for node in getattr(element, "bore_nodes", ())} - bodies
-    return StartGuess(mbs, GapLimit(elements), before, bushes)
+    return StartGuess(mbs, GapLimit(elements), ForceTolerance(elements), before, bushes)
 
 
 def user_function(hook: Any) -> Any:

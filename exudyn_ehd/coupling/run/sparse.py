@@ -242,7 +242,7 @@ class _Newton:
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
-            if error <= max(newton.absoluteTolerance, newton.relativeTolerance * first):
+            if error <= max(solver.newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
                 self.excess += iteration - self.baseline

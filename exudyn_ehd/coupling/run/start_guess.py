@@ -28,6 +28,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 
 _CURRENT = exu.ConfigurationType.Current
@@ -47,6 +48,7 @@ class StartGuess:
     ----------
     mbs : exudyn.MainSystem
     limit : GapLimit
+    tolerance : ForceTolerance
     before : callable or None
         The user's own function, called after it.
     bushes : collection of int
@@ -54,9 +56,15 @@ class StartGuess:
     """
 
     def __init__(
-        self, mbs: exu.MainSystem, limit: GapLimit, before: UserFunction | None, bushes: Collection[int] = ()
+        self,
+        mbs: exu.MainSystem,
+        limit: GapLimit,
+        tolerance: ForceTolerance,
+        before: UserFunction | None,
+        bushes: Collection[int] = (),
     ) -> None:
         self.limit = limit
+        self.tolerance = tolerance
         self.before = before
         self.old_solver = mbs.sys.get("dynamicSolver")
         self.bushes = bushes
@@ -91,6 +99,7 @@ class StartGuess:
             expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
             self.start, self.attempts = start, 0
+            self.tolerance.set(solver)
         self.attempts += 1
         # a step that was refused is tried from Exudyn's start and from this one in turns
         if self.guess is None or self.attempts % 2 == 0:

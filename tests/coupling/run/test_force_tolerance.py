@@ -1,0 +1,74 @@
+"""Newton's tolerance against the rounding of positions: far from the origin, under meganewtons."""
+
+import math
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scenes
+from exudyn.utilities import RigidBodyInertia
+
+import exudyn_ehd as ehd
+
+LOAD, MASS, RADIUS, SPEED, STEPS = 1e6, 1e5, 0.3, 50.0, 120
+
+
+def rotor(place, solve, **newton):
+    """A rotor of 100 t under its weight and a fifth of it turning, for two thirds of a turn from its equilibrium."""
+    mbs = scenes.new_system()
+    journal = mbs.CreateRigidBody(
+        inertia=RigidBodyInertia(mass=MASS, inertiaTensor=0.5 * MASS * RADIUS**2 * np.eye(3)),
+        referencePosition=list(place),
+        initialAngularVelocity=[0, 0, SPEED],
+        nodeType=exu.NodeType.RotationRxyz,
+    )
+
+    def load(mbs, t, vector):
+        turning = 0.2 * LOAD * np.array([math.cos(SPEED * t), math.sin(SPEED * t)])
+        return [turning[0], turning[1] - LOAD, 0.0]
+
+    mbs.CreateForce(itemNumber=journal, loadVector=[0, -LOAD, 0], loadVectorUserFunction=load)
+    joint = ehd.CreateLubricatedJoint(
+        mbs,
+        name="rotor",
+        itemNumbers=[mbs.CreateGround(referencePosition=list(place)), journal],
+        position=list(place),
+        axis=[0, 0, 1],
+        bearing=ehd.JournalBearing(
+            journal_radius=RADIUS,
+            length=0.3,
+            radial_clearance=3e-4,
+            lubricant=ehd.Lubricant(viscosity=0.05),
+            film=ehd.FiniteLength(n_theta=48, n_z=6),
+        ),
+        axial=ehd.Held(),
+    )
+    mbs.Assemble()
+    joint.place_in_equilibrium(load=(0.2 * LOAD, -LOAD))
+    settings = ehd.ConfigureSolver(scenes.settings(STEPS * 2.0 * math.pi / SPEED / 180, STEPS))
+    for name, value in newton.items():
+        setattr(settings.timeIntegration.newton, name, value)
+    solve(mbs, settings)
+    solver = mbs.sys["dynamicSolver"]
+    assert settings.timeIntegration.newton.absoluteTolerance == newton.get("absoluteTolerance", 1e-8)
+    return joint.history, solver
+
+
+@pytest.mark.parametrize("solve", [ehd.SolveDynamic, ehd.SolveDynamicSparse])
+def test_no_step_is_halved_far_from_the_origin(solve):
+    near, _ = rotor((0, 0, 0), lambda mbs, settings: mbs.SolveDynamic(settings))
+    for place in ((0, 20, 0), (-70, 10, 80)):
+        far, _ = rotor(place, solve)
+        assert far.time.size == STEPS + 1
+        assert np.abs(far.force - near.force)[:, :2].max() < 1e-6 * LOAD
+
+
+def test_tolerance_is_a_share_of_the_forces_or_what_the_user_has_set():
+    level = 0.1 * 1e-6 * LOAD
+    assert rotor((0, 0, 0), ehd.SolveDynamic)[1].newton.absoluteTolerance == pytest.approx(level, rel=0.3)
+    assert rotor((0, 0, 0), ehd.SolveDynamic, absoluteTolerance=2.0)[1].newton.absoluteTolerance == 2.0
+    # of six coordinates and the multiplier that holds the axis
+    each = rotor((0, 0, 0), ehd.SolveDynamic, weightTolerancePerCoordinate=True)[1].newton.absoluteTolerance
+    assert each == pytest.approx(level / math.sqrt(7.0), rel=0.3)
+    # a residual in coordinates
+    assert rotor((0, 0, 0), ehd.SolveDynamic, residualMode=1)[1].newton.absoluteTolerance == 1e-8
