@@ -13,6 +13,7 @@ reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input
+plausible  which sizes an argument can have, for all of them in one table
 
 Conventions
 -----------
@@ -58,10 +59,12 @@ from exudyn_ehd.status import (
     FilmError,
     InputError,
     MemoryWarning,
+    PlausibilityWarning,
     RingingWarning,
     RunError,
     StarvationWarning,
     Status,
+    ThinFilmWarning,
 )
 
 __version__ = "0.1.0"
@@ -183,6 +186,7 @@ __all__ = [
     "OutOfRound",
     "PatirCheng",
     "Periodic",
+    "PlausibilityWarning",
     "Pocket",
     "ProfileTable",
     "Quantity",
@@ -210,6 +214,7 @@ __all__ = [
     "SurfaceLoad",
     "SwiftStieber",
     "SystemState",
+    "ThinFilmWarning",
     "VogelTemperature",
     "WaltherTemperature",
     "add_bore_modes",

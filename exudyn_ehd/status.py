@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import enum
 import math
+import sys
+import warnings
 from collections.abc import Sequence
 from operator import ge, gt, le, lt
 
 import numpy as np
+
+from exudyn_ehd.plausible import doubt
 
 
 class Status(enum.IntEnum):
@@ -70,6 +74,47 @@ class StarvationWarning(UserWarning):
     """The film of a joint has lost its oil through the ends, and nothing brings it back."""
 
 
+class ThinFilmWarning(UserWarning):
+    """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact."""
+
+
+class PlausibilityWarning(UserWarning):
+    """An argument has a size that bearings do not have; most likely it is in another unit."""
+
+
+def warn_user(text: str, kind: type[Warning]) -> None:
+    """Warn at the line of the caller's scene, however deep inside the package this is called."""
+    frame, level = sys._getframe(1), 3
+    while frame.f_back is not None and _is_own(frame.f_back.f_globals.get("__name__", "")):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(text, kind, stacklevel=level)
+
+
+def _is_own(module: str) -> bool:
+    return module.partition(".")[0] in (__name__.partition(".")[0], "dataclasses")
+
+
+def require_plausible(where: str, value: object, size: float | np.ndarray | None = None) -> None:
+    """Warn of a size that bearings do not have, and raise `InputError` beyond all reason; see `plausible`.
+
+    Parameters
+    ----------
+    where : str
+        ``Class.argument``, as in the table.
+    value : object
+        What the user gave.
+    size : float or array, optional
+        What is judged in place of ``value``, which then is only named; of arrays the largest number.
+    """
+    judged = np.abs(np.asarray(value if size is None else size, dtype=float))
+    largest = float(judged.max(initial=0.0))
+    said = doubt(where, value if size is not None or judged.size < 4 else f"up to {largest:g}", largest)
+    if said is not None and said[1]:
+        raise InputError(said[0])
+    if said is not None:
+        warn_user(said[0], PlausibilityWarning)
+
+
 def require_number(
     where: str,
     value: float,
@@ -113,6 +158,7 @@ def require_number(
     broken = [text for text, bound, holds in bounds if not holds(number, bound)]
     if broken or not math.isfinite(number):
         raise InputError(f"{where} must be {broken[0] if broken else expected}{unit}, got {value!r}{tail}")
+    require_plausible(where, value, number)
     return number
 
 
@@ -159,6 +205,7 @@ def require_vector(where: str, value: Sequence[float] | np.ndarray, size: int, u
         raise InputError(f"{where} {expected}, got {value!r}.") from None
     if vector.shape != (size,) or not np.all(np.isfinite(vector)):
         raise InputError(f"{where} {expected}, got {value!r}.")
+    require_plausible(where, value, vector)
     return vector
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import inspect
+import math
 
 import exudyn_ehd as ehd
 from exudyn_ehd.bearing import _OPTIONS
 from exudyn_ehd.film.lubricant import lubricant
+from exudyn_ehd.plausible import ARGUMENTS, KINDS
 
 LAWS = {name: lubricant.LAWS[name] for name in ("pressure_law", "shear_law", "density_law")}
 
@@ -27,12 +29,21 @@ def specs():
     ]
 
 
+def usual(argument):
+    """A size in the middle of an argument's plausible range."""
+    kind = KINDS.get(ARGUMENTS.get(argument))
+    return 0.5 if kind is None else math.sqrt(kind.low * kind.high) or 0.1 * kind.high
+
+
 def by_itself(spec):
-    """An example with 0.5 for everything that must be given; None if that is not enough."""
+    """An example with the middle of its plausible range for everything that must be given; None if not enough.
+
+    Numbers without a dimension get 0.5.
+    """
     fields = dataclasses.fields(spec)
     needed = [f.name for f in fields if f.default is f.default_factory is dataclasses.MISSING]
     try:
-        return spec(**dict.fromkeys(needed, 0.5))
+        return spec(**{name: usual(f"{spec.__name__}.{name}") for name in needed})
     except (ehd.InputError, TypeError):
         return None
 

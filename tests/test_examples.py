@@ -6,7 +6,10 @@ import math
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.usefixtures("tidy_pictures")
+pytestmark = [
+    pytest.mark.usefixtures("tidy_pictures"),
+    pytest.mark.filterwarnings("error::exudyn_ehd.PlausibilityWarning"),
+]
 
 
 def test_slider_crank(example, tmp_path):

@@ -20,6 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from exudyn_ehd.status import require_number
+
 
 class Mesh(NamedTuple):
     """Metric of a `FilmGrid`, as arrays of the same names.
@@ -203,6 +205,9 @@ def bearing_grid(
     open_ring : bool
         True: the first column carries a prescribed pressure (the film starts there).
     """
+    for name, value in (("radius", radius), ("length", length)):
+        require_number(f"bearing_grid: {name}", value, "m", above=0.0)
+    require_number("bearing_grid: start_angle", start_angle, "rad")
     step = 2.0 * math.pi / n_theta
     theta = start_angle + step * np.arange(n_theta)
     z, weight_z = axial_vertices(n_z, 0.5 * length / radius, stretch)
@@ -271,6 +276,8 @@ def slider_grid(
         Scale of all lengths, m; default ``length``.
     """
     scale = length if reference_length is None else reference_length
+    for name, value in (("length", length), ("width", width), ("reference_length", scale)):
+        require_number(f"slider_grid: {name}", value, "m", above=0.0)
     step = length / scale / n_x
     x = np.concatenate(([0.0], step * (np.arange(n_x) + 0.5), [length / scale]))
     cell = np.concatenate(([0.0], np.full(n_x, step), [0.0]))

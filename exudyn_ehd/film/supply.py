@@ -213,6 +213,7 @@ def check_supply(
     """Raise `InputError` for areas without a vertex of the film grid, or that overlap at different pressures."""
     masks = []
     for k, area in enumerate(supply):
+        _check_extent(k, area, radius, length)
         mask = _covered(area, radius, length, n_theta, n_z, stretch)
         if not mask.any():
             raise InputError(
@@ -227,6 +228,20 @@ def check_supply(
                     f"JournalBearing.supply[{i}] and [{k}] overlap with different pressures, {supply[i].pressure:g} "
                     f"and {area.pressure:g} Pa; give overlapping areas one pressure or move them apart."
                 )
+
+
+def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> None:
+    """Refuse holes wider than the journal, and other areas that are far longer than the bearing."""
+    if isinstance(area, Hole):
+        size, limit, whose = area.diameter, 2.0 * radius, "diameter"
+    else:
+        given = area.width if isinstance(area, CircumferentialGroove) else area.length
+        size, limit, whose = given or 0.0, 2.0 * length, "length"
+    if size > limit:
+        raise InputError(
+            f"JournalBearing.supply[{k}]: {area!r} is larger than the bearing with its {whose} of "
+            f"{2.0 * radius if whose == 'diameter' else length:g} m; all lengths are in m."
+        )
 
 
 def _covered(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: int, stretch: float) -> np.ndarray:

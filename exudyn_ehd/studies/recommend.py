@@ -128,6 +128,8 @@ def recommend(
     require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative.")
     if not isinstance(bearing, JournalBearing):
         raise InputError(f"recommend: expected a JournalBearing, got {bearing!r}.")
+    if speed is not None:
+        require_number("recommend: speed", speed, "rad/s")
     if eccentricity_ratio is None:
         raise InputError("recommend: a bearing needs eccentricity_ratio, a number or (lowest, highest).")
     low, high = eccentricity_ratio if isinstance(eccentricity_ratio, tuple) else (eccentricity_ratio,) * 2

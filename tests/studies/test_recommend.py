@@ -60,8 +60,8 @@ def _rigid(ratio, kappa):
 
 
 def _liner(ratio, kappa):
-    liner = ehd.ElasticLiner(thickness=0.003, youngs_modulus=1.0)
-    modulus = elasticity_parameter(_bearing(ratio), liner.compliance, SPEED) / kappa
+    liner = ehd.ElasticLiner(thickness=0.003, youngs_modulus=1e9)
+    modulus = 1e9 * elasticity_parameter(_bearing(ratio), liner.compliance, SPEED) / kappa
     return _bearing(ratio, bush=dataclasses.replace(liner, youngs_modulus=modulus))
 
 

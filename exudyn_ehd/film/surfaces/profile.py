@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.interpolate import PchipInterpolator, RectBivariateSpline
 
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_plausible
 
 # Of given points (m or rad), far beyond any machine's: where slopes between them overflow.
 LARGEST_SIZE, SMALLEST_STEP = 1e6, 1e-12
@@ -217,6 +217,7 @@ def _finite(where: str, values: object) -> np.ndarray:
         raise InputError(f"{where} must be finite, got {values!r}; fill the gaps of a measured table first.")
     if np.any(np.abs(array) > LARGEST_SIZE):
         raise InputError(f"{where} must not exceed {LARGEST_SIZE:g} in size, got {values!r}; give metres and radians.")
+    require_plausible(where, values, array)
     return array
 
 

@@ -15,7 +15,7 @@ from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
-from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_vector
+from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_plausible, require_vector
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +104,7 @@ def solve_film(
     """
     gap = np.asarray(gap, dtype=float)
     closure = SwiftStieber() if cavitation is None else cavitation
-    _check_film(grid, gap, gap_rate, closure, history, step)
+    _check_film(grid, gap, gap_rate, closure, boundary, history, step)
     if lubricant.shear_law is not None:
         raise InputError(
             f"solve_film: the lubricant's shear_law must be None, got {lubricant.shear_law!r}; shear thinning needs "
@@ -166,6 +166,7 @@ def _check_film(
     gap: np.ndarray,
     gap_rate: np.ndarray | None,
     closure: Closure,
+    boundary: float | np.ndarray,
     history: np.ndarray | None,
     step: float,
 ) -> None:
@@ -174,6 +175,9 @@ def _check_film(
     for name, field_ in (("gap_rate", gap_rate), ("history", history)):
         if field_ is not None and np.shape(field_) != grid.shape:
             raise InputError(f"solve_film: {name} must have shape {grid.shape}, got {np.shape(field_)}.")
+    for name, given in (("gap", gap), ("gap_rate", gap_rate), ("history", history), ("boundary", boundary)):
+        if given is not None:
+            require_plausible(f"solve_film: {name}", f"up to {np.max(np.abs(given)):g}", given)
     if history is None:
         return
     require_number("solve_film: step", step, "s", above=0.0, hint="it is the time since the history.")

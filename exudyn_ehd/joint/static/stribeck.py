@@ -13,7 +13,7 @@ from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_oil
-from exudyn_ehd.status import FilmError, InputError, require_number
+from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible
 
 LARGEST_HALVINGS = 8
 # Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
@@ -102,6 +102,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         raise InputError(
             f"stribeck: speeds must be finite numbers > 0 rad/s, got {speeds!r}; np.geomspace(...) spreads them well."
         )
+    require_plausible("stribeck: speeds", speeds, values)
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("stribeck: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "stribeck")

@@ -101,8 +101,8 @@ def cell_bearing(
         return plain
     thickness = THICKNESS * RADIUS
     if kind == "liner":
-        liner = ElasticLiner(thickness=thickness, youngs_modulus=1.0)
-        modulus = elasticity_parameter(plain, liner.compliance, SPEED) / elasticity
+        liner = ElasticLiner(thickness=thickness, youngs_modulus=1e9)
+        modulus = 1e9 * elasticity_parameter(plain, liner.compliance, SPEED) / elasticity
         return dataclasses.replace(plain, bush=dataclasses.replace(liner, youngs_modulus=modulus))
     modulus = elasticity_parameter(plain, bore_compliance(thickness, RADIUS, 1.0, 0.3), SPEED) / elasticity
     bush = ModalBush(

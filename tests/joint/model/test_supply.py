@@ -186,9 +186,8 @@ def test_groove_up_to_the_ends_feeds_what_leaks_without_mass_conservation():
     assert film.supply_flows.sum() == pytest.approx(film.leakage, rel=1e-11)
 
 
-@pytest.mark.parametrize(
-    "options", [{"end_pressures": (0.0, 1e300)}, {"supply": (ehd.Hole(angle=0.0, diameter=2e-3, pressure=1e300),)}]
-)
-def test_pressures_beyond_any_bearing_are_refused_by_name(options, make_bearing):
-    with pytest.raises(ehd.InputError, match=f"JournalBearing.{next(iter(options))}: pressures must be within"):
-        make_bearing(**options)
+def test_pressures_beyond_any_bearing_are_refused_by_name(make_bearing):
+    with pytest.raises(ehd.InputError, match=r"JournalBearing\.end_pressures must be within"):
+        make_bearing(end_pressures=(0.0, 1e300))
+    with pytest.raises(ehd.InputError, match=r"Hole\.pressure must be within"):
+        ehd.Hole(angle=0.0, diameter=2e-3, pressure=1e300)

@@ -1,0 +1,279 @@
+"""Which sizes an argument can have: one table of all arguments with a physical dimension.
+
+A value in another unit (mm, GPa, degrees, bar) is a thousand or a million times off, and mostly gives a film all the
+same. Between the plausible range and the limits a value warns, beyond the limits it is refused. Plausible is what
+bearings have, from a watch's pivot to a ship's shaft, from gels to ceramics, from liquid gases to cold grease; limits
+are far from all of it. Both are of the size: signs are the arguments' own matter, and 0 has no unit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Kind(NamedTuple):
+    """A physical quantity: its unit, what is plausible, and what is refused.
+
+    Parameters
+    ----------
+    unit : str
+    refused_below, low, high, refused_above : float
+        Sizes in that unit; between ``low`` and ``high`` nothing is said.
+    others : tuple of (str, float)
+        Units that are taken by mistake, the likeliest first, in ``unit``.
+    note : str
+        A last sentence for the message.
+    """
+
+    unit: str
+    refused_below: float
+    low: float
+    high: float
+    refused_above: float
+    others: tuple[tuple[str, float], ...] = ()
+    note: str = ""
+
+
+_SMALL = (("mm", 1e-3), ("micrometres", 1e-6))
+_FINE = (("micrometres", 1e-6), ("mm", 1e-3), ("nm", 1e-9))
+_STRESS = (("GPa", 1e9), ("MPa", 1e6))
+_PRESSURE = (("bar", 1e5), ("MPa", 1e6), ("GPa", 1e9))
+_DEGREES = (("degrees", 0.017453292519943295),)
+_KELVIN = "0 degrees Celsius are 273.15 K"
+_RADIANS = "use math.radians for degrees"
+_TURN = 6.2832
+
+KINDS: dict[str, Kind] = {
+    "size": Kind("m", 1e-7, 1e-5, 3.0, 10.0, _SMALL),
+    "length": Kind("m", 1e-7, 1e-5, 5.0, 10.0, _SMALL),
+    "grid": Kind("m", 0.0, 1e-6, 10.0, 1e3, _SMALL),
+    "part": Kind("m", 1e-8, 1e-6, 0.5, 3.0, _SMALL),
+    "place along z": Kind("m", 0.0, 0.0, 3.0, 10.0, _SMALL),
+    "place": Kind("m", 0.0, 0.0, 1e5, 1e9),
+    "clearance": Kind("m", 1e-9, 1e-8, 5e-3, 0.1, _FINE),
+    "gap": Kind("m", 0.0, 1e-10, 0.01, 1e3, _FINE),
+    "form": Kind("m", 0.0, 1e-10, 2e-3, 0.05, _FINE),
+    "roughness": Kind("m", 1e-11, 1e-9, 3e-5, 1e-3, _FINE),
+    "wall": Kind("m", 1e-12, 1e-9, 1e-3, 0.01, _FINE),
+    "layer": Kind("m", 1e-9, 1e-7, 0.1, 1.0, _SMALL),
+    "angle": Kind("rad", 0.0, 0.0, _TURN, 2.0 * _TURN, _DEGREES, _RADIANS),
+    "angles": Kind("rad", 0.0, 0.0, 2.0 * _TURN, 1e3, _DEGREES, _RADIANS),
+    "width": Kind("rad", 1e-9, 1e-4, 4.5, _TURN, _DEGREES, _RADIANS),
+    "tilt": Kind("rad", 0.0, 0.0, 0.05, 1.0, _DEGREES, _RADIANS),
+    "viscosity": Kind(
+        "Pa s",
+        0.0,
+        1e-4,
+        10.0,
+        1e4,
+        (("mPa s", 1e-3),),
+        "mineral oils have 0.005 to 1; gases are compressible, which these films are not",
+    ),
+    "oil density": Kind("kg/m3", 10.0, 500.0, 3000.0, 3e4, (("g/cm3", 1e3),)),
+    "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, (("g/cm3", 1e3), ("t/mm3", 1e12))),
+    "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, (("kJ/(kg K)", 1e3),)),
+    "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, note=_KELVIN),
+    "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, note=_KELVIN),
+    "pressure": Kind("Pa", 0.0, 50.0, 2e8, 5e9, _PRESSURE, "it is a gauge pressure"),
+    "cavity pressure": Kind("Pa", 0.0, 50.0, 1e7, 1e10, _PRESSURE, "it is a gauge pressure, vacuum is -1e5"),
+    "stress": Kind("Pa", 0.0, 1.0, 1e10, 1e13, _STRESS),
+    "wall pressure": Kind("Pa", 1e3, 1e5, 1e12, 1e14, _STRESS),
+    "modulus": Kind("Pa", 1e3, 5e5, 2e12, 1e18, _STRESS),
+    "pressure coefficient": Kind("1/Pa", 0.0, 0.0, 1e-5, 1e-4, (("1/GPa", 1e-9), ("1/MPa", 1e-6))),
+    "compressibility": Kind("1/Pa", 0.0, 0.0, 1e-8, 1e-6, (("1/GPa", 1e-9),)),
+    "law's pressure": Kind("Pa", 1e5, 1e7, 1e10, 1e12, _STRESS),
+    "temperature coefficient": Kind("1/K", 0.0, 1e-5, 0.2, 2.0),
+    "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
+    "relaxation time": Kind("s", 1e-18, 1e-11, 10.0, 1e5, (("microseconds", 1e-6),)),
+    "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
+    "rate": Kind("1/s", 0.0, 0.0, 1e7, 1e12),
+    "damping time": Kind("s", 0.0, 0.0, 1.0, 1e3),
+    "sliding speed": Kind("m/s", 0.0, 0.0, 10.0, 1e3, (("mm/s", 1e-3),)),
+    "surface speed": Kind("m/s", 0.0, 0.0, 1e3, 1e6, (("mm/s", 1e-3),)),
+    "velocity": Kind("m/s", 0.0, 0.0, 1e4, 3e8, (("mm/s", 1e-3),)),
+    "acceleration": Kind("m/s2", 0.0, 0.0, 1e4, 1e9, (("mm/s2", 1e-3),)),
+    "spin": Kind("rad/s", 0.0, 0.0, 1e5, 1e9, (("rev/min", 0.10471975511965977),)),
+    "wear rate": Kind("m2/N", 0.0, 0.0, 1e-10, 1e-8, (("mm3/(N m)", 1e-9), ("mm2/N", 1e-6))),
+    "force": Kind("N", 0.0, 0.0, 1e9, 1e15),
+    "line force": Kind("N/m", 0.0, 0.0, 1e10, 1e14),
+    "heat conductance": Kind("W/K", 0.0, 0.0, 1e6, 1e12),
+    "heat capacity": Kind("J/K", 0.0, 0.0, 1e8, 1e14),
+    "heat transfer": Kind("W/(m2 K)", 0.0, 0.0, 1e7, 1e14),
+    "conductivity": Kind("W/(m K)", 1e-4, 5e-3, 500.0, 1e5),
+}
+
+_ARGUMENTS: dict[str, tuple[str, ...]] = {
+    "size": (
+        "JournalBearing.journal_radius",
+        "HollowCylinder.inner_radius",
+        "HollowCylinder.thickness",
+        "mesh_from_arrays.bore_radius",
+        "mesh_from_fem.bore_radius",
+        "add_bore_modes.radius",
+    ),
+    "length": ("JournalBearing.length", "HollowCylinder.length", "add_bore_modes.length"),
+    "grid": (
+        "bearing_grid.radius",
+        "bearing_grid.length",
+        "slider_grid.length",
+        "slider_grid.width",
+        "slider_grid.reference_length",
+    ),
+    "part": (
+        "AxialGroove.length",
+        "CircumferentialGroove.width",
+        "Hole.diameter",
+        "Pocket.length",
+        "EdgeRelief.relief_length",
+    ),
+    "place along z": (
+        "CircumferentialGroove.z",
+        "Hole.z",
+        "Pocket.z",
+        "AxialProfile.positions",
+        "ProfileTable.positions",
+    ),
+    "place": (
+        "CreateLubricatedJoint.position",
+        "CreateFlexibleBush.position",
+        "add_bore_modes.position",
+        "mesh_from_arrays.origin",
+    ),
+    "clearance": ("JournalBearing.radial_clearance",),
+    "gap": ("solve_film.gap", "solve_film.history"),
+    "form": (
+        "OutOfRound.amplitude",
+        "Crown.drop",
+        "EdgeRelief.drop",
+        "AxialProfile.depths",
+        "ProfileTable.depths",
+    ),
+    "roughness": ("GreenwoodTripp.composite_roughness", "PatirCheng.composite_roughness"),
+    "wall": ("RegularisedWall.onset",),
+    "layer": ("ElasticLiner.thickness",),
+    "angle": (
+        "AxialGroove.angle",
+        "Hole.angle",
+        "Pocket.angle",
+        "OutOfRound.phase",
+        "bearing_grid.start_angle",
+        "steady.direction",
+    ),
+    "angles": ("ProfileTable.angles",),
+    "width": ("AxialGroove.width_angle", "Pocket.width_angle"),
+    "tilt": ("steady.tilt", "equilibrium.tilt"),
+    "viscosity": ("Lubricant.viscosity",),
+    "oil density": ("Lubricant.density",),
+    "density": ("SaintVenantKirchhoff.density",),
+    "specific heat": ("Lubricant.specific_heat",),
+    "temperature": (
+        "Lubricant.temperature",
+        "LumpedThermal.supply_temperature",
+        "LumpedThermal.housing_temperature",
+        "LumpedThermal.initial_temperature",
+        "FilmEnergy.supply_temperature",
+        "FilmEnergy.bush_temperature",
+        "FilmEnergy.journal_temperature",
+        "FilmEnergy.initial_temperature",
+    ),
+    "oil temperature": (
+        "oil.temperature",
+        "Lubricant.at.temperature",
+        "ReynoldsTemperature.point",
+        "VogelTemperature.first",
+        "VogelTemperature.second",
+        "WaltherTemperature.first",
+        "WaltherTemperature.second",
+    ),
+    "pressure": (
+        "JournalBearing.end_pressures",
+        "AxialGroove.pressure",
+        "CircumferentialGroove.pressure",
+        "Hole.pressure",
+        "Pocket.pressure",
+        "solve_film.boundary",
+    ),
+    "cavity pressure": (
+        "Gumbel.cavity_pressure",
+        "SwiftStieber.cavity_pressure",
+        "ElrodAdams.cavity_pressure",
+    ),
+    "stress": ("SurfaceLoad.traction", "DeadPressure.pressure", "FollowerPressure.pressure"),
+    "wall pressure": ("RegularisedWall.pressure",),
+    "modulus": (
+        "SaintVenantKirchhoff.youngs_modulus",
+        "ElasticLiner.youngs_modulus",
+        "GreenwoodTripp.composite_modulus",
+        "composite_modulus.youngs_moduli",
+    ),
+    "pressure coefficient": (
+        "BarusPressure.coefficient",
+        "RoelandsPressure.coefficient",
+    ),
+    "compressibility": ("DowsonHigginson.coefficient", "DowsonHigginson.saturation"),
+    "law's pressure": ("RoelandsPressure.reference_pressure",),
+    "temperature coefficient": ("ReynoldsTemperature.coefficient", "WaltherTemperature.expansion"),
+    "pole": ("VogelTemperature.pole",),
+    "relaxation time": ("CarreauShear.relaxation_time",),
+    "time": (
+        "JointHistory.revolutions.period",
+        "LubricatedJoint.revolutions.period",
+        "LubricatedJoint.record_films.period",
+        "solve_film.step",
+    ),
+    "rate": ("Rayleigh.mass_rate",),
+    "damping time": ("Rayleigh.stiffness_time",),
+    "sliding speed": ("GreenwoodTripp.transition_speed",),
+    "surface speed": ("steady.velocity", "steady.axial_speed", "solve_film.surface_speed", "solve_film.gap_rate"),
+    "velocity": ("CreateFlexibleBush.initialVelocity",),
+    "acceleration": ("CreateLubricatedJoint.bushGravity", "Gravity.acceleration"),
+    "spin": (
+        "steady.speed",
+        "equilibrium.speed",
+        "stribeck.speeds",
+        "recommend.speed",
+        "LubricatedJoint.place_in_equilibrium.speed",
+        "CreateFlexibleBush.initialAngularVelocity",
+    ),
+    "wear rate": ("ArchardWear.wear_rate",),
+    "force": (
+        "equilibrium.load",
+        "stribeck.load",
+        "LubricatedJoint.place_in_equilibrium.load",
+    ),
+    "line force": ("LineLoad.force_per_length",),
+    "heat conductance": ("LumpedThermal.housing_conductance",),
+    "heat capacity": ("LumpedThermal.capacity",),
+    "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
+    "conductivity": ("FilmEnergy.conductivity",),
+}
+
+ARGUMENTS: dict[str, str] = {argument: kind for kind, group in _ARGUMENTS.items() for argument in group}
+
+
+def doubt(where: str, value: object, size: float) -> tuple[str, bool] | None:
+    """What to say about the size of an argument, and whether it is refused; None where nothing is to be said.
+
+    Parameters
+    ----------
+    where : str
+        ``Class.argument`` or ``function: argument``, as in messages.
+    value : object
+        As given, for the message.
+    size : float
+        Its size in the unit of the table.
+    """
+    name = ARGUMENTS.get(where.replace(": ", ".").replace(" ", "."))
+    if name is None or size == 0.0:
+        return None
+    kind = KINDS[name]
+    if kind.low <= size <= kind.high:
+        return None
+    meant = ((unit, factor * size) for unit, factor in kind.others if kind.low <= factor * size <= kind.high)
+    advice = next((f"if it is in {unit}, give {number:.3g}." for unit, number in meant), "check its unit.")
+    usual = f"{kind.low:g} to {kind.high:g}" if kind.low else f"up to {kind.high:g}"
+    text = f"bearings have {usual} {kind.unit}; {advice}" + (f" ({kind.note})" if kind.note else "")
+    if kind.refused_below <= size <= kind.refused_above:
+        return f"{where}: {value!r} {kind.unit} is unusual, {text}", False
+    limits = f"{kind.refused_below:g} and {kind.refused_above:g} {kind.unit}"
+    return f"{where} must be within {limits} in size, got {value!r}; {text}", True
