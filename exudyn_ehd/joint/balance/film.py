@@ -49,9 +49,16 @@ def evaluate_at(
     """
     evaluation = model.evaluate_steady(motion, history_at(model, motion, where, near))
     if evaluation.film is None or evaluation.status is not Status.CONVERGED:
+        remedy = advice(evaluation.status, model.bearing)
+        if model.flexible and evaluation.status in (Status.NOT_CONVERGED, Status.NO_FILM):
+            remedy = (
+                f"no shape of the {type(model.bearing.bush).__name__}'s bore was found in balance with a film, neither "
+                "by Newton's method nor on the way of a viscous bore from its undeformed shape; thicken what is thin "
+                "in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the film's grid."
+            )
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
             f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
-            f"{advice(evaluation.status, model.bearing)}"
+            f"{remedy}"
         )
     return evaluation, evaluation.film

@@ -5,13 +5,18 @@ The bore's coordinates in equilibrium with the film, and the tangent of a bore t
 With the bush's stiffness K the residual is ``r(q) = K q - Q(q)``; Newton with the exact ``K - dQ/dq``. A pressure
 falls with the gap it opens, and falls the less the wider the gap: from a small q on Newton's steps stop short of the
 solution and stay on the safe side.
+
+A bore with thin parts that the film bends or tilts, as tongues and pads, has several equilibria, and Newton's method
+jumps between them or nowhere. Where it does not go straight to one, the one counts to which the bore comes from where
+it is undeformed if it moves as slowly as a viscous one, ``K (q + tau dq/dt) = Q(q)``: backward Euler, each step with
+the tau over time h that the last one's success allows, and Newton's method from where the motion dies down.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Generic, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
@@ -19,9 +24,24 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
-LARGEST_SETTLING_STEPS = 60
-SETTLING_TOLERANCE = 1e-11
 SMALLEST_PART = 1e-3
+# Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
+# trials after which no way is begun or gone on.
+SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
+
+
+class Way(NamedTuple):
+    """How Newton's method may go.
+
+    Steps, trials of each, of which each halves the last one's step, and the residual over the load at its end.
+    """
+
+    steps: int = 60
+    trials: int = 12
+    tolerance: float = 1e-11
+
+
+LONG, STRAIGHT, SHORT = Way(), Way(trials=1), Way(steps=10, tolerance=1e-5)
 
 
 class Elasticity:
@@ -90,13 +110,11 @@ def bore_equilibrium(
     of Newton trials.
     """
     newton = Newton(model, motion, film)
-    found = newton.solve(start, 1.0)
-    if found is None and start.any():
-        found = newton.solve(np.zeros_like(start), 1.0)
-    reached, part, q = 0.0, 0.5, np.zeros_like(start)
+    found = newton.solve(start, 1.0, STRAIGHT) if start.any() else None
+    reached, part, q = 0.0, 1.0, np.zeros_like(start)
     while found is None and part > SMALLEST_PART:
         target = min(1.0, reached + part)
-        near = newton.solve(q, target)
+        near = newton.settle(q, target)
         if near is None:
             part *= 0.5
         elif target == 1.0:
@@ -117,9 +135,35 @@ class Newton(Generic[Result]):
         self.model, self.motion, self.film = model, motion, film
         self.trials = 0
 
-    def solve(self, q: np.ndarray, part: float) -> Result | None:
-        """Equilibrium from coordinates q (k,) with the pose scaled by ``part``; None if none was found."""
-        model, elasticity, k = self.model, self.model.elasticity, q.size
+    def settle(self, q: np.ndarray, part: float) -> Result | None:
+        """As `solve`: straight, or as a viscous bore comes there from q, or somehow."""
+        found = self.solve(q, part, STRAIGHT)
+        if found is None and self.trials < LARGEST_EFFORT:
+            found = self._come_to_rest(q, part) or self.solve(q, part)
+        return found
+
+    def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
+        slowness, start = SLOWEST, self.trials
+        while slowness < LARGEST_SLOWNESS and self.trials - start < LARGEST_EFFORT:
+            near = self.solve(q, part, SHORT, slowness)
+            if near is None:
+                slowness *= 4.0
+                continue
+            new = near.bore.coordinates.copy()
+            moved, size = np.linalg.norm(new - q), np.linalg.norm(new)
+            found = self.solve(new, part) if moved <= NEAR * size else None
+            if found is not None and np.linalg.norm(found.bore.coordinates - new) <= 5.0 * NEAR * size:
+                return found
+            q, slowness = new, slowness / 3.0
+        return None
+
+    def solve(self, q: np.ndarray, part: float, way: Way = LONG, slowness: float = 0.0) -> Result | None:
+        """Equilibrium from coordinates q (k,) with the pose scaled by ``part``; None if none was found.
+
+        With a slowness s, tau over the time of a step, what a viscous bore has reached after the step:
+        ``K (q' + s (q' - q)) = Q(q')``.
+        """
+        model, elasticity, k, old, held = self.model, self.model.elasticity, q.size, q, 1.0 + slowness
         full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(k)))
         full[:4] *= part
         evaluation = model.evaluate(full, *self.film)
@@ -128,19 +172,20 @@ class Newton(Generic[Result]):
         scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
         residual = evaluation.bore.load - elasticity.force(q)
         error, last = float(np.linalg.norm(residual)), np.inf
-        for _ in range(LARGEST_SETTLING_STEPS):
+        for _ in range(way.steps):
             # stop at the tolerance, or where rounding keeps a converged residual from falling
-            if error <= SETTLING_TOLERANCE * scale or (error <= 1e-8 * scale and error > 0.5 * last):
+            if error <= way.tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
                 return evaluation
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
-            step = elasticity.solve(q, softening, residual)
+            step = elasticity.solve(q, softening / held, residual / held)
             last = error
-            for _ in range(12):
+            for _ in range(way.trials):
                 full[MOTION_SIZE : MOTION_SIZE + k] = q + step
                 evaluation = model.evaluate(full, *self.film)
                 self.trials += 1
                 if evaluation.status is Status.CONVERGED:
-                    residual = evaluation.bore.load - elasticity.force(q + step)
+                    resisted = elasticity.force(q + step) + elasticity.force(q + step - old) * slowness
+                    residual = evaluation.bore.load - resisted
                     error = float(np.linalg.norm(residual))
                     if error < 2.0 * last or error <= 1e-8 * scale:
                         break
