@@ -265,25 +265,23 @@ def refined_peak(P: np.ndarray, x: np.ndarray, z: np.ndarray, periodic: bool) ->
     """
     value, i, j = peak_of(P)
     n, m = P.shape
-    peak, position_x, position_z = value, x[i], z[j]
+    rise_x = rise_z = shift_x = shift_z = 0.0
     if periodic or 0 < i < n - 1:
-        step = x[1] - x[0] if n > 1 else 0.0
-        before, after = P[i - 1, j], P[(i + 1) % n, j]
-        curvature = before - 2.0 * value + after
-        if curvature < 0.0:
-            shift = 0.5 * (before - after) / curvature
-            peak += -0.125 * (before - after) ** 2 / curvature
-            position_x += shift * step
+        step = x[1] - x[0] if n > 1 else 1.0
+        rise_x, shift_x = _crest(P[i - 1, j], value, P[(i + 1) % n, j], step, step)
     if 0 < j < m - 1:
-        h0, h1 = z[j] - z[j - 1], z[j + 1] - z[j]
-        d0, d1 = (value - P[i, j - 1]) / h0, (P[i, j + 1] - value) / h1
-        second = (d1 - d0) / (h0 + h1)
-        slope = (d0 * h1 + d1 * h0) / (h0 + h1)
-        if second < 0.0:
-            rise = -0.25 * slope * slope / second
-            peak += min(rise, 0.25 * min(d0 * h0, -d1 * h1)) if j in (1, m - 2) else rise
-            position_z += -0.5 * slope / second
-    return float(peak), float(position_x), float(position_z)
+        before, after = P[i, j - 1], P[i, j + 1]
+        rise_z, shift_z = _crest(before, value, after, z[j] - z[j - 1], z[j + 1] - z[j])
+        if j in (1, m - 2):
+            rise_z = min(rise_z, 0.25 * (value - max(before, after)))
+    return float(value + rise_x + rise_z), float(x[i] + shift_x), float(z[j] + shift_z)
+
+
+def _crest(before: float, value: float, after: float, h0: float, h1: float) -> tuple[float, float]:
+    """Height above the middle one, and place from there, of the crest of a parabola through three points."""
+    d0, d1 = (value - before) / h0, (after - value) / h1
+    second, slope = (d1 - d0) / (h0 + h1), (d0 * h1 + d1 * h0) / (h0 + h1)
+    return (-0.25 * slope * slope / second, -0.5 * slope / second) if second < 0.0 else (0.0, 0.0)
 
 
 @njit(cache=True, fastmath=_FAST)

@@ -50,7 +50,7 @@ def evaluate_at(
     evaluation = model.evaluate_steady(motion, history_at(model, motion, where, near))
     if evaluation.film is None or evaluation.status is not Status.CONVERGED:
         remedy = advice(evaluation.status, model.bearing)
-        if model.flexible and evaluation.status in (Status.NOT_CONVERGED, Status.NO_FILM):
+        if model.flexible and evaluation.status is not Status.NO_PRESSURE:
             remedy = (
                 f"no shape of the {type(model.bearing.bush).__name__}'s bore was found in balance with a film, neither "
                 "by Newton's method nor on the way of a viscous bore from its undeformed shape; thicken what is thin "

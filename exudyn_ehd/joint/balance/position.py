@@ -46,11 +46,6 @@ class Carried:
     unbalance: np.ndarray
     tangent: np.ndarray
 
-    @property
-    def slope(self) -> np.ndarray:
-        """dF/d(x, y) (2, 2) at the temperature of this film, N/m."""
-        return self.tangent[:2, :2]
-
 
 class LoadSearch:
     """Search for the position in which the steady film of a model carries a load.
@@ -91,7 +86,9 @@ class LoadSearch:
         start, self.first = self.at(motion), self.model.parts.evaluations.count
         found = self.newton(start, tolerance)
         if self.residual(found) > tolerance:
-            found = self.creep(self.at(motion), tolerance)
+            self._follows = np.zeros((2, 2))
+            held_back = 10.0 * self.size / b.radial_clearance
+            found = self.newton(self.at(motion), tolerance, LARGEST_CREEP_STEPS, held_back)
         if found.film.serial != self.model.parts.evaluations.count:
             found = self.at(found.motion)
         if self.residual(found) > tolerance:
@@ -108,9 +105,6 @@ class LoadSearch:
     def residual(self, place: Carried) -> float:
         """Largest component of film force + load, over the load."""
         return float(np.max(np.abs(place.unbalance))) / self.size
-
-    def _spent(self) -> bool:
-        return self.model.parts.evaluations.count - self.first > self.effort
 
     def at(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), which is kept."""
@@ -134,50 +128,40 @@ class LoadSearch:
         """Broyden's update of what the temperature adds to the tangent."""
         if self.model.effects.thermal is not None:
             step = reached.motion[:2] - place.motion[:2]
-            expected = (0.5 * (place.slope + reached.slope) + self._follows) @ step
+            expected = (0.5 * (place.tangent + reached.tangent)[:2, :2] + self._follows) @ step
             missed = reached.unbalance - place.unbalance - expected
             self._follows = self._follows + np.outer(missed, step) / float(step @ step + 1e-300)
         return reached
 
-    def newton(self, place: Carried, tolerance: float, most: int = LARGEST_LOAD_STEPS) -> Carried:
+    def newton(
+        self, place: Carried, tolerance: float, most: int = LARGEST_LOAD_STEPS, resistance: float = 0.0
+    ) -> Carried:
         """Newton's method from a place on, until the unbalance is below ``tolerance`` of the load, or ``most`` steps.
 
-        It also ends where it makes no progress, or reaches no film.
+        It also ends where it makes no progress, or reaches no film. With a resistance r, N/m, the journal creeps
+        against it, ``(r I - dF/dx) step = unbalance``: r falls as the unbalance does, and a step that increases the
+        unbalance is taken back and r grows. Slow and sure where Newton's method jumps over a film that starves or
+        touches.
         """
         residuals: list[float] = []
+        highest = 1e12 * resistance
         for _ in range(most):
             residuals.append(self.residual(place))
-            stuck = len(residuals) > PATIENCE and residuals[-1] > 0.1 * residuals[-1 - PATIENCE]
-            if residuals[-1] <= tolerance or stuck or self._spent():
+            stuck = not resistance and len(residuals) > PATIENCE and residuals[-1] > 0.1 * residuals[-1 - PATIENCE]
+            spent = self.model.parts.evaluations.count - self.first > self.effort
+            if residuals[-1] <= tolerance or stuck or spent or resistance > highest:
                 break
             try:
-                step = np.linalg.solve(place.slope + self._follows, -place.unbalance)
-                place = self._moved(place, step)
+                slope = resistance * np.eye(2) - place.tangent[:2, :2] - self._follows
+                reached = self._moved(place, np.linalg.solve(slope, place.unbalance))
             except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
-                break
-        return place
-
-    def creep(self, place: Carried, tolerance: float) -> Carried:
-        """By way of the journal's creep, against a viscous resistance r that falls as the unbalance does.
-
-        ``(r I - dF/dx) step = unbalance``; a step that increases the unbalance is taken back and r grows. Slow and
-        sure where Newton's method jumps over a film that starves or touches.
-        """
-        resistance = 10.0 * self.size / self.model.bearing.radial_clearance
-        highest = 1e12 * resistance
-        self._follows = np.zeros((2, 2))
-        for _ in range(LARGEST_CREEP_STEPS):
-            if self.residual(place) <= tolerance or resistance > highest or self._spent():
-                break
-            try:
-                step = np.linalg.solve(resistance * np.eye(2) - place.slope - self._follows, place.unbalance)
-                reached = self._moved(place, step)
-            except (np.linalg.LinAlgError, FilmError):
+                if not resistance:
+                    break
                 reached = place
-            if float(np.hypot(*reached.unbalance)) < float(np.hypot(*place.unbalance)):
-                place, resistance = reached, resistance / 5.0
-            else:
+            if resistance and not np.hypot(*reached.unbalance) < np.hypot(*place.unbalance):
                 resistance *= 4.0
+            else:
+                place, resistance = reached, resistance / 5.0
         return place
 
 

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -25,23 +25,11 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
 SMALLEST_PART = 1e-3
+# Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
+LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
 # Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
 # trials after which no way is begun or gone on.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
-
-
-class Way(NamedTuple):
-    """How Newton's method may go.
-
-    Steps, trials of each, of which each halves the last one's step, and the residual over the load at its end.
-    """
-
-    steps: int = 60
-    trials: int = 12
-    tolerance: float = 1e-11
-
-
-LONG, STRAIGHT, SHORT = Way(), Way(trials=1), Way(steps=10, tolerance=1e-5)
 
 
 class Elasticity:
@@ -110,7 +98,7 @@ def bore_equilibrium(
     of Newton trials.
     """
     newton = Newton(model, motion, film)
-    found = newton.solve(start, 1.0, STRAIGHT) if start.any() else None
+    found = newton.solve(start, 1.0, straight=True) if start.any() else None
     reached, part, q = 0.0, 1.0, np.zeros_like(start)
     while found is None and part > SMALLEST_PART:
         target = min(1.0, reached + part)
@@ -137,7 +125,7 @@ class Newton(Generic[Result]):
 
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """As `solve`: straight, or as a viscous bore comes there from q, or somehow."""
-        found = self.solve(q, part, STRAIGHT)
+        found = self.solve(q, part, straight=True)
         if found is None and self.trials < LARGEST_EFFORT:
             found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
@@ -145,7 +133,7 @@ class Newton(Generic[Result]):
     def _come_to_rest(self, q: np.ndarray, part: float) -> Result | None:
         slowness, start = SLOWEST, self.trials
         while slowness < LARGEST_SLOWNESS and self.trials - start < LARGEST_EFFORT:
-            near = self.solve(q, part, SHORT, slowness)
+            near = self.solve(q, part, slowness)
             if near is None:
                 slowness *= 4.0
                 continue
@@ -157,11 +145,11 @@ class Newton(Generic[Result]):
             q, slowness = new, slowness / 3.0
         return None
 
-    def solve(self, q: np.ndarray, part: float, way: Way = LONG, slowness: float = 0.0) -> Result | None:
+    def solve(self, q: np.ndarray, part: float, slowness: float = 0.0, straight: bool = False) -> Result | None:
         """Equilibrium from coordinates q (k,) with the pose scaled by ``part``; None if none was found.
 
-        With a slowness s, tau over the time of a step, what a viscous bore has reached after the step:
-        ``K (q' + s (q' - q)) = Q(q')``.
+        ``straight``: nor where a step has to be halved. With a slowness s, tau over the time of a step, what a viscous
+        bore has reached after the step: ``K (q' + s (q' - q)) = Q(q')``.
         """
         model, elasticity, k, old, held = self.model, self.model.elasticity, q.size, q, 1.0 + slowness
         full = np.concatenate((self.motion[:MOTION_SIZE], q, np.zeros(k)))
@@ -169,17 +157,20 @@ class Newton(Generic[Result]):
         evaluation = model.evaluate(full, *self.film)
         if evaluation.status is not Status.CONVERGED:
             return None
+        steps, tolerance = (
+            (MOVING_STEPS, MOVING_TOLERANCE) if slowness else (LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE)
+        )
         scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
         residual = evaluation.bore.load - elasticity.force(q)
         error, last = float(np.linalg.norm(residual)), np.inf
-        for _ in range(way.steps):
+        for _ in range(steps):
             # stop at the tolerance, or where rounding keeps a converged residual from falling
-            if error <= way.tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
+            if error <= tolerance * scale or (error <= 1e-8 * scale and error > 0.5 * last):
                 return evaluation
             softening = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
             step = elasticity.solve(q, softening / held, residual / held)
             last = error
-            for _ in range(way.trials):
+            for _ in range(1 if straight else 12):
                 full[MOTION_SIZE : MOTION_SIZE + k] = q + step
                 evaluation = model.evaluate(full, *self.film)
                 self.trials += 1

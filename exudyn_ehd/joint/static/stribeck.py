@@ -106,7 +106,10 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("stribeck: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "stribeck")
-    model = build_study_model(_sliding(bearing, float(values.min())), 0.0)
+    if bearing.asperity is not None:
+        slow = NO_TRANSITION * float(values.min()) * bearing.journal_radius
+        bearing = replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
+    model = build_study_model(bearing, 0.0)
     order = np.argsort(-values)
     last = float(values[order[0]])
     search = LoadSearch(model, np.array([0.0, -size]), "stribeck")
@@ -119,14 +122,6 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         rows[k] = _row(found.evaluation, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)
-
-
-def _sliding(bearing: JournalBearing, slowest: float) -> JournalBearing:
-    """The bearing with boundary friction in full at every spin from the slowest, rad/s, on."""
-    if bearing.asperity is None:
-        return bearing
-    slow = NO_TRANSITION * slowest * bearing.journal_radius
-    return replace(bearing, asperity=replace(bearing.asperity, transition_speed=slow))
 
 
 def _follow(search: LoadSearch, motion: np.ndarray, last: float, speed: float) -> Carried:
