@@ -167,7 +167,9 @@ class JournalBearing:
         """What `ImpedanceMap` needs: nothing besides geometry, viscosity and a closure at ambient cavity pressure."""
         expected = "the map holds plain bearings only; use film=FiniteLength(...)."
         own = {"journal_radius", "length", "radial_clearance", "lubricant", "film", "cavitation"}
-        for item, known in ((self, own), (self.lubricant, {"viscosity", "density"})):
+        # without a thermal effect the oil has its viscosity, and all else of it that heat would need is not asked for
+        isothermal = {"viscosity", "density", "temperature", "temperature_law", "specific_heat"}
+        for item, known in ((self, own), (self.lubricant, isothermal)):
             for f in fields(item):
                 if f.name not in known and getattr(item, f.name) != f.default:
                     raise InputError(
@@ -309,17 +311,22 @@ def _check_bush(bearing: JournalBearing) -> None:
             "JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got "
             f"{type(bearing.film).__name__}(...)."
         )
-    mesh = bearing.bush.mesh if isinstance(bearing.bush, ModalBush | ANCFBush) else None
-    if not isinstance(mesh, HollowCylinder):
+    if not isinstance(bearing.bush, ModalBush | ANCFBush):
         return
-    radius = bearing.journal_radius + bearing.radial_clearance
-    if abs(mesh.inner_radius - radius) > 0.02 * radius:
+    mesh, radius = bearing.bush.mesh, bearing.journal_radius + bearing.radial_clearance
+    if isinstance(mesh, HollowCylinder):
+        own, what, ends = mesh.inner_radius, "HollowCylinder.inner_radius", (-0.5 * mesh.length, 0.5 * mesh.length)
+    else:
+        place = mesh.bore.positions
+        own, what = float(np.hypot(place[:, 0], place[:, 1]).mean()), "a mesh whose bore's mean radius"
+        ends = float(mesh.bore.z.min()), float(mesh.bore.z.max())
+    if abs(own - radius) > 0.02 * radius:
         raise InputError(
-            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got "
-            f"HollowCylinder.inner_radius = {mesh.inner_radius:g} m."
+            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got {what} = {own:g} m."
         )
-    if mesh.length < bearing.length * (1.0 - 1e-9):
+    half = 0.5 * bearing.length * (1.0 - 1e-9)
+    if ends[0] > -half or ends[1] < half:
         raise InputError(
-            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m, got "
-            f"HollowCylinder.length = {mesh.length:g} m."
+            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m about its mid-plane, got "
+            f"a bore from {ends[0]:g} to {ends[1]:g} m."
         )

@@ -29,7 +29,7 @@ from typing import Any
 import numba
 import numpy as np
 
-from exudyn_ehd.status import EHDError
+from exudyn_ehd.status import EHDError, InputError
 
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
 # Bytes of all arrays kept, and s after which the temporary file of a writer that was killed goes too
@@ -37,6 +37,18 @@ LARGEST_CACHE, LONGEST_WRITE = 3e8, 3600.0
 
 Arrays = dict[str, np.ndarray]
 Shapes = Mapping[str, tuple[int | str, ...]]
+
+
+def require_path(where: str, path: object, suffix: str = "") -> pathlib.Path:
+    """Return ``path`` as a path, or raise `InputError` if it is none, is a folder, or does not end in ``suffix``."""
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError(f"{where}: path must be a str or a path, got {path!r}.")
+    file = pathlib.Path(path)
+    if file.is_dir() or any(parent.exists() and not parent.is_dir() for parent in file.parents):
+        raise InputError(f"{where}: path must be that of a file in a folder, got '{path}'.")
+    if suffix and file.suffix != suffix:
+        raise InputError(f"{where}: path must end in {suffix}, got '{path}'.")
+    return file
 
 
 @contextmanager

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from exudyn_ehd.status import InputError
-from exudyn_ehd.storage import replacing
+from exudyn_ehd.storage import replacing, require_path
 
 # SI units by name; a name of several words may end in one of these.
 UNITS = {
@@ -101,6 +101,7 @@ def write_csv(
 
     Numbers read back bit for bit; ``remarks`` are columns of text at the end.
     """
+    require_path("to_csv", path)
     remarks = remarks or {}
     head = [*heads(list(columns), more), *remarks]
     values = (

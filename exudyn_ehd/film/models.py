@@ -22,6 +22,9 @@ from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.supply import AxialGroove, SupplyArea
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
+# Bytes of a film's banded matrix.
+LARGEST_MATRIX = 4e9
+
 
 @dataclass(frozen=True, kw_only=True)
 class FiniteLength:
@@ -90,6 +93,13 @@ def _check_grid(film: FiniteLength | ShortBearing) -> None:
     name = type(film).__name__
     require_integer(f"{name}.n_theta", film.n_theta, at_least=16, hint="96 is a good start.")
     require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
+    coupled = film.n_z if film.circumferential_pressure_flow else 1
+    size = 16.0 * film.n_theta * film.n_z * coupled
+    if size > LARGEST_MATRIX:
+        raise InputError(
+            f"{name}: a grid of {film.n_theta} x {film.n_z} takes {size:.3g} bytes for one matrix, more than "
+            f"{LARGEST_MATRIX:g}; 192 x 16 is fine."
+        )
     require_number(f"{name}.stretch", film.stretch, at_least=0.0, at_most=0.95, hint="0.75 suits most bearings.")
 
 

@@ -273,3 +273,59 @@ def test_a_film_without_pressure_is_told_by_its_law():
         mbs, _ = system(dataclasses.replace(BEARING, lubricant=oil), load=lambda t: -4e6)
         with pytest.raises(ehd.FilmError, match=remedy):
             ehd.SolveDynamic(mbs, settings())
+
+
+def test_solver_that_is_not_stored():
+    """Films ask the solver at work for its rule and its step size; one that they do not know is told of."""
+    mbs, joint = system()
+    mbs.SolveDynamic(settings(20))
+    expected = joint.history.motion
+    mbs, joint = system()
+    ehd.SolveDynamic(mbs, settings(20), storeSolver=False)
+    np.testing.assert_allclose(joint.history.motion, expected, rtol=0.0, atol=1e-5 * np.abs(expected).max())
+    for put in (True, False):
+        mbs, joint = system()
+        solver = exu.MainSolverImplicitSecondOrder()
+        if put:
+            mbs.sys["dynamicSolver"] = solver
+            solver.SolveSystem(mbs, settings(20))
+            np.testing.assert_array_equal(joint.history.motion, expected)
+        else:
+            with pytest.warns(UserWarning, match=r"'big end': the solver at work is not in mbs\.sys") as told:
+                solver.SolveSystem(mbs, settings(20))
+            assert len(told) == 1
+    mbs, joint = system()
+    with pytest.warns(UserWarning, match="the solver at work"):
+        mbs.SolveDynamic(settings(20), storeSolver=False)
+
+
+def test_what_exudyn_refuses_is_not_explained_by_newton():
+    mbs, _ = system()
+    inverse = settings(20)
+    inverse.timeIntegration.explicit.computeMassMatrixInversePerBody = True
+    with pytest.raises(ehd.RunError, match=r"SolveDynamic: .*computeMassMatrixInversePerBody") as caught:
+        ehd.SolveDynamic(mbs, inverse, solverType=exu.DynamicSolverType.RK44)
+    assert "Newton" not in str(caught.value) and isinstance(caught.value.__cause__, exu.ExudynError)
+
+
+@pytest.mark.parametrize("path", [None, 3, "."], ids=str)
+def test_paths_that_are_none(path):
+    mbs, joint = system()
+    ehd.SolveDynamic(mbs, settings(3))
+    calls = (lambda p: ehd.SaveState(mbs, p), joint.save, joint.to_csv, ehd.load_history)
+    for call in calls:
+        with pytest.raises(ehd.InputError, match="path must be"):
+            call(path)
+    with pytest.raises(ehd.InputError, match=r"SolveDynamic\.restart.* must be"):
+        ehd.SolveDynamic(mbs, settings(3), restart=3 if path is None else path)
+
+
+def test_bush_and_outer_in_each_others_place():
+    mesh = ehd.HollowCylinder(inner_radius=0.02, thickness=0.005, length=0.02, circumferential=8)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+    bush = ehd.ANCFBush(mesh=mesh, material=steel)
+    mbs = scenes.new_system()
+    with pytest.raises(ehd.InputError, match=r"CreateFlexibleBush\.bush must be ANCFBush\(\.\.\.\), got FixedOuter"):
+        ehd.CreateFlexibleBush(mbs, "b", bush=ehd.FixedOuter(), outer=bush)
+    with pytest.raises(ehd.InputError, match=r"CreateFlexibleBush\.outer must be FreeOuter"):
+        ehd.CreateFlexibleBush(mbs, "b", bush=bush, outer=None)

@@ -26,7 +26,7 @@ from exudyn_ehd.solid.loads import Load
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
-from exudyn_ehd.status import InputError, require_vector
+from exudyn_ehd.status import InputError, require_type, require_vector
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -188,6 +188,8 @@ def CreateFlexibleBush(
     -------
     FlexibleBush
     """
+    require_type("CreateFlexibleBush.bush", bush, ANCFBush)
+    require_type("CreateFlexibleBush.outer", outer, FreeOuter, FixedOuter, CarriedOuter)
     rotation = np.eye(3) if rotationMatrix is None else np.asarray(rotationMatrix, dtype=float)
     if rotation.shape != (3, 3) or not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9):
         raise InputError(

@@ -107,6 +107,8 @@ class AcceptedSteps:
         Keeps films.
     observers : list of functions
         Called with every accepted trial that has a film.
+    in_own_run : bool
+        Whether one of this package's calls of a solver is under way.
     """
 
     def __init__(self, film: Film) -> None:
@@ -123,7 +125,9 @@ class AcceptedSteps:
         self._record = Record(film.model.bearing)
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
-        self._uses_memory = self._may_starve = False
+        self._uses_memory = self._may_starve = self.in_own_run = False
+        # steps in a row that no solver known has taken
+        self._unseen = 0
         self.asked: tuple[float, list[float]] = (np.nan, [])
         self.forget()
 
@@ -152,6 +156,9 @@ class AcceptedSteps:
         # without a stored solver it is the clock put back that tells of a new run
         begins = solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1] or start < self.start
         resumed = begins and self._begin_run(mbs, start, solvers)
+        self._unseen = 0 if begins or not self.is_idle else self._unseen + 1
+        if self._unseen == 2:
+            solver_state.warn_unknown(self.film.failures.name)
         if self._uses_memory and self.memory is None:
             self.start = start
             motion = self.film.motion(mbs, _START_OF_STEP)
@@ -273,7 +280,7 @@ class AcceptedSteps:
             x, y = trial.evaluation.wrench[:2].tolist()
             if self._ringing.take(start, x, y):
                 watch, self._ringing = self._ringing, None
-                ringing.warn(failures.name, watch)
+                ringing.warn(failures.name, watch, starts_well=self.in_own_run)
         if self._chatter is not None and self._chatter.sees_chatter(start, trial.motion):
             raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
 

@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
 from exudyn_ehd.status import InputError
-from exudyn_ehd.storage import replacing
+from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import write_csv
 
 _SCALARS = (
@@ -154,8 +154,7 @@ class JointHistory(History, HistoryPictures):
         path : path
             Ending in ``.npz``.
         """
-        if pathlib.Path(path).suffix != ".npz":
-            raise InputError(f"JointHistory.save: path must end in .npz, got '{path}'; use to_csv for text.")
+        require_path("JointHistory.save (to_csv writes text)", path, ".npz")
         fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         with replacing(path, binary=True) as file:
             np.savez_compressed(file, format=_FORMAT, **fields)
@@ -205,6 +204,7 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
     InputError
         If it holds something else.
     """
+    require_path("load_history", path)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
             known = "format" in data.files and str(data["format"]) == _FORMAT

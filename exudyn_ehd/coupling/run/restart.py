@@ -19,7 +19,7 @@ from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
 from exudyn_ehd.status import InputError
-from exudyn_ehd.storage import replacing
+from exudyn_ehd.storage import replacing, require_path
 
 _FORMAT = "exudyn_ehd SystemState 3"
 Part = TypeVar("Part", History, StepStart)
@@ -97,8 +97,7 @@ class SystemState:
 
     def save(self, path: str | pathlib.Path) -> None:
         """Write to a NumPy file (npz), whole or not at all."""
-        if pathlib.Path(path).suffix != ".npz":
-            raise InputError(f"SystemState.save: path must end in .npz, got '{path}'.")
+        require_path("SystemState.save", path, ".npz")
         arrays: dict[str, Any] = dict(zip(_PARTS, self.coordinates, strict=True))
         arrays["accelerations"] = self.accelerations
         if self.algorithmic is not None:
@@ -133,6 +132,7 @@ def load_state(path: str | pathlib.Path) -> SystemState:
         raise InputError(
             f"SolveDynamic.restart must be a SystemState or the path of a file written by SaveState, got {path!r}."
         )
+    require_path("SolveDynamic.restart", path)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as file:
             if "format" not in file.files or str(file["format"]) != _FORMAT:

@@ -93,7 +93,7 @@ def SolveDynamic(
         the run would have done without the stop, to rounding: films with their memory, Exudyn's algorithmic
         accelerations and the histories.
     **options
-        As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...
+        As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
 
     Returns
     -------
@@ -122,8 +122,8 @@ def SolveDynamic(
         for joint in joints_of(mbs):
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
-    with going_on, _better_start(mbs, options), own_errors(mbs, "SolveDynamic"):
-        return bool(mbs.SolveDynamic(simulationSettings, **options))
+    with going_on, _better_start(mbs), own_errors(mbs, "SolveDynamic"):
+        return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
 
 
 def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings, **options: object) -> bool:
@@ -150,7 +150,12 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     require_settings("SolveStatic", simulationSettings)
     require_items(mbs)
     with own_errors(mbs, "SolveStatic"):
-        return bool(mbs.SolveStatic(simulationSettings, **options))
+        return bool(mbs.SolveStatic(simulationSettings, **_stored(options)))
+
+
+def _stored(options: dict[str, object]) -> dict[str, object]:
+    """A run's options with its solver stored in ``mbs.sys``: films ask it for step size, rule and whether it runs."""
+    return options | {"storeSolver": True}
 
 
 def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
@@ -176,6 +181,8 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
 @contextmanager
 def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     """Turn Exudyn's errors into this package's; errors of other user functions pass."""
+    for joint in joints_of(mbs):
+        joint.element.steps.in_own_run = True
     try:
         yield
         for joint in joints_of(mbs):
@@ -191,7 +198,13 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
             raise KeyboardInterrupt(_kept(mbs)) from error
         if cause is not error:
             raise
+        # what Exudyn refuses it names; only its solvers' errors are bare
+        if not isinstance(error, exu.SolverError):
+            raise RunError(f"{where}: {str(error).strip()} {_kept(mbs)}") from error
         raise RunError(f"{where}: {_story(mbs, static=where == 'SolveStatic')}") from error
+    finally:
+        for joint in joints_of(mbs):
+            joint.element.steps.in_own_run = False
 
 
 def _kept(mbs: exu.MainSystem) -> str:
@@ -239,12 +252,8 @@ def user_function(hook: Any) -> Any:
 
 
 @contextmanager
-def _better_start(mbs: exu.MainSystem, options: dict[str, object]) -> Iterator[None]:
+def _better_start(mbs: exu.MainSystem) -> Iterator[None]:
     """Let Newton's method start at lasting accelerations in the run within; the user's function comes back then."""
-    # without a stored solver its step size and parameters are not known
-    if not options.get("storeSolver", True):
-        yield
-        return
     own = user_function(mbs.GetPreNewtonResidualUserFunction())
     mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own or None))
     try:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import TypeAlias, cast
 
 import exudyn as exu
@@ -29,6 +30,17 @@ def running_solver(before: Stored, now: Stored) -> Solver | None:
     working = [solver for solver in changed if not solver.output.finishedSuccessfully]
     # two new ones: the other was run without this joint being asked, and is not initialised or has stopped its timer
     return min(working, key=lambda solver: solver.timer.total, default=None)
+
+
+def warn_unknown(name: str) -> None:
+    """Warn that steps of the joint ``name`` are taken by a solver that is none of the stored ones."""
+    warnings.warn(
+        f"LubricatedJoint '{name}': the solver at work is not in mbs.sys: its films take velocities as they are, which "
+        "lets journals drift at coarse steps, and a step without a film ends the run where a smaller one might do. Use "
+        "ehd.SolveDynamic, mbs.SolveDynamic without storeSolver=False, or mbs.sys['dynamicSolver'] = solver before a "
+        "run of a solver of your own.",
+        stacklevel=2,
+    )
 
 
 def is_static(solver: Solver | None) -> bool:

@@ -11,7 +11,7 @@ from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
-from exudyn_ehd.joint.audit.ringing import REMEDY, WINDOW, watched
+from exudyn_ehd.joint.audit.ringing import WINDOW, watched
 from exudyn_ehd.joint.audit.switches import refined
 
 # Grids this many times finer than needed cost time for nothing.
@@ -145,5 +145,6 @@ def ringing(case: Case) -> Finding | None:
         f"times within {WINDOW} steps that the force is thrown into alternation{when}",
         float(watch.most),
         None,
-        mattering="forces and pressures jump from step to step: " + REMEDY,
+        mattering="forces and pressures jump from step to step: run by ehd.SolveDynamic, with more steps until none is "
+        "halved, or with a smaller spectral radius.",
     )

@@ -34,10 +34,6 @@ NEGLIGIBLE = 100.0
 STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
 # Bursts within so many steps are counted together; a run rings from so many on.
 WINDOW, LIMIT = 100, 4
-REMEDY = (
-    "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, more steps until none is halved, or a "
-    "smaller spectral radius."
-)
 
 
 class RingingWatch:
@@ -145,12 +141,14 @@ def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:
     return watch
 
 
-def warn(name: str, watch: RingingWatch) -> None:
-    """Warn that the run of the joint ``name`` rings."""
+def warn(name: str, watch: RingingWatch, *, starts_well: bool) -> None:
+    """Warn that the run of the joint ``name`` rings; ``starts_well`` if Newton's method is started by this package."""
+    start = "" if starts_well else "use ehd.SolveDynamic(mbs, simulationSettings) in place of mbs.SolveDynamic, or "
     warnings.warn(
         f"LubricatedJoint '{name}': from t = {watch.first:.9g} s to {watch.last:.9g} s the film's force alternates "
         f"from step to step, thrown anew {watch.most} times within {WINDOW} steps: forces and pressures there "
-        f"are the time integration's; {REMEDY}",
+        f"are the time integration's; {start}take more steps until none is halved, or a smaller spectral "
+        "radius.",
         RingingWarning,
         stacklevel=2,
     )

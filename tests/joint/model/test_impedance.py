@@ -323,3 +323,13 @@ def test_refused_bearings(make_bearing, options, message):
 def test_refused_values(values, message):
     with pytest.raises(ehd.InputError, match=message):
         ehd.ImpedanceMap(**values)
+
+
+def test_oil_taken_at_another_temperature(make_bearing):
+    """Without a thermal effect an oil is its viscosity."""
+    hot = ehd.oil("SAE 5W-30", temperature=373.15)
+    by_name, by_number = (
+        ehd.steady(make_bearing(film=SMALL, lubricant=lubricant), speed=300.0, eccentricity_ratio=0.6).force
+        for lubricant in (hot, ehd.Lubricant(viscosity=hot.viscosity, density=hot.density))
+    )
+    np.testing.assert_array_equal(by_name, by_number)

@@ -338,3 +338,28 @@ def test_place_of_the_smallest_gap_with_a_profile(make_bearing, make_motion):
     theta = np.arange(96) * 2.0 * np.pi / 96
     h = 25e-6 - 0.05 * 25e-6 * np.sin(theta) + 5e-6 * np.cos(2.0 * theta)
     assert q["minimum_gap_angle"] == pytest.approx(theta[np.argmin(h)], abs=1e-12)
+
+
+@pytest.mark.parametrize("film", [ehd.FiniteLength, ehd.ShortBearing])
+def test_grids_beyond_any_memory(film):
+    with pytest.raises(
+        ehd.InputError, match=f"{film.__name__}: a grid of 10000000 x 1000000 takes .* 192 x 16 is fine"
+    ):
+        film(n_theta=10**7, n_z=10**6)
+
+
+def test_imported_bores_must_fit_the_film(make_bearing):
+    """As those of cylinders: a film on a bore of another radius is another film."""
+    cylinder = ehd.HollowCylinder(inner_radius=0.0225, thickness=0.008, length=0.05, circumferential=12).mesh()
+    mesh = ehd.mesh_from_arrays(cylinder.nodes, cylinder.elements, bore_radius=0.0225)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2e11, poisson_ratio=0.3, density=7800.0)
+    for kind in (ehd.ModalBush, ehd.ANCFBush):
+        bush = kind(mesh=mesh, material=steel)
+        with pytest.raises(
+            ehd.InputError, match=r"bore radius 0\.025025 m within 2 %, got a mesh whose .* = 0\.0225 m"
+        ):
+            make_bearing(bush=bush)
+        fits = {"journal_radius": 0.0224, "radial_clearance": 1e-4, "bush": bush}
+        assert make_bearing(**fits, length=0.05).bush is bush
+        with pytest.raises(ehd.InputError, match=r"as long as the film, 0\.06 m .* bore from -0\.025 to 0\.025 m"):
+            make_bearing(**fits, length=0.06)
