@@ -17,9 +17,6 @@ from scipy.sparse import csr_matrix
 from exudyn_ehd.solid.hex20 import EDGES, GAUSS27, NODES, boundary_faces, face_shapes, shape_gradients
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_vector
 
-# Elements of a cylinder; its factor alone then takes more than most machines have.
-LARGEST_COUNT = 100_000
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Line:
@@ -289,14 +286,9 @@ class HollowCylinder:
 
     def __post_init__(self) -> None:
         require_numbers(self, above=0.0, inner_radius="m", thickness="m", length="m")
-        require_integer("HollowCylinder.axial", self.axial, at_least=1)
-        require_integer("HollowCylinder.radial", self.radial, at_least=1)
-        require_integer("HollowCylinder.circumferential", self.circumferential, at_least=3)
-        count = self.axial * self.radial * self.circumferential
-        if count > LARGEST_COUNT:
-            raise InputError(
-                f"HollowCylinder must have at most {LARGEST_COUNT} elements, got {count}; 4 x 2 x 40 is fine."
-            )
+        for name, least in (("axial", 1), ("radial", 1), ("circumferential", 3)):
+            require_integer(f"HollowCylinder.{name}", getattr(self, name), at_least=least)
+        require_number("HollowCylinder: its elements", self.axial * self.radial * self.circumferential, at_most=1e5)
 
     @property
     def outer_radius(self) -> float:
@@ -396,12 +388,9 @@ def mesh_from_arrays(
         )
     centre = require_vector("mesh_from_arrays origin", origin, 3, "m")
     nodes = (nodes - centre) @ _frame(require_vector("mesh_from_arrays axis", axis, 3)).T
-    if elements.size == 0 or elements.min() < 0 or elements.max() >= len(nodes):
-        found = f"{elements.min()} to {elements.max()}" if elements.size else "none"
-        raise InputError(
-            f"mesh_from_arrays elements must number nodes from 0 to {len(nodes) - 1}, got {found}; subtract 1 from "
-            "numbers that count from 1, as Abaqus does."
-        )
+    for number in (elements.min(initial=len(nodes)), elements.max(initial=-1)):
+        counts = "subtract 1 from numbers that count from 1, as Abaqus does."
+        require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
     used, elements = np.unique(elements, return_inverse=True)
     nodes, elements = nodes[used], elements.reshape(-1, 20)
     _check_volume(nodes, elements)
