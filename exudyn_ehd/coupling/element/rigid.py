@@ -137,7 +137,8 @@ class FilmElement:
         bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, configuration)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
-        evaluation = None
+        # an interrupt may leave the model between two states: the trial before is no longer its own
+        evaluation = self._trial = None
         # a sum is finite only if all its terms are
         if np.isfinite(motion.sum()):
             spin = self._spin() if self.model.needs_spin else 0.0
