@@ -18,19 +18,18 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states
 from exudyn_ehd.joint.audit.switches import Switch, two_dimensional
-from exudyn_ehd.joint.balance.film import evaluate_at
-from exudyn_ehd.joint.balance.position import LoadSearch
+from exudyn_ehd.joint.balance.position import Carried, LoadSearch
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.quantities import refined_peak
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.status import FilmError, InputError, Status
 
 # From this change on an effect matters; below the second one nobody needs it.
 MATTERS, NOTHING = 0.03, 0.02
 # Of the search for the same load: unbalance, film solves, steps from each start, and starts, shares of the
 # eccentricity.
-TOLERANCE, EFFORT, MOST_STEPS, STARTS = 1e-4, 600, 15, (1.0, 0.95, 0.7)
+TOLERANCE, EFFORT, MOST_STEPS, STARTS = 1e-3, 600, 15, (1.0, 0.95, 0.7)
 # Loads below it, over L D mu omega / psi^2, have no relative changes.
 NO_LOAD = 1e-6
 
@@ -90,6 +89,8 @@ class Comparison:
         # without a memory of its own to add, another bearing takes that of this one
         own = (other.remembers_mass and not self.model.remembers_mass) or other.grid.shape != self.model.grid.shape
         if self.record is not None and remembers and own:
+            if other.flexible:  # tens of steps before every state, each a search for the bore's balance: seconds
+                return None
             states = recorded_states(other, self.record)
         found = [self._at(other, mine, its, remembers) for mine, its in zip(self.states, states, strict=True)]
         changes = [change for change in found if change is not None]
@@ -105,8 +106,11 @@ class Comparison:
         if remembers:
             motion = its.motion[:MOTION_SIZE]
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
-        load = _load_at(other, mine.motion[:MOTION_SIZE])
-        moved = _same_load(other, mine.motion[:MOTION_SIZE], force)
+        # the temperature is held where both have one: what else changes it is of second order
+        held = mine.history if other.effects.thermal is not None and self.model.effects.thermal is not None else None
+        search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
+        load = _load_at(search, mine.motion[:MOTION_SIZE])
+        moved = _same_load(search, mine.motion[:MOTION_SIZE])
         if moved is None:
             return None
         p, share = _numbers(moved), load / float(np.hypot(*force)) - 1.0
@@ -127,18 +131,36 @@ def _numbers(evaluation: Evaluation) -> tuple[float, float, float]:
     return q["minimum_gap"], refined_peak(film)[0], q["power_loss"]
 
 
-def _load_at(model: BearingModel, motion: np.ndarray) -> float:
+class _HeldSearch(LoadSearch):
+    """Search at the temperature of a history."""
+
+    def __init__(self, model: BearingModel, force: np.ndarray, history: History) -> None:
+        super().__init__(model, force, "audit", EFFORT)
+        self._held = History(temperature=history.temperature)
+
+    def at(self, motion: np.ndarray) -> Carried:
+        """The steady film at a motion (10,), which is kept."""
+        self.count += 1
+        evaluation = self.model.evaluate_steady(motion, self._held)
+        if evaluation.film is None or evaluation.status is not Status.CONVERGED:
+            raise FilmError(f"audit: {evaluation.status.name}")
+        unbalance = evaluation.wrench[:2] + self.force
+        return Carried(motion.copy(), evaluation, evaluation.film, unbalance, evaluation.steady_tangent())
+
+    def _learnt(self, place: Carried, reached: Carried) -> Carried:
+        return reached
+
+
+def _load_at(search: LoadSearch, motion: np.ndarray) -> float:
     """Force of the steady film at a motion, N; nan without one."""
     try:
-        evaluation, _ = evaluate_at(model, motion, "audit")
+        return float(np.hypot(*search.at(motion).evaluation.wrench[:2]))
     except FilmError:
         return math.nan
-    return float(np.hypot(*evaluation.wrench[:2]))
 
 
-def _same_load(model: BearingModel, motion: np.ndarray, force: np.ndarray) -> Evaluation | None:
-    """The film where it exerts ``force`` (2,), N, near a motion; None if it is not found."""
-    search = LoadSearch(model, -force, "audit", EFFORT)
+def _same_load(search: LoadSearch, motion: np.ndarray) -> Evaluation | None:
+    """The film that carries the load, near a motion; None if it is not found."""
     for start in STARTS:
         trial = motion.copy()
         trial[:2] *= start
@@ -147,7 +169,7 @@ def _same_load(model: BearingModel, motion: np.ndarray, force: np.ndarray) -> Ev
         except FilmError:
             continue
         if search.residual(found) <= TOLERANCE:
-            if found.film.serial != model.parts.evaluations.count:
+            if found.film.serial != search.model.parts.evaluations.count:
                 found = search.at(found.motion)
             return found.evaluation
     return None
