@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Index, JointModel
+from exudyn_ehd.coupling.contract import Index, JointModel, Side
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.axial import hold_axially
@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.status import InputError, require_bool, require_type, require_vector
+from exudyn_ehd.status import InputError, Status, require_bool, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -437,7 +437,8 @@ def attach(
             raise InputError(f"{_WHERE}.axis must be parallel to z for a planar body, got {rotation[:, 2]}.")
     sides = housing.side(points[0], rotation), journal.side(points[1], rotation)
     if not any(isinstance(side, MarkerSide) for side in sides):
-        check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]))
+        yields = functools.partial(_yields, model, sides)
+        check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
     # planar bodies can't move axially: the constraint would be empty, and singular
     flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
     held = isinstance(axial, Held) and not flat
@@ -470,3 +471,16 @@ def attach(
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)
     return make(mbs)
+
+
+def _yields(model: JointModel, sides: tuple[Side, Side], motion: np.ndarray) -> bool:
+    """Whether a bush or liner has a film at a motion (10,) at which a rigid bore has no gap; the sides are there."""
+    if hasattr(model, "bore"):
+        # imported here: a rigid bearing needs no solid
+        from exudyn_ehd.coupling.element.attach import initial_coordinates
+        from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+
+        return isinstance(model, ElasticBearingModel) and initial_coordinates(model, sides) is not None
+    if getattr(model.bearing, "bush", None) is None:
+        return False
+    return model.evaluate(motion, model.initial_history(motion)).status is Status.CONVERGED

@@ -123,6 +123,8 @@ class AcceptedSteps:
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
         self._record = Record(film.model.bearing)
+        # a bore that wears or yields has another gap than the rigid surfaces
+        self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
@@ -165,9 +167,10 @@ class AcceptedSteps:
             self.memory = self.film.model.initial_history(motion) if np.isfinite(motion.sum()) else None
         trial = self.film.look(mbs, start, _START_OF_STEP)
         self.begin = self._begin_of_next(start, trial)
-        if self.control is not None:
-            self.control.start(trial.motion)
         row = self.film.row(start, trial)
+        if self.control is not None:
+            film = trial.evaluation if row is not None and self._makes_room else None
+            self.control.start(trial.motion, None if film is None else film.quantities()["minimum_gap"])
         if row is not None:
             # a resumed state was recorded at the end of its step; for the memory it is the beginning of the next
             if not resumed or start > self._record.last_time:

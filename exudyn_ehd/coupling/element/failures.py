@@ -8,13 +8,14 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
+from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
 from exudyn_ehd.status import FilmError, InputError, MemoryWarning, Status
 
-# Largest eccentricity ratio of an accepted step in a rigid bore: contacts that yield by more than the clearance are
+# Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
 # none.
-DEEPEST = 2.0
+DEEPEST = 1.0
 
 
 class Failures:
@@ -29,6 +30,7 @@ class Failures:
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
+        self.bore = BoreGap(bearing)
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
@@ -71,7 +73,9 @@ class Failures:
         bearing = self.bearing
         if getattr(bearing, "bush", None) is not None:
             return None
-        if eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)[1] <= DEEPEST:
+        wear = getattr(trial.memory, "wear", None)
+        worn = 0.0 if wear is None else float(wear.max())
+        if self.bore.smallest(trial.motion) >= -(DEEPEST + worn) * bearing.radial_clearance:
             return None
         return self._at(
             time,
@@ -109,6 +113,6 @@ class Failures:
     def _place(self, motion: np.ndarray) -> str:
         bearing = self.bearing
         mid, largest = eccentricity_ratios(motion, bearing.radial_clearance, bearing.length)
-        gap = bearing.radial_clearance * (1.0 - largest)
+        gap = self.bore.smallest(motion)
         ratios = f"eccentricity ratio {mid:.6g} in the mid-plane, {largest:.6g} at an end"
         return f"{ratios}, minimum gap of the rigid surfaces {gap:.6g} m; "

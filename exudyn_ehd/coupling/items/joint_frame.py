@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import exudyn as exu
 import numpy as np
@@ -14,6 +14,7 @@ from exudyn_ehd.coupling.contract import Side
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.status import InputError, require_vector
 
 _WHERE = "CreateLubricatedJoint"
@@ -104,28 +105,38 @@ def joint_points(
 
 
 def check_start(
-    mbs: exu.MainSystem, bearing: JournalBearing, housing: tuple[Item, Side], journal: tuple[Item, Side]
+    mbs: exu.MainSystem,
+    bearing: JournalBearing,
+    housing: tuple[Item, Side],
+    journal: tuple[Item, Side],
+    yields: Callable[[np.ndarray], bool],
 ) -> None:
-    """Refuse an initial state in which the journal isn't inside the bore."""
+    """Refuse an initial state in which the journal isn't inside the bore.
+
+    ``yields`` says whether a bore that is not rigid makes room for a journal at a motion (10,).
+    """
     for label, (item, side) in (("itemNumbers[0]", housing), ("itemNumbers[1]", journal)):
         if not (np.all(np.isfinite(item.initial_coordinates)) and np.all(np.isfinite(item.reference_coordinates))):
             raise InputError(f"{_WHERE}.{label}: the initial coordinates of its node are not finite.")
         side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
     motion = np.empty(10)
     cosine = relative.relative_motion(housing[1].frame, journal[1].frame, motion)
-    clearance, length = bearing.radial_clearance, bearing.length
+    bore, length = BoreGap(bearing), bearing.length
     tilt = math.hypot(motion[2], motion[3]) if cosine > 0.1 else math.inf
-    if tilt * length >= 2.0 * clearance:
+    gap = bore.smallest(motion) if cosine > 0.1 else -math.inf
+    if gap > 0.0 or (math.isfinite(gap) and yields(motion)):
+        return
+    if tilt * length >= 2.0 * bore.widest:
         raise InputError(
             f"{_WHERE}: the axes of the two bodies are not parallel within the clearance in the initial configuration: "
-            f"tilt {tilt:.6g} rad, at most {2.0 * clearance / length:.6g} rad fit (2 c / L); check "
+            f"tilt {tilt:.6g} rad, at most {2.0 * bore.widest / length:.6g} rad fit (2 c / L); check "
             "the initial rotations."
         )
     half = 0.5 * length
     ends = [math.hypot(motion[0] + s * half * motion[2], motion[1] + s * half * motion[3]) for s in (-1.0, 1.0)]
-    if max(ends) >= clearance:
-        raise InputError(
-            f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
-            f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
-            f"{clearance:.6g} m; check the initial positions, and whether the clearance is radial."
-        )
+    raise InputError(
+        f"{_WHERE}: the journal is outside the bore in the initial configuration: eccentricity "
+        f"{math.hypot(motion[0], motion[1]):.6g} m in the mid-plane, {max(ends):.6g} m at an end, radial clearance "
+        f"{bearing.radial_clearance:.6g} m, smallest gap {gap:.6g} m; check the initial positions, and whether the "
+        "clearance is radial."
+    )

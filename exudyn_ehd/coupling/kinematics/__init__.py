@@ -8,4 +8,5 @@ beam_sides    points of beams
 cables        points of cables
 fitted_sides  best rigid fit of the nodes of finite elements
 relative      motion of the journal in the housing's frame
+bore_gap      smallest gap of the rigid surfaces
 """

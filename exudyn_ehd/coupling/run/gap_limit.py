@@ -24,6 +24,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 
 _CURRENT = exu.ConfigurationType.Current
@@ -62,6 +63,7 @@ class GapLimit:
 
     def __init__(self, films: Collection[Film]) -> None:
         self.films = films
+        self.bores = {film: BoreGap(film.model.bearing) for film in films}
         self.before: list[np.ndarray] = []
 
     def start(self, mbs: exu.MainSystem) -> None:
@@ -83,7 +85,11 @@ class GapLimit:
             last = film.last
             if last is not None:
                 bearing = film.model.bearing
-                allowed = allowed_part(last.bodies, film.peek(mbs), bearing.radial_clearance, bearing.length)
+                bore, after = self.bores[film], film.peek(mbs)
+                if bore.depth.size:
+                    allowed = _allowed_in_profile(bore, last.bodies, after)
+                else:
+                    allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
                 part = min(part, allowed)
         state = _state(mbs)
         if part < 1.0:
@@ -118,6 +124,16 @@ def allowed_part(before: np.ndarray, after: np.ndarray, clearance: float, length
         if 2.0 * along + square > rest:
             part = min(part, (math.sqrt(along * along + square * rest) - along) / square)
     return part
+
+
+def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) -> float:
+    """As `allowed_part` in a bore with profiles, whose gaps are linear in the journal's place."""
+    gaps, ends = bore.values(before), bore.values(after)
+    smallest = float(gaps.min())
+    if not (smallest > SMALLEST_GAP_SHARE * bore.clearance and np.isfinite(ends).all()):
+        return 1.0
+    beyond = ends < SHARE * smallest
+    return float(np.min((gaps - SHARE * smallest)[beyond] / (gaps - ends)[beyond], initial=1.0))
 
 
 def _state(mbs: exu.MainSystem) -> list[np.ndarray]:

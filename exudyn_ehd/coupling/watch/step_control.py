@@ -8,7 +8,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.status import InputError, require_number
 
@@ -57,30 +57,28 @@ class GapWatch:
 
     def __init__(self, control: StepControl, bearing: JournalBearing) -> None:
         self.share = control.largest_gap_change
-        self.clearance, self.length = bearing.radial_clearance, bearing.length
-        ranges = [SMALLEST_GAP_SHARE * self.clearance]
+        self.bore = BoreGap(bearing)
+        ranges = [SMALLEST_GAP_SHARE * bearing.radial_clearance]
         if bearing.contact is not None:
             ranges.append(bearing.contact.onset)
         if bearing.asperity is not None:
             ranges.append(ROUGHNESSES * bearing.asperity.composite_roughness)
         self.range = max(ranges)
-        self.gap = np.nan
+        self.gap = self.film = np.nan
         self.rejections = 0
 
-    def start(self, motion: np.ndarray) -> None:
-        """Remember the gap at the start of a step."""
-        self.gap = self._gap(motion)
+    def start(self, motion: np.ndarray, film: float | None) -> None:
+        """Remember the gap at the start of a step; ``film`` is that of a film in a worn or soft bore."""
+        self.gap = self.bore.smallest(motion)
+        self.film = self.gap if film is None else film
 
     def rejects(self, motion: np.ndarray, solver: solver_state.Solver | None) -> bool:
         """Whether the step to this motion is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
-        too_far = abs(self._gap(motion) - self.gap) > self.share * max(self.gap, self.range)
+        too_far = abs(self.bore.smallest(motion) - self.gap) > self.share * max(self.film, self.range)
         if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
             return False
         if not solver_state.can_reject_step(solver):
             return False
         self.rejections += 1
         return True
-
-    def _gap(self, motion: np.ndarray) -> float:
-        return self.clearance * (1.0 - eccentricity_ratios(motion, self.clearance, self.length)[1])
