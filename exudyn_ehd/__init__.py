@@ -64,6 +64,7 @@ from exudyn_ehd.status import (
     RunError,
     StarvationWarning,
     Status,
+    StrainWarning,
     ThinFilmWarning,
 )
 
@@ -208,6 +209,7 @@ __all__ = [
     "Status",
     "SteadyResult",
     "StepControl",
+    "StrainWarning",
     "StribeckResult",
     "StudyTable",
     "Support",

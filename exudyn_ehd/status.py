@@ -78,6 +78,10 @@ class ThinFilmWarning(UserWarning):
     """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact."""
 
 
+class StrainWarning(UserWarning):
+    """A bush that is taken as linear strains by more than that describes."""
+
+
 class PlausibilityWarning(UserWarning):
     """An argument has a size that bearings do not have; most likely it is in another unit."""
 

@@ -65,6 +65,8 @@ class _Solid:
 class ANCFBush(_Solid):
     """A bush of 20-node hexahedra in absolute nodal coordinates.
 
+    Any strain and rotation in a joint; `steady` and `equilibrium` take its stiffness at rest.
+
     Parameters
     ----------
     mesh : HollowCylinder or BushMesh

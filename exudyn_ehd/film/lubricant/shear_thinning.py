@@ -37,6 +37,12 @@ _ONE, _TWO, _THREE, _FOUR, _FIVE, _SIX = (_unsigned(k) for k in range(1, 7))
 class CarreauShear:
     """Shear thinning after Carreau, for multigrade and polymer-thickened oils.
 
+    The pressure flow is linearised about the sliding, see the module; squeeze alone does not thin the oil. Against the
+    exact flow across the film of a long bearing (eccentricity ratio 0.8 and 0.9, lambda U / c from 0.2 to 4): the load
+    is 1 to 2 % high where thinning takes up to a quarter of it, 7 to 8 % low where it takes half (n = 0.6, residual
+    0.2), 15 to 16 % low where it takes three quarters (n = 0.5, no residual); the peak pressure likewise, up to 14 %
+    low.
+
     Parameters
     ----------
     relaxation_time : float

@@ -179,10 +179,7 @@ def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: 
         s = 1.0 - eps * eps
         short = ratio * eps / (2.0 * s * s) * math.sqrt(math.pi**2 * s + 16.0 * eps * eps)
         long = 3.0 * eps * math.sqrt(math.pi**2 - eps**2 * (math.pi**2 - 4.0)) / ((2.0 + eps * eps) * s)
-        if short * long / (short + long + 1e-300) < target:
-            lower = eps
-        else:
-            upper = eps
+        lower, upper = (eps, upper) if short * long / (short + long + 1e-300) < target else (lower, eps)
     eps = lower * max(room, 0.02)
     angle = math.atan2(force[1], force[0]) + math.copysign(
         math.atan2(math.pi * math.sqrt(1.0 - eps * eps), 4.0 * eps), omega

@@ -95,10 +95,7 @@ def _settle_number(
         f = float(target) - T
         if abs(f) <= SETTLED * max(abs(T - cold), abs(f), 1e-3):
             return History(temperature=T)
-        if f > 0.0:
-            lower = T
-        else:
-            upper = T
+        lower, upper = (T, upper) if f > 0.0 else (lower, T)
         if previous != T and not math.isnan(previous):
             slope = (f - f_previous) / (T - previous)
         guess = T - f / slope if slope < 0.0 else T + f

@@ -116,7 +116,7 @@ def equilibrium(
     come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner or a flexible bore the stiffness is that of the
     steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
-    `ElrodAdams`).
+    `ElrodAdams`). Bushes are linear, as in `steady`.
 
     Parameters
     ----------
@@ -216,9 +216,7 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     (kxx, kxy), (kyx, kyy) = stiffness
     (cxx, cxy), (cyx, cyy) = damping
     trace = cxx + cyy
-    if trace <= 0.0:
-        return math.nan, 0.0
-    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace
+    k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace if trace > 0.0 else 0.0
     if k <= 0.0:
         return math.nan, 0.0
     square = ((k - kxx) * (k - kyy) - kxy * kyx) / (cxx * cyy - cxy * cyx)

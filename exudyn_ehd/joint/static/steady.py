@@ -19,11 +19,13 @@ from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
-from exudyn_ehd.status import InputError, Status, require_number, require_size, require_vector
+from exudyn_ehd.status import InputError, Status, StrainWarning, require_number, require_size, require_vector, warn_user
 
+# Of a bush, displacement over thickness: above, what its stiffness at rest says is off by more than one per cent.
+LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
 
@@ -120,6 +122,9 @@ def steady(
 ) -> SteadyResult:
     """Film at a prescribed position.
 
+    A bush, `ANCFBush` too, resists with its stiffness at rest; where the bore yields by more than 1 % of the bush's
+    wall, a `StrainWarning` says so. A joint takes the strains of an `ANCFBush` in full.
+
     Parameters
     ----------
     bearing : JournalBearing
@@ -176,16 +181,36 @@ MORE_OIL = (
 )
 
 
+def _warn_of_strain(film: SolvedFilm, where: str) -> None:
+    """Warn where a bush strains beyond what its stiffness at rest describes."""
+    mesh, c = getattr(film.parts.bearing.bush, "mesh", None), film.parts.bearing.radial_clearance
+    # of a mesh of its own from the journal to the nearest point of its outer surface
+    wall = (
+        math.inf
+        if mesh is None
+        else getattr(mesh, "thickness", None)
+        or np.hypot(*mesh.outer.positions[:, :2].T).min() - film.grid.reference_length
+    )
+    share = 0.0 if film.bore is None else c * float(np.abs(film.bore.displacement).max()) / wall
+    if share > LARGEST_STRAIN:
+        warn_user(
+            f"{where}: the bore yields by {share:.1%} of the bush's wall, and the bush is taken as linear here: its "
+            "displacement is off by one to two times that share. An ANCFBush in a joint takes strains in full: let a "
+            "run settle.",
+            StrainWarning,
+        )
+
+
 def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> SteadyResult:
     """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
     evaluation, film = evaluate_at(model, motion, where, near)
+    _warn_of_strain(film, where)
     q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])
     reference = model.bearing.reference_force(motion[8])
-    eccentric = math.hypot(motion[0], motion[1]) > 0.0
     attitude = math.nan
-    if eccentric and force > 0.0:
+    if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:
         turn = math.atan2(motion[1], motion[0]) - math.atan2(-wrench[1], -wrench[0])
         attitude = math.remainder(turn if motion[8] >= 0.0 else -turn, 2.0 * math.pi)
     return SteadyResult(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 
 import numpy as np
 import pytest
@@ -261,6 +262,7 @@ def test_wrong_bushes_are_named(bush, message):
         make_bearing(bush)
 
 
+@pytest.mark.filterwarnings("ignore::exudyn_ehd.StrainWarning")
 def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
     """A rigid bore's clearance is no limit for a journal on a soft bush."""
     mesh = ehd.HollowCylinder(inner_radius=0.025, thickness=0.01, length=0.025, axial=2, radial=2, circumferential=16)
@@ -294,3 +296,29 @@ def test_the_audit_takes_the_profile_from_the_undeformed_bore():
     assert value == pytest.approx(heights / film.minimum_gap, rel=1e-9)
     assert film.audit()["elasticity"].value > 2.0 * value
     assert "profile" not in str(solve(modal(2.1e10)).audit())
+
+
+@pytest.mark.parametrize("kind", [ehd.ANCFBush, ehd.ModalBush])
+def test_a_bore_that_strains_its_bush_beyond_the_linear_says_so(kind):
+    """A wall of 1 mm that yields by 1.4 % of it; stiffer by ten it says nothing. Structured and own mesh alike."""
+    cylinder = ehd.HollowCylinder(
+        inner_radius=0.02005, thickness=1e-3, length=0.02, axial=2, radial=1, circumferential=24
+    )
+    own = ehd.mesh_from_arrays(cylinder.mesh().nodes, cylinder.mesh().elements, bore_radius=0.02005)
+    for mesh, modulus in ((cylinder, 2e7), (own, 2e7), (cylinder, 2e8)):
+        b = ehd.JournalBearing(
+            journal_radius=0.02,
+            length=0.02,
+            radial_clearance=50e-6,
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=48, n_z=8),
+            bush=kind(mesh=mesh, material=material(modulus)),
+        )
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            result = ehd.steady(b, speed=314.0, eccentricity_ratio=0.34)
+        strain = np.abs(result.bore_displacement).max() / 1e-3
+        said = [str(w.message) for w in caught if w.category is ehd.StrainWarning]
+        assert bool(said) == (strain > 0.01) == (modulus == 2e7)
+        if mesh is cylinder and said:
+            assert f"steady: the bore yields by {strain:.1%} of the bush's wall" in said[0]
