@@ -18,7 +18,7 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 @njit(cache=True)
 def assemble_band(kx, kz, number, order, count, width, first, band_out):
-    """Fill the upper band of the active cells' matrix, rows from ``first`` on."""
+    """Fill the upper band of the active cells' matrix, rows from ``first`` on, without links longer than ``width``."""
     n, m = number.shape
     reach = max(width, m) + 1 + PAD
     for r in range(first, count):
@@ -42,7 +42,7 @@ def assemble_band(kx, kz, number, order, count, width, first, band_out):
                 band_out[r, b - r] -= kz[i, j]
         band_out[r, 0] += diagonal
         b = number[nxt, j]
-        if b >= 0 and kx[i, j] != 0.0:
+        if b >= 0 and kx[i, j] != 0.0 and abs(b - r) <= width:
             if b > r:
                 band_out[r, b - r] -= kx[i, j]
             elif b >= first:

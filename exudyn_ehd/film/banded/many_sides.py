@@ -17,13 +17,13 @@ TILE = 48
 
 
 @njit(cache=True, fastmath=_FAST)
-def solve_columns(first, forward, backward, inverse, symmetric, count, width, x):
+def solve_columns(starts, forward, backward, inverse, symmetric, count, width, x):
     """Solve ``A x = b`` with ``A = F^T G`` for every column of x (count, k), C-contiguous, in place.
 
     Parameters
     ----------
-    first : int
-        All rows of x before it are zero.
+    starts : (<= k,) int array
+        First row of every column that is not zero, ascending; columns behind them are zero.
     forward, backward : (size, >= width + 4) arrays
         Bands of F and G, see `ldl` and `lu`; zeros behind the bandwidth.
     inverse : (size,) array
@@ -33,10 +33,17 @@ def solve_columns(first, forward, backward, inverse, symmetric, count, width, x)
     """
     sides = x.shape[1]
     whole = count - count % 4
-    for k in range(min(first - first % 4, whole), whole, 4):
+    known = 0
+    for k in range(0, whole, 4):
+        while known < len(starts) and starts[known] < k + 4:
+            known += 1
+        if known == 0:
+            continue
+        # whole vectors
+        begun = min(known + -known % 4, sides)
         u0, u1, u2, u3 = forward[k], forward[k + 1], forward[k + 2], forward[k + 3]
         x0, x1, x2, x3 = x[k], x[k + 1], x[k + 2], x[k + 3]
-        for q in range(sides):
+        for q in range(begun):
             y0 = x0[q] * inverse[k]
             y1 = (x1[q] - y0 * u0[1]) * inverse[k + 1]
             y2 = (x2[q] - y0 * u0[2] - y1 * u1[1]) * inverse[k + 2]
@@ -47,17 +54,17 @@ def solve_columns(first, forward, backward, inverse, symmetric, count, width, x)
         for t in range(min(width, count - 4 - k)):
             a, b, c, d = u0[4 + t], u1[3 + t], u2[2 + t], u3[1 + t]
             target = x[k + 4 + t]
-            for q in range(sides):
+            for q in range(begun):
                 target[q] -= a * x0[q] + b * x1[q] + c * x2[q] + d * x3[q]
     for k in range(whole, count):
-        known = x[k]
+        own = x[k]
         for q in range(sides):
-            known[q] *= inverse[k]
+            own[q] *= inverse[k]
         for d in range(1, min(width, count - 1 - k) + 1):
             u = forward[k, d]
             target = x[k + d]
             for q in range(sides):
-                target[q] -= u * known[q]
+                target[q] -= u * own[q]
     for k in range(count - 1, -1, -1):
         scale = inverse[k] if symmetric else 1.0
         row, target = backward[k], x[k]
@@ -70,9 +77,9 @@ def solve_columns(first, forward, backward, inverse, symmetric, count, width, x)
                 target[q] -= a * x0[q] + b * x1[q] + c * x2[q] + e * x3[q]
         for d in range(four + 1, reach + 1):
             a = scale * row[d]
-            known = x[k + d]
+            own = x[k + d]
             for q in range(sides):
-                target[q] -= a * known[q]
+                target[q] -= a * own[q]
 
 
 @njit(cache=True)

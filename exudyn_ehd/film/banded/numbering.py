@@ -4,8 +4,8 @@ The matrix of the finite-volume Reynolds equation couples a cell with its two ne
 in z. Active cells are numbered column by column (z fastest), so that the half-bandwidth is at most the number of
 unknown rows. The ring of columns is cut
 
-* at a column without active cells or at a missing link (then one column couples only with the next one), or, if there
-  is none,
+* at a column without active cells, or else
+* where the fewest active cells are linked in theta, if these are not more than may be left out of the band, or
 * nowhere: the ring is folded (columns 0, n-1, 1, n-2, ...), which doubles the bandwidth.
 
 The numbering, and with it every bit of the solution, depends on the active set alone and not on how it was found.
@@ -13,12 +13,16 @@ The numbering, and with it every bit of the solution, depends on the active set 
 
 from __future__ import annotations
 
+import numpy as np
 from numba import njit
+
+# numpy's integer, since numba compiles kernels anew for a plain 0
+_NONE = np.int64(0)
 
 
 @njit(cache=True)
 def number_cells(active, kx, order_out, number_out):
-    """Number the active cells; returns (count, half-bandwidth).
+    """Number the active cells, all their links in the band; returns (count, half-bandwidth).
 
     Parameters
     ----------
@@ -30,12 +34,15 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
-    return number_along(active, kx, 1, order_out, number_out)
+    return number_along(active, kx, 1, _NONE, order_out, number_out)
 
 
 @njit(cache=True)
-def number_along(active, kx, forth, order_out, number_out):
-    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1)."""
+def number_along(active, kx, forth, spare, order_out, number_out):
+    """As `number_cells`, with the columns in theta (``forth`` = 1) or against it (-1).
+
+    Up to ``spare`` links may be left out of the band: their cells' numbers are further apart than the half-bandwidth.
+    """
     n, m = active.shape
     first = -1
     for i in range(n):
@@ -47,16 +54,22 @@ def number_along(active, kx, forth, order_out, number_out):
         if empty:
             first = (i + forth + n) % n
             break
+    cut = -1
     if first < 0:
+        fewest = spare + 1
         for i in range(n):
-            linked = False
+            nxt = i + 1 if i + 1 < n else 0
+            linked = 0
             for j in range(m):
-                if kx[i, j] != 0.0:
-                    linked = True
-                    break
-            if not linked:
-                first = (i + 1) % n if forth > 0 else i
-                break
+                if active[i, j] and active[nxt, j] and kx[i, j] != 0.0:
+                    linked += 1
+                    if linked == fewest:
+                        break
+            if linked < fewest:
+                fewest = linked
+                cut = i
+        if cut >= 0:
+            first = (cut + 1) % n if forth > 0 else cut
     count = 0
     for s in range(n):
         if first >= 0:
@@ -74,6 +87,8 @@ def number_along(active, kx, forth, order_out, number_out):
                 number_out[i, j] = -1
     width = 1
     for i in range(n):
+        if i == cut:
+            continue
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
             a = number_out[i, j]

@@ -3,7 +3,7 @@
 The unknowns lam of the full vertices and nu of the cavitated ones follow from the right-hand sides g and mu by way of
 ``z = E^T lam``:
 
-    z = (I - G)^-T V^T (g + K^T T^T mu),    nu = T^T (mu + R^T z),    A lam = g + K^T nu.
+    z = (I - G)^-T V^T (g + K^T T^T mu),    nu = T^T (mu + R^T z),    A lam = g + K^T nu + C^T z.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.many_sides import solve_columns
-from exudyn_ehd.film.banded.workspace import FIRST_ROW
-from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
+from exudyn_ehd.film.cavitation.cavity_transport import CROSSED, DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -82,6 +81,12 @@ def solve_transport_transposed(t, unknowns, x):
             known = z[t.received_to[e]]
             for q in range(sides):
                 target[q] += f * known[q]
+        for e in range(t.shape[CROSSED]):
+            target = g[t.crossed_from[e]]
+            f = t.crossed_by[e]
+            known = z[t.crossed_to[e]]
+            for q in range(sides):
+                target[q] += f * known[q]
     _convect_back(t, placed, mu)
     for e in range(t.shape[DRIVEN]):
         target = g[t.driven_from[e]]
@@ -89,7 +94,7 @@ def solve_transport_transposed(t, unknowns, x):
         known = mu[t.driven_to[e]]
         for q in range(sides):
             target[q] += k * known[q]
-    solve_columns(FIRST_ROW, t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)
+    solve_columns(np.zeros(sides, dtype=np.int64), t.band, t.band, t.diagonal, True, count, t.shape[WIDTH], g)
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -143,6 +148,8 @@ def reduce_transposed(t, unknowns, x):
                 z[a] = s
             for e in range(t.shape[RECEIVED]):
                 mu[t.received_from[e]] += t.received_by[e] * z[t.received_to[e]]
+            for e in range(t.shape[CROSSED]):
+                g[t.crossed_from[e]] += t.crossed_by[e] * z[t.crossed_to[e]]
         _convect_back_one(t, placed, mu)
         for e in range(t.shape[DRIVEN]):
             g[t.driven_from[e]] += t.driven_by[e] * mu[t.driven_to[e]]

@@ -17,6 +17,10 @@ is left: as many unknowns as the front has vertices, column diagonally dominant 
 because no more oil comes back than the front has received. `exudyn_ehd.film.cavitation.cavity_adjoint` goes the same
 way backwards.
 
+Where the film is full all around in a few rows, at its ends say, the ring is cut there too: A loses the conductances k
+of the links that are cut, not its diagonal, and what comes through them, ``k P`` of the other side, joins the w:
+``w = R fill + C P`` and ``G = R T K V + C V``. Nothing else changes, as C takes no more from a vertex than leaves it.
+
 Unknowns are numbered full vertices first, column by column against the flow, so that the front comes last and V costs
 half a solution; then the cavitated ones along the flow, row by row. All of it depends on the sets alone.
 
@@ -36,7 +40,9 @@ from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
-FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED = range(6)
+# The ring is cut at links in up to one of so many rows
+CUT_ROWS = 3
+FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED, CROSSED = range(7)
 
 
 @njit(cache=True)
@@ -91,13 +97,14 @@ def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
 
 @njit(cache=True)
 def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out):
-    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R.
+    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K, R and C.
 
-    Returns the number of front vertices, -1 for a singular D.
+    Returns the number of front vertices, those of cut links among them; -1 for a singular D.
     """
     n, m = full.shape
     kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
-    driven = received = fronts = 0
+    width = t.shape[WIDTH]
+    driven = received = crossed = fronts = 0
     for r in range(count + placed):
         i = order[r] // m
         j = order[r] - i * m
@@ -133,6 +140,15 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                     rhs += k * P[a, b]
                 elif not full[a, b]:
                     rhs += k * pc
+                elif k != 0.0 and abs(t.number[a, b] - r) > width:
+                    if fresh:
+                        t.front[fronts] = r
+                        fronts += 1
+                        fresh = False
+                    t.crossed_from[crossed] = t.number[a, b]
+                    t.crossed_to[crossed] = fronts - 1
+                    t.crossed_by[crossed] = k
+                    crossed += 1
             elif known:
                 rhs += k * (P[a, b] - pc)
             elif full[a, b] and k != 0.0:
@@ -173,6 +189,7 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
         t.inverse[c] = 1.0 / store
     t.shape[DRIVEN] = driven
     t.shape[RECEIVED] = received
+    t.shape[CROSSED] = crossed
     return fronts
 
 
@@ -229,7 +246,8 @@ def _factor_loop(t, placed):
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
     loop = t.loop
     fill = np.empty((placed, stride))
-    _convect_columns(t, placed, t.spread[: count * stride].reshape(count, stride), fill)
+    V = t.spread[: count * stride].reshape(count, stride)
+    _convect_columns(t, placed, V, fill)
     for a in range(fronts):
         for b in range(fronts):
             loop[a, b] = 1.0 if a == b else 0.0
@@ -237,6 +255,12 @@ def _factor_loop(t, placed):
         row = loop[t.received_to[e]]
         known = fill[t.received_from[e]]
         f = t.received_by[e]
+        for b in range(fronts):
+            row[b] -= f * known[b]
+    for e in range(t.shape[CROSSED]):
+        row = loop[t.crossed_to[e]]
+        known = V[t.crossed_from[e]]
+        f = t.crossed_by[e]
         for b in range(fronts):
             row[b] -= f * known[b]
     for k in range(fronts):
@@ -270,16 +294,23 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
     x_out : (n m,) array
         Right-hand sides b and c.
     """
-    # against the flow
-    count, width = number_along(full, film.kx, -along, order, t.number)
-    placed = _order_cavity(full, film.fixed, film.fx, along, across, count, order, t.place)
-    if placed < 0:
-        return False, 0
-    fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out)
-    if fronts < 0 or fronts > t.loop.shape[0]:
+    count = placed = fronts = width = 0
+    for spare in (full.shape[1] // CUT_ROWS, 0):
+        # against the flow
+        count, width = number_along(full, film.kx, -along, spare, order, t.number)
+        placed = _order_cavity(full, film.fixed, film.fx, along, across, count, order, t.place)
+        if placed < 0:
+            return False, 0
+        t.shape[WIDTH] = width
+        fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out)
+        if fronts < 0:
+            return False, 0
+        if fronts <= t.loop.shape[0]:
+            break
+    if fronts > t.loop.shape[0]:
         return False, 0
     stride = fronts + -fronts % 4
-    t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE], t.shape[WIDTH] = count, fronts, stride, width
+    t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE] = count, fronts, stride
     assemble_band(film.kx, film.kz, t.number, order, count, width, FIRST_ROW, t.band)
     if not factor_band(t.band, count, width, FIRST_ROW, t.diagonal):
         return False, 0
@@ -288,10 +319,20 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
         V[:] = 0.0
         for b in range(fronts):
             V[t.front[b], b] = 1.0
-        solve_columns(t.front[0], t.band, t.band, t.diagonal, True, count, width, V)
+        solve_columns(t.front[:fronts], t.band, t.band, t.diagonal, True, count, width, V)
         if not _factor_loop(t, placed):
             return False, 0
     return True, count + placed
+
+
+@njit(cache=True, fastmath=_FAST)
+def _spread(V, w, P):
+    """P += V w."""
+    for r in range(V.shape[0]):
+        s = 0.0
+        for b in range(V.shape[1]):
+            s += V[r, b] * w[b]
+        P[r] += s
 
 
 @njit(cache=True)
@@ -304,9 +345,11 @@ def solve_transport(t, unknowns, x):
     if fronts > 0:
         trial = fill.copy()
         _convect(t, placed, P, trial)
-        w = np.zeros(fronts)
+        w = np.zeros(stride)
         for e in range(t.shape[RECEIVED]):
             w[t.received_to[e]] += t.received_by[e] * trial[t.received_from[e]]
+        for e in range(t.shape[CROSSED]):
+            w[t.crossed_to[e]] += t.crossed_by[e] * P[t.crossed_from[e]]
         for a in range(fronts):
             for b in range(a):
                 w[a] -= t.loop[a, b] * w[b]
@@ -314,10 +357,5 @@ def solve_transport(t, unknowns, x):
             for b in range(a + 1, fronts):
                 w[a] -= t.loop[a, b] * w[b]
             w[a] /= t.loop[a, a]
-        V = t.spread[: count * stride].reshape(count, stride)
-        for r in range(count):
-            s = 0.0
-            for b in range(fronts):
-                s += V[r, b] * w[b]
-            P[r] += s
+        _spread(t.spread[: count * stride].reshape(count, stride), w, P)
     _convect(t, placed, P, fill)

@@ -37,6 +37,7 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.film.cavitation.cavity_transport import (
+    FRONT,
     FULL_COUNT,
     WIDTH,
     factor_transport,
@@ -151,7 +152,7 @@ class ElrodAdams:
         """Solve the transposed system for every row of rhs (k, count), in place."""
         if work.convected:
             t = work.transport
-            if t.shape[FULL_COUNT] < work.count:
+            if t.shape[FULL_COUNT] < work.count or t.shape[FRONT] > 0:
                 reduce_transposed(t, work.count, rhs)
             solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rhs)
             return

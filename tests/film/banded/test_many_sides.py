@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.film.banded.many_sides import TILE, make_tiles, solve_columns, solve_in_tiles
-from exudyn_ehd.film.banded.workspace import FIRST_ROW
 
 
 def by_columns(factor, count, width, b):
     x = b.copy()
-    solve_columns(FIRST_ROW, *factor, count, width, x)
+    solve_columns(np.zeros(b.shape[1], dtype=np.int64), *factor, count, width, x)
     return x
 
 
