@@ -65,21 +65,56 @@ def solve_columns(starts, forward, backward, inverse, symmetric, count, width, x
             target = x[k + d]
             for q in range(sides):
                 target[q] -= u * own[q]
-    for k in range(count - 1, -1, -1):
-        scale = inverse[k] if symmetric else 1.0
-        row, target = backward[k], x[k]
-        reach = min(width, count - 1 - k)
-        four = reach - reach % 4
-        for d in range(1, four, 4):
-            a, b, c, e = scale * row[d], scale * row[d + 1], scale * row[d + 2], scale * row[d + 3]
-            x0, x1, x2, x3 = x[k + d], x[k + d + 1], x[k + d + 2], x[k + d + 3]
+    _substitute_back(backward, inverse, symmetric, count, width, x)
+
+
+@njit(cache=True, fastmath=_FAST)
+def _substitute_back(backward, inverse, symmetric, count, width, x):
+    """The second half of `solve_columns`, four rows at a time."""
+    sides = x.shape[1]
+    whole = count - count % 4
+    i0 = i1 = i2 = i3 = 1.0
+    for k in range(count - 1, whole - 1, -1):
+        target = x[k]
+        for d in range(1, min(width, count - 1 - k) + 1):
+            a = backward[k, d] * (inverse[k] if symmetric else 1.0)
+            known = x[k + d]
             for q in range(sides):
-                target[q] -= a * x0[q] + b * x1[q] + c * x2[q] + e * x3[q]
-        for d in range(four + 1, reach + 1):
-            a = scale * row[d]
-            own = x[k + d]
+                target[q] -= a * known[q]
+    for k in range(whole - 4, -1, -4):
+        if symmetric:
+            i0, i1, i2, i3 = inverse[k], inverse[k + 1], inverse[k + 2], inverse[k + 3]
+        r0, r1, r2, r3 = backward[k], backward[k + 1], backward[k + 2], backward[k + 3]
+        x0, x1, x2, x3 = x[k], x[k + 1], x[k + 2], x[k + 3]
+        reach = min(width, count - 4 - k)
+        for t in range(0, reach - 1, 2):
+            a, b, c, d = i0 * r0[4 + t], i1 * r1[3 + t], i2 * r2[2 + t], i3 * r3[1 + t]
+            e, f, g, h = i0 * r0[5 + t], i1 * r1[4 + t], i2 * r2[3 + t], i3 * r3[2 + t]
+            y0, y1 = x[k + 4 + t], x[k + 5 + t]
             for q in range(sides):
-                target[q] -= a * own[q]
+                z0, z1 = y0[q], y1[q]
+                x0[q] -= a * z0 + e * z1
+                x1[q] -= b * z0 + f * z1
+                x2[q] -= c * z0 + g * z1
+                x3[q] -= d * z0 + h * z1
+        if reach % 2 == 1:
+            a, b, c, d = i0 * r0[3 + reach], i1 * r1[2 + reach], i2 * r2[1 + reach], i3 * r3[reach]
+            y0 = x[k + 3 + reach]
+            for q in range(sides):
+                z0 = y0[q]
+                x0[q] -= a * z0
+                x1[q] -= b * z0
+                x2[q] -= c * z0
+                x3[q] -= d * z0
+        a, b, c = i0 * r0[1], i0 * r0[2], i0 * r0[3]
+        d, e, f = i1 * r1[1], i1 * r1[2], i2 * r2[1]
+        for q in range(sides):
+            z3 = x3[q]
+            z2 = x2[q] - f * z3
+            z1 = x1[q] - d * z2 - e * z3
+            x0[q] -= a * z1 + b * z2 + c * z3
+            x1[q] = z1
+            x2[q] = z2
 
 
 @njit(cache=True)

@@ -101,80 +101,82 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
 
     Returns the number of front vertices, those of cut links among them; -1 for a singular D.
     """
-    n, m = full.shape
-    kx, kz, fx, fz, area, fixed = film.kx, film.kz, film.fx, film.fz, film.area, film.fixed
+    m, size = full.shape[1], full.size
+    kx, kz, fx, fz = film.kx.reshape(-1), film.kz.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
+    area, H, H_t, old = film.area.reshape(-1), film.H.reshape(-1), film.H_t.reshape(-1), mass_old.reshape(-1)
+    fixed, sets, given = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1)
+    number, place = t.number.reshape(-1), t.place.reshape(-1)
     width = t.shape[WIDTH]
     driven = received = crossed = fronts = 0
     for r in range(count + placed):
-        i = order[r] // m
-        j = order[r] - i * m
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        is_full = full[i, j]
+        own = order[r]
+        is_full = sets[own]
         c = r - count
         if inverse_step > 0.0:
-            rhs = area[i, j] * mass_old[i, j] * inverse_step
-            store = area[i, j] * film.H[i, j] * inverse_step
+            rhs = area[own] * old[own] * inverse_step
+            store = area[own] * H[own] * inverse_step
         else:
             rhs = 0.0
-            store = area[i, j] * film.H_t[i, j]
+            store = area[own] * H_t[own]
         along = across = -1
         by_along = by_across = 0.0
         fresh = True
         for side in range(4):
             if side == 0:
-                a, b, k, inflow = prv, j, kx[prv, j], fx[prv, j]
+                at = own - m if own >= m else own - m + size
+                k, inflow = kx[at], fx[at]
             elif side == 1:
-                a, b, k, inflow = nxt, j, kx[i, j], -fx[i, j]
+                at = own + m if own + m < size else own + m - size
+                k, inflow = kx[own], -fx[own]
             elif side == 2:
-                if j == 0:
-                    continue
-                a, b, k, inflow = i, j - 1, kz[i, j - 1], fz[i, j - 1]
+                at = own - 1 if own > 0 else size - 1
+                k, inflow = kz[at], fz[at]
             else:
-                if j + 1 == m:
-                    break
-                a, b, k, inflow = i, j + 1, kz[i, j], -fz[i, j]
-            known = fixed[a, b]
+                at = own + 1
+                k, inflow = kz[own], -fz[own]
+            if k == 0.0 and inflow == 0.0:  # so are the links behind the ends
+                continue
+            known = fixed[at]
             if is_full:
                 if known:
-                    rhs += k * P[a, b]
-                elif not full[a, b]:
+                    rhs += k * given[at]
+                elif not sets[at]:
                     rhs += k * pc
-                elif k != 0.0 and abs(t.number[a, b] - r) > width:
+                elif k != 0.0 and abs(number[at] - r) > width:
                     if fresh:
                         t.front[fronts] = r
                         fronts += 1
                         fresh = False
-                    t.crossed_from[crossed] = t.number[a, b]
+                    t.crossed_from[crossed] = number[at]
                     t.crossed_to[crossed] = fronts - 1
                     t.crossed_by[crossed] = k
                     crossed += 1
             elif known:
-                rhs += k * (P[a, b] - pc)
-            elif full[a, b] and k != 0.0:
+                rhs += k * (given[at] - pc)
+            elif sets[at] and k != 0.0:
                 rhs -= k * pc
-                t.driven_from[driven] = t.number[a, b]
+                t.driven_from[driven] = number[at]
                 t.driven_to[driven] = c
                 t.driven_by[driven] = k
                 driven += 1
             if inflow <= 0.0:
                 store -= inflow
-            elif known or full[a, b]:
+            elif known or sets[at]:
                 rhs += inflow
             elif is_full:
                 if fresh:
                     t.front[fronts] = r
                     fronts += 1
                     fresh = False
-                t.received_from[received] = t.place[a, b]
+                t.received_from[received] = place[at]
                 t.received_to[received] = fronts - 1
                 t.received_by[received] = inflow
                 received += 1
             elif side < 2:
-                along = t.place[a, b]
+                along = place[at]
                 by_along = inflow
             else:
-                across = t.place[a, b]
+                across = place[at]
                 by_across = inflow
         if is_full:
             x_out[r] = rhs - store

@@ -263,6 +263,7 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
                 full[i, j] = False
                 fill[i, j] = 1.0
     directions = flow_direction(film.fx), flow_direction(film.fz)
+    sets, pressures, fills = full.reshape(-1), P.reshape(-1), fill.reshape(-1)
     for step in range(MAX_NEWTON_STEPS):
         ok, count, width, convected = _solve_sets(
             film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P
@@ -271,23 +272,20 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
             return False, step + 1, count, width, convected
         peak = 0.0
         for r in range(count):
-            if full[order[r] // m, order[r] % m]:
+            if sets[order[r]]:
                 peak = max(peak, abs(x[r] - pc))
         changes = 0
         for r in range(count):
-            i = order[r] // m
-            j = order[r] % m
-            if full[i, j]:
-                P[i, j] = x[r]
-                fill[i, j] = 1.0
+            c = order[r]
+            if sets[c]:
+                pressures[c], fills[c] = x[r], 1.0
                 if x[r] < pc - SET_TOLERANCE * peak:
-                    full[i, j] = False
+                    sets[c] = False
                     changes += 1
             else:
-                P[i, j] = pc
-                fill[i, j] = x[r]
+                pressures[c], fills[c] = pc, x[r]
                 if x[r] > 1.0 + SET_TOLERANCE:
-                    full[i, j] = True
+                    sets[c] = True
                     changes += 1
         if changes == 0:
             sound = True

@@ -8,6 +8,7 @@ from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import PAD, transport_buffers
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
 from exudyn_ehd.film.cavitation.cavity_transport import (
+    CROSSED,
     FRONT,
     FULL_COUNT,
     WIDTH,
@@ -33,11 +34,16 @@ CASES = {
     "pocket": {"columns": (2, 9), "pocket": True, "vz": 0.2},
     "ragged": {"columns": (3, 9), "ragged": True, "vz": 0.3},
     "at rest": {"columns": (0, N), "vx": 0.0},
+    "full in one row all around": {"columns": (3, 9), "seam": (1,)},
+    "full in one row all around, against": {"columns": (3, 9), "seam": (4,), "vx": -1.0, "vz": 0.4},
+    "full in one row all around, at rest": {"columns": (3, 9), "seam": (4,), "vx": 0.0, "inverse_step": 2.0},
     "squeezed": {"columns": (3, 9), "vx": 0.0, "inverse_step": 2.0},
 }
 
 
-def film(columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap=None, pocket=False, ragged=False):
+def film(
+    columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap=None, pocket=False, ragged=False, seam=()
+):
     """Arguments of `assemble_elrod` before the numbering, and the full vertices."""
     rng = np.random.default_rng(3)
     H = rng.uniform(0.5, 1.5, (N, M))
@@ -57,6 +63,7 @@ def film(columns, vx=1.0, vz=0.0, more=None, strips=False, inverse_step=0.0, gap
             full[np.arange(*span) % N] = True
     if strips:
         full[:, [1, -2]] = True
+    full[:, seam] = True
     if ragged:
         full ^= rng.uniform(size=(N, M)) < 0.2
     full &= ~fixed
@@ -83,14 +90,12 @@ def dense(arguments, P):
     return A, rhs[:count], order[:count]
 
 
-@pytest.mark.parametrize("name", CASES)
-def test_against_dense(name):
-    arguments, P = film(**CASES[name])
+def check(arguments, P, rtol, atol):
+    """Every solution with the factor against dense algebra, to ``rtol`` and ``atol`` of its largest; returns it."""
     A, b, places = dense(arguments, P)
     t = transport_buffers(N, M, np.full((N * M, 2 * M + 2 + PAD), np.nan))
     order, x = np.zeros(N * M, dtype=np.int64), np.zeros(N * M)
-    fx, fz, full = arguments[0].fx, arguments[0].fz, arguments[-1]
-    along, across = flow_direction(fx), flow_direction(fz)
+    along, across = flow_direction(arguments[0].fx), flow_direction(arguments[0].fz)
     ok, count = factor_transport(*arguments, along, across, order, P, t, x)
     assert ok
     assert count == len(b)
@@ -98,20 +103,53 @@ def test_against_dense(name):
     at = np.argsort(places)[np.searchsorted(np.sort(places), order[:count])]
     np.testing.assert_array_equal(places[at], order[:count])
     A, b = A[np.ix_(at, at)], b[at]
-    np.testing.assert_allclose(x[:count], b, atol=1e-13)  # sums of a few numbers of size 1
+    np.testing.assert_allclose(x[:count], b, atol=1e-13 * max(1.0, abs(b).max()))
+
+    def equal(found, system, known):
+        expected = np.linalg.solve(system, known)
+        np.testing.assert_allclose(found, expected, rtol=rtol, atol=atol * max(1.0, abs(expected).max()))
+
     solve_transport(t, count, x)
-    np.testing.assert_allclose(x[:count], np.linalg.solve(A, b), rtol=1e-10, atol=1e-11)
+    equal(x[:count], A, b)
     sides = np.random.default_rng(5).normal(size=(count, 5))
     known = sides.copy()
     solve_transport_transposed(t, count, sides)
-    np.testing.assert_allclose(sides, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
+    equal(sides, A.T, known)
     rows = np.ascontiguousarray(known.T)
     rows[0, t.shape[FULL_COUNT] :] = 0.0
     known[t.shape[FULL_COUNT] :, 0] = 0.0
     reduce_transposed(t, count, rows)
     solve_ldl(t.band, t.diagonal, t.shape[FULL_COUNT], t.shape[WIDTH], rows)
-    np.testing.assert_allclose(rows.T, np.linalg.solve(A.T, known), rtol=1e-10, atol=1e-11)
-    assert (t.shape[FRONT] > 0) == (full.sum() < count and along * fx.max() != 0.0)
+    equal(rows.T, A.T, known)
+    return t, count
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_against_dense(name):
+    arguments, P = film(**CASES[name])
+    t, count = check(arguments, P, 1e-10, 1e-11)
+    fx, full = arguments[0].fx, arguments[-1]
+    convects = full.sum() < count and fx.any()
+    rows = 2 if CASES[name].get("strips") and "gap" not in CASES[name] else len(CASES[name].get("seam", ()))
+    assert t.shape[CROSSED] == 2 * rows
+    assert (t.shape[FRONT] > 0) == (convects or rows > 0)
+    assert not rows or t.shape[WIDTH] <= M - 2
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_any_cavity(seed):
+    """Full vertices anywhere, rows full all around, conductances over six decades: no pivot, no cancellation."""
+    rng = np.random.default_rng(seed)
+    columns = rng.integers(N) + np.array([0, rng.integers(1, N)])
+    arguments, P = film(columns=columns, vx=rng.choice([-1.0, 1.0]), inverse_step=1.0)
+    coefficients, *given, full = arguments
+    kx, kz = 10.0 ** rng.uniform(-3.0, 3.0, (2, N, M))
+    kz[:, -1] = 0.0
+    full ^= rng.uniform(size=(N, M)) < 0.05
+    full[rng.integers(N)] = True
+    full[:, rng.choice(np.arange(1, M - 1), rng.integers(1, 3), replace=False)] = True
+    full &= ~coefficients.fixed
+    check((coefficients._replace(kx=kx, kz=kz), *given, full), P, 1e-9, 1e-11)
 
 
 def test_oil_that_goes_round_is_left_to_the_folded_ring():
