@@ -298,18 +298,15 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
     """
     count = placed = fronts = width = 0
     for spare in (full.shape[1] // CUT_ROWS, 0):
-        # against the flow
-        count, width = number_along(full, film.kx, -along, spare, order, t.number)
+        count, width = number_along(full, film.kx, -along, spare, order, t.number)  # against the flow
         placed = _order_cavity(full, film.fixed, film.fx, along, across, count, order, t.place)
         if placed < 0:
             return False, 0
         t.shape[WIDTH] = width
         fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out)
-        if fronts < 0:
-            return False, 0
-        if fronts <= t.loop.shape[0]:
+        if 0 <= fronts <= t.loop.shape[0]:
             break
-    if fronts > t.loop.shape[0]:
+    if not 0 <= fronts <= t.loop.shape[0]:
         return False, 0
     stride = fronts + -fronts % 4
     t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE] = count, fronts, stride
