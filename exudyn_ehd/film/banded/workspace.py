@@ -20,8 +20,8 @@ class Transport(NamedTuple):
 
     Attributes
     ----------
-    shape : (7,) int array
-        Number of full vertices, of front vertices, columns of V, half-bandwidth of A, length of the lists K, R and C.
+    shape : (6,) int array
+        Number of full vertices, of front vertices, columns of V, half-bandwidth of A, length of the lists K and R.
     number : (n, m) int array
         Unknown of a full vertex, else -1.
     place : (n, m) int array
@@ -33,9 +33,7 @@ class Transport(NamedTuple):
     driven_from, driven_to, driven_by : (4 size,) arrays
         K as a list: full unknown, place, conductance.
     received_from, received_to, received_by : (2 size,) arrays
-        R as a list: place, front vertex, flux of a full film.
-    crossed_from, crossed_to, crossed_by : (2 m,) arrays
-        C as a list, links that are cut: full unknown, front vertex, conductance.
+        R and C as a list: unknown, front vertex, flux of a full film or conductance of a cut link.
     front : (size,) int array
         Full unknown of every front vertex, ascending.
     band, diagonal : (size, >= 2 m + 6), (size,) arrays
@@ -60,9 +58,6 @@ class Transport(NamedTuple):
     received_from: np.ndarray
     received_to: np.ndarray
     received_by: np.ndarray
-    crossed_from: np.ndarray
-    crossed_to: np.ndarray
-    crossed_by: np.ndarray
     front: np.ndarray
     band: np.ndarray
     diagonal: np.ndarray
@@ -78,7 +73,7 @@ def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
         return np.zeros(shape, dtype=np.int64)
 
     return Transport(
-        shape=places(7),
+        shape=places(6),
         number=places(n, m),
         place=places(n, m),
         along=places(size),
@@ -92,9 +87,6 @@ def transport_buffers(n: int, m: int, band: np.ndarray) -> Transport:
         received_from=places(2 * size),
         received_to=places(2 * size),
         received_by=np.zeros(2 * size),
-        crossed_from=places(2 * m),
-        crossed_to=places(2 * m),
-        crossed_by=np.zeros(2 * m),
         front=places(size),
         band=band,
         diagonal=np.zeros(size),

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.many_sides import solve_columns
-from exudyn_ehd.film.cavitation.cavity_transport import CROSSED, DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
+from exudyn_ehd.film.cavitation.cavity_transport import DRIVEN, FRONT, FULL_COUNT, RECEIVED, STRIDE, WIDTH
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
@@ -76,15 +76,9 @@ def solve_transport_transposed(t, unknowns, x):
                 for q in range(sides):
                     z[a, q] -= f * z[b, q]
         for e in range(t.shape[RECEIVED]):
-            target = mu[t.received_from[e]]
+            target = x[t.received_from[e]]
             f = t.received_by[e]
             known = z[t.received_to[e]]
-            for q in range(sides):
-                target[q] += f * known[q]
-        for e in range(t.shape[CROSSED]):
-            target = g[t.crossed_from[e]]
-            f = t.crossed_by[e]
-            known = z[t.crossed_to[e]]
             for q in range(sides):
                 target[q] += f * known[q]
     _convect_back(t, placed, mu)
@@ -147,9 +141,7 @@ def reduce_transposed(t, unknowns, x):
                     s -= t.loop[b, a] * z[b]
                 z[a] = s
             for e in range(t.shape[RECEIVED]):
-                mu[t.received_from[e]] += t.received_by[e] * z[t.received_to[e]]
-            for e in range(t.shape[CROSSED]):
-                g[t.crossed_from[e]] += t.crossed_by[e] * z[t.crossed_to[e]]
+                x[k, t.received_from[e]] += t.received_by[e] * z[t.received_to[e]]
         _convect_back_one(t, placed, mu)
         for e in range(t.shape[DRIVEN]):
             g[t.driven_from[e]] += t.driven_by[e] * mu[t.driven_to[e]]

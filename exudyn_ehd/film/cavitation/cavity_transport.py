@@ -42,7 +42,7 @@ from exudyn_ehd.film.banded.workspace import FIRST_ROW
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 # The ring is cut at links in up to one of so many rows
 CUT_ROWS = 3
-FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED, CROSSED = range(7)
+FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED = range(6)
 
 
 @njit(cache=True)
@@ -97,7 +97,7 @@ def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
 
 @njit(cache=True)
 def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out):
-    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K, R and C.
+    """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R with C.
 
     Returns the number of front vertices, those of cut links among them; -1 for a singular D.
     """
@@ -107,7 +107,7 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
     fixed, sets, given = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1)
     number, place = t.number.reshape(-1), t.place.reshape(-1)
     width = t.shape[WIDTH]
-    driven = received = crossed = fronts = 0
+    driven = received = fronts = 0
     for r in range(count + placed):
         own = order[r]
         is_full = sets[own]
@@ -136,21 +136,14 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                 k, inflow = kz[own], -fz[own]
             if k == 0.0 and inflow == 0.0:  # so are the links behind the ends
                 continue
-            known = fixed[at]
+            known, source, by = fixed[at], -1, 0.0
             if is_full:
                 if known:
                     rhs += k * given[at]
                 elif not sets[at]:
                     rhs += k * pc
                 elif k != 0.0 and abs(number[at] - r) > width:
-                    if fresh:
-                        t.front[fronts] = r
-                        fronts += 1
-                        fresh = False
-                    t.crossed_from[crossed] = number[at]
-                    t.crossed_to[crossed] = fronts - 1
-                    t.crossed_by[crossed] = k
-                    crossed += 1
+                    source, by = number[at], k
             elif known:
                 rhs += k * (given[at] - pc)
             elif sets[at] and k != 0.0:
@@ -164,20 +157,22 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
             elif known or sets[at]:
                 rhs += inflow
             elif is_full:
-                if fresh:
-                    t.front[fronts] = r
-                    fronts += 1
-                    fresh = False
-                t.received_from[received] = place[at]
-                t.received_to[received] = fronts - 1
-                t.received_by[received] = inflow
-                received += 1
+                source, by = count + place[at], inflow
             elif side < 2:
                 along = place[at]
                 by_along = inflow
             else:
                 across = place[at]
                 by_across = inflow
+            if source >= 0:
+                if fresh:
+                    t.front[fronts] = r
+                    fronts += 1
+                    fresh = False
+                t.received_from[received] = source
+                t.received_to[received] = fronts - 1
+                t.received_by[received] = by
+                received += 1
         if is_full:
             x_out[r] = rhs - store
             continue
@@ -191,7 +186,6 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
         t.inverse[c] = 1.0 / store
     t.shape[DRIVEN] = driven
     t.shape[RECEIVED] = received
-    t.shape[CROSSED] = crossed
     return fronts
 
 
@@ -255,14 +249,9 @@ def _factor_loop(t, placed):
             loop[a, b] = 1.0 if a == b else 0.0
     for e in range(t.shape[RECEIVED]):
         row = loop[t.received_to[e]]
-        known = fill[t.received_from[e]]
+        source = t.received_from[e]
+        known = V[source] if source < count else fill[source - count]
         f = t.received_by[e]
-        for b in range(fronts):
-            row[b] -= f * known[b]
-    for e in range(t.shape[CROSSED]):
-        row = loop[t.crossed_to[e]]
-        known = V[t.crossed_from[e]]
-        f = t.crossed_by[e]
         for b in range(fronts):
             row[b] -= f * known[b]
     for k in range(fronts):
@@ -346,9 +335,8 @@ def solve_transport(t, unknowns, x):
         _convect(t, placed, P, trial)
         w = np.zeros(stride)
         for e in range(t.shape[RECEIVED]):
-            w[t.received_to[e]] += t.received_by[e] * trial[t.received_from[e]]
-        for e in range(t.shape[CROSSED]):
-            w[t.crossed_to[e]] += t.crossed_by[e] * P[t.crossed_from[e]]
+            source = t.received_from[e]
+            w[t.received_to[e]] += t.received_by[e] * (P[source] if source < count else trial[source - count])
         for a in range(fronts):
             for b in range(a):
                 w[a] -= t.loop[a, b] * w[b]
