@@ -78,6 +78,10 @@ class ThinFilmWarning(UserWarning):
     """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact."""
 
 
+class OverloadWarning(UserWarning):
+    """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing."""
+
+
 class StrainWarning(UserWarning):
     """A bush that is taken as linear strains by more than that describes."""
 

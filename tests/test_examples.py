@@ -9,6 +9,8 @@ import pytest
 pytestmark = [
     pytest.mark.usefixtures("tidy_pictures"),
     pytest.mark.filterwarnings("error::exudyn_ehd.PlausibilityWarning"),
+    pytest.mark.filterwarnings("error::exudyn_ehd.ThinFilmWarning"),
+    pytest.mark.filterwarnings("error::exudyn_ehd.OverloadWarning"),
 ]
 
 

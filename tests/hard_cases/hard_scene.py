@@ -65,10 +65,9 @@ def settings(end, step, *, start=0.0, spectral_radius=0.8, **options):
     s.timeIntegration.startTime = start
     s.timeIntegration.endTime = end
     s.timeIntegration.numberOfSteps = math.ceil((end - start) / step - 1e-9)
-    s.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
     s.timeIntegration.verboseMode = 0
     s.solution.file.write = False
-    return ehd.ConfigureSolver(s, **options)
+    return ehd.ConfigureSolver(s, spectralRadius=spectral_radius, **options)
 
 
 def solve(mbs, joints, simulation_settings, *, solver=None, fails=False, restart=None):

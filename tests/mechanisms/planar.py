@@ -56,9 +56,8 @@ class PlanarRotor:
         settings = exu.SimulationSettings()
         settings.timeIntegration.endTime = end
         settings.timeIntegration.numberOfSteps = math.ceil(end / step - 1e-9)
-        settings.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
         settings.timeIntegration.verboseMode = 0
         settings.solution.file.write = False
-        ehd.ConfigureSolver(settings, **options)
+        ehd.ConfigureSolver(settings, spectralRadius=spectral_radius, **options)
         self.mbs.SolveDynamic(settings)
         return self.joint.history

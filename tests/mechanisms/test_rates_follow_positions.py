@@ -21,10 +21,9 @@ CLOSURES = {
 def settings(end, steps, rho):
     s = exu.SimulationSettings()
     s.timeIntegration.endTime, s.timeIntegration.numberOfSteps = end, steps
-    s.timeIntegration.generalizedAlpha.spectralRadius = rho
     s.timeIntegration.verboseMode = 0
     s.solution.file.write = False
-    return ehd.ConfigureSolver(s)
+    return ehd.ConfigureSolver(s, spectralRadius=rho)
 
 
 def four_bar(bearing, speed, control=None):

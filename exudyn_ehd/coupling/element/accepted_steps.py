@@ -21,9 +21,10 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import JointModel, Trial
 from exudyn_ehd.coupling.element.failures import Failures
+from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
-from exudyn_ehd.coupling.record.history import JointHistory, Record
-from exudyn_ehd.coupling.watch import solver_state, starvation
+from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory, Record
+from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
@@ -32,7 +33,7 @@ from exudyn_ehd.joint.balance.temperature import is_too_hot
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import OverloadWarning, Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -130,6 +131,9 @@ class AcceptedSteps:
         self._uses_memory = self._may_starve = self.in_own_run = False
         # steps in a row that no solver known has taken
         self._unseen = 0
+        self._thin = -np.inf
+        self._told = True
+        self._overloaded = False
         self.asked: tuple[float, list[float]] = (np.nan, [])
         self.forget()
 
@@ -184,7 +188,7 @@ class AcceptedSteps:
                 if begins:
                     self._first_memory = self.memory
         last, self.start = self.start, start
-        self._check(start, trial, start - last, row is not None)
+        self._check(start, trial, start - last, row)
 
     def _begin_run(self, mbs: exu.MainSystem, start: float, solvers: solver_state.Stored) -> bool:
         """Prepare for a solver that has not asked before; whether its run goes on from a stored state."""
@@ -212,6 +216,7 @@ class AcceptedSteps:
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
+        self._thin, self._told, self._overloaded = thin_films.limit(bearing), False, False
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory
         if not resumed and not goes_on:
@@ -263,21 +268,22 @@ class AcceptedSteps:
             self.memory = trial.evaluation.history()
             self.film.forget()
 
-    def _check(self, start: float, trial: Trial, step: float, has_film: bool) -> None:
-        """Raise `FilmError` for a film that can't go on, warn of forces that ring and of films that run dry."""
+    def _check(self, start: float, trial: Trial, step: float, row: np.ndarray | None) -> None:
+        """Raise `FilmError` for a film that can't go on, warn of films that run dry or thin and of forces that ring."""
         failures = self.film.failures
         if trial.status == Status.NO_PRESSURE and (step > 0.0 or solver_state.is_implicit(self.solver)):
             raise failures.no_film(start, trial, explicit=False)
-        if has_film and (through := failures.pressed_through(start, trial)) is not None:
-            raise through
+        if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
+            raise absurd
         temperature = getattr(self.memory, "temperature", None)
         if temperature is not None and is_too_hot(temperature):
             raise failures.too_hot(start, trial, temperature)
         if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
             self._may_starve = False
             starvation.warn(failures.name, start, lost)
-        if not has_film:
+        if row is None:
             return
+        self._warn_of_film(start, trial, row)
         if self._ringing is not None:
             assert trial.evaluation is not None
             x, y = trial.evaluation.wrench[:2].tolist()
@@ -286,6 +292,16 @@ class AcceptedSteps:
                 ringing.warn(failures.name, watch, starts_well=self.in_own_run)
         if self._chatter is not None and self._chatter.sees_chatter(start, trial.motion):
             raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
+
+    def _warn_of_film(self, start: float, trial: Trial, row: np.ndarray) -> None:
+        """Warn, once per run, of a film that is too thin for smooth surfaces or presses too hard for any."""
+        failures = self.film.failures
+        if (gap := row[MINIMUM_GAP]) < self._thin:
+            self._thin = -np.inf
+            thin_films.warn(failures.name, start, gap)
+        if not self._overloaded and failures.overload(row) > 1.0:
+            self._overloaded = True
+            warnings.warn(failures.overloaded(start, row, trial.motion), OverloadWarning, stacklevel=2)
 
     @property
     def is_idle(self) -> bool:
@@ -323,8 +339,20 @@ class AcceptedSteps:
             self._record.restore(rows)
         self._resumed = (time, memory, begin)
 
+    def tell(self, mbs: exu.MainSystem) -> None:
+        """Log the line of the run that has ended, once."""
+        if self._told or not summary.is_on():
+            return
+        self._told = True
+        history = self.history(mbs)
+        if history.time.size > 1:
+            implicit = solver_state.is_implicit(self.solver)
+            summary.tell(self.film.failures.name, self.film.model.bearing, history, counts_halved=implicit)
+
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the current state if that is later than the last step; warns if it has no film."""
+        if self.solver is not None and self.is_idle:
+            self.tell(mbs)
         final = None
         if (
             complete

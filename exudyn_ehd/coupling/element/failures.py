@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 
 import numpy as np
@@ -9,13 +10,18 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
-from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
 from exudyn_ehd.status import FilmError, InputError, MemoryWarning, Status
 
 # Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
 # none.
 DEEPEST = 1.0
+# Of an accepted step, Pa: peak pressure, and mean pressure on the projected area, beyond what oil, steel and ceramics
+# bear. Films of real machines stay below a third of both; single steps of hard impacts have some ten times as much,
+# and runs go on well from there. A film with so many times that peak ends a run; contacts are judged by their depth.
+HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
+ABSURD = 30.0
 
 
 class Failures:
@@ -68,21 +74,11 @@ class Failures:
             "automatic steps, or an implicit solver.",
         )
 
-    def pressed_through(self, time: float, trial: Trial) -> FilmError | None:
-        """The journal is so deep in a rigid bore that no contact explains it; None if it is not."""
-        bearing = self.bearing
-        if getattr(bearing, "bush", None) is not None:
-            return None
-        wear = getattr(trial.memory, "wear", None)
-        worn = 0.0 if wear is None else float(wear.max())
-        if self.bore.smallest(trial.motion) >= -(DEEPEST + worn) * bearing.radial_clearance:
-            return None
-        return self._at(
-            time,
-            "the journal was pressed through its contact by more than the clearance; "
-            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness "
-            "(RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
-        )
+    def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
+        """The state of an accepted step is none of a bearing; None if it is one."""
+        if row[PEAK_PRESSURE] > ABSURD * HIGHEST_PEAK:
+            return FilmError(self.overloaded(time, row, trial.motion))
+        return self._pressed_through(time, trial)
 
     def too_hot(self, time: float, trial: Trial, temperature: float | np.ndarray) -> FilmError:
         """The film's heat has no way out."""
@@ -105,6 +101,42 @@ class Failures:
             "Call joint.forget() before a run whose film shall start anew.",
             MemoryWarning,
             stacklevel=2,
+        )
+
+    def _pressed_through(self, time: float, trial: Trial) -> FilmError | None:
+        """The journal is so deep in a rigid bore that no contact explains it; None if it is not."""
+        bearing = self.bearing
+        if getattr(bearing, "bush", None) is not None:
+            return None
+        wear = getattr(trial.memory, "wear", None)
+        worn = 0.0 if wear is None else float(wear.max())
+        if self.bore.smallest(trial.motion) >= -(DEEPEST + worn) * bearing.radial_clearance:
+            return None
+        return self._at(
+            time,
+            "the journal was pressed through its contact by more than the clearance; "
+            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness "
+            "(RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
+        )
+
+    def overload(self, row: np.ndarray) -> float:
+        """Pressures of an accepted step over what a material bears."""
+        peak, (x, y, z) = float(row[PEAK_PRESSURE]), row[FORCE].tolist()
+        mean = math.sqrt(x * x + y * y + z * z) / (2.0 * self.bearing.journal_radius * self.bearing.length)
+        # films without a peak have nan
+        return max(mean / HIGHEST_MEAN, peak / HIGHEST_PEAK)
+
+    def overloaded(self, time: float, row: np.ndarray, motion: np.ndarray) -> str:
+        """What to say of such a step."""
+        force = float(np.linalg.norm(row[FORCE]))
+        mean = force / (2.0 * self.bearing.journal_radius * self.bearing.length)
+        return (
+            f"LubricatedJoint '{self.name}' at t = {time:.9g} s: the accepted step has a film that neither oil nor "
+            f"steel bears: peak pressure {1e-6 * row[PEAK_PRESSURE]:.4g} MPa, force {force:.4g} N, {1e-6 * mean:.4g} "
+            f"MPa on the projected area; {self._place(motion)}if loads and inertia forces of the model are much "
+            "smaller, the time integration has thrown the film: use ehd.SolveDynamic, "
+            "ConfigureSolver(simulationSettings), more steps, or a StepControl; if they are not, check masses, loads, "
+            "initial velocities and units, or give the bearing a bush that deflects."
         )
 
     def _at(self, time: float, message: str) -> FilmError:

@@ -230,10 +230,14 @@ class FilmElement:
         """The state evaluated last, if it is still known."""
         return self._trial
 
-    def require_pressure(self, time: float) -> None:
-        """Raise if the run has ended behind the end of a pressure law."""
-        if self._trial is not None and self._trial.status == Status.NO_PRESSURE:
-            raise self.failures.no_film(time, self._trial, explicit=False)
+    def require_film(self, time: float) -> None:
+        """Raise if the run has ended behind the end of a pressure law, or with a film that no bearing has."""
+        trial = self._trial
+        if trial is not None and trial.status == Status.NO_PRESSURE:
+            raise self.failures.no_film(time, trial, explicit=False)
+        row = None if trial is None else self.row(time, trial)
+        if row is not None and trial is not None and (absurd := self.failures.absurd(time, row, trial)) is not None:
+            raise absurd
 
     def read(self, mbs: exu.MainSystem, configuration: exu.ConfigurationType) -> tuple[list[float], list[float]]:
         """Coordinates and rates of all nodes of the element in a configuration."""

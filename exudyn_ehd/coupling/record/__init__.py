@@ -6,6 +6,7 @@ element      what records ask of a joint's film element
 history      quantities over accepted steps
 films        films over accepted steps
 results      what a joint's handle offers
+summary      a run in one line
 revolutions  extremes by revolution
 sensors      Exudyn sensors
 display      drawing in Exudyn's renderer

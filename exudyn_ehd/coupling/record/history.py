@@ -38,6 +38,9 @@ _SCALARS = (
 )
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 _WIDTH = _FIRST_SCALAR + len(_SCALARS)
+# Places in a row.
+MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
+FORCE = slice(_WRENCH, _WRENCH + 3)
 _FORMAT = "exudyn_ehd JointHistory 2"
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),

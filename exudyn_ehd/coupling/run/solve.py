@@ -186,7 +186,7 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     try:
         yield
         for joint in joints_of(mbs):
-            joint.element.require_pressure(mbs.systemData.GetTime())
+            joint.element.require_film(mbs.systemData.GetTime())
     except exu.ExudynError as error:
         cause: BaseException = error
         while cause.__cause__ is not None:
@@ -205,6 +205,7 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
     finally:
         for joint in joints_of(mbs):
             joint.element.steps.in_own_run = False
+            joint.element.steps.tell(mbs)
 
 
 def _kept(mbs: exu.MainSystem) -> str:

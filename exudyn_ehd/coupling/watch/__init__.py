@@ -6,4 +6,5 @@ solver_state  which solver runs, with which step
 step_control  implicit steps too coarse for a film, rejected
 chatter       explicit steps beyond their stability limit, recognised
 starvation    films that run dry, recognised
+thin_films    films thinner than the surfaces are rough
 """

@@ -65,10 +65,9 @@ def thrown(planar_rotor, steps):
     )
     settings = exu.SimulationSettings()
     settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 2.0 * CYCLE, 2 * steps
-    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
     settings.timeIntegration.verboseMode = 0
     settings.solution.file.write = False
-    ehd.SolveDynamic(rotor.mbs, ehd.ConfigureSolver(settings))
+    ehd.SolveDynamic(rotor.mbs, ehd.ConfigureSolver(settings, spectralRadius=0.9))
     return rotor.joint.history
 
 

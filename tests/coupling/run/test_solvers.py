@@ -226,5 +226,11 @@ def test_settings_helper_sets_what_it_says():
     assert ConfigureSolver(settings) is settings
     assert settings.timeIntegration.newton.relativeTolerance == 1e-6
     assert not settings.timeIntegration.newton.useModifiedNewton
+    assert settings.timeIntegration.generalizedAlpha.spectralRadius == 0.6
+    settings.timeIntegration.generalizedAlpha.spectralRadius = 0.8
+    assert ConfigureSolver(settings).timeIntegration.generalizedAlpha.spectralRadius == 0.8
+    assert ConfigureSolver(settings, spectralRadius=0.9).timeIntegration.generalizedAlpha.spectralRadius == 0.9
+    with pytest.raises(InputError, match="spectralRadius"):
+        ConfigureSolver(settings, spectralRadius=1.1)
     with pytest.raises(InputError):
         ConfigureSolver(settings, relativeTolerance=0.0)

@@ -97,10 +97,14 @@ def _settings(integration: Integration, end: float, steps: int) -> tuple[Any, An
     time_integration: Any = settings.timeIntegration
     time_integration.endTime = end
     time_integration.numberOfSteps = steps
-    time_integration.generalizedAlpha.spectralRadius = integration.spectral_radius
     time_integration.verboseMode = 0
     settings.solution.file.write = False
-    ConfigureSolver(settings, integration.newton_tolerance, integration.modified_newton)
+    ConfigureSolver(
+        settings,
+        integration.newton_tolerance,
+        integration.modified_newton,
+        spectralRadius=integration.spectral_radius,
+    )
     kinds = exu.DynamicSolverType
     return settings, kinds.RK44 if integration.runge_kutta else kinds.GeneralizedAlpha
 

@@ -1,0 +1,98 @@
+"""What a run has found, in one line per joint, through the logger of this package.
+
+``logging.getLogger("exudyn_ehd").setLevel("WARNING")`` turns the lines off. Where a program has not configured logging,
+the lines go to the standard error stream.
+"""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.switches import (
+    TYPICAL_PRESSURE_COEFFICIENT,
+    TYPICAL_ROUGHNESS,
+    TYPICAL_SHEAR_ONSET,
+    TYPICAL_TEMPERATURE_COEFFICIENT,
+)
+
+LOGGER = logging.getLogger("exudyn_ehd")
+# Young's modulus of steel, Pa: a rigid bore is taken for a ring of it about half a radius thick.
+STEEL = 2.1e11
+# Share of the largest step below which a step was halved.
+HALVED = 0.75
+
+
+def is_on() -> bool:
+    """Whether lines are wanted; sets up a handler where a program has none and has not chosen a level."""
+    if LOGGER.level == logging.NOTSET and not LOGGER.hasHandlers():
+        handler = logging.StreamHandler()
+        handler.setFormatter(logging.Formatter("%(name)s: %(message)s"))
+        LOGGER.addHandler(handler)
+        LOGGER.setLevel(logging.INFO)
+    return LOGGER.isEnabledFor(logging.INFO)
+
+
+def tell(name: str, bearing: JournalBearing, history: JointHistory, *, counts_halved: bool) -> None:
+    """Log the line of a joint whose run has ended.
+
+    Parameters
+    ----------
+    name : str
+        Of the joint.
+    bearing : JournalBearing
+    history : JointHistory
+        With one step or more.
+    counts_halved : bool
+        Whether steps differ in size because they were halved.
+    """
+    LOGGER.info("%s", line(name, bearing, history, counts_halved=counts_halved))
+
+
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, counts_halved: bool) -> str:
+    """The line that `tell` logs."""
+    h, time = history, history.time
+    text = f"LubricatedJoint '{name}', {time.size - 1} steps to t = {time[-1]:.6g} s"
+    for title, values, worst, factor, unit in (
+        ("minimum film thickness", h.minimum_gap, np.nanargmin, 1e6, "um"),
+        ("peak pressure", h.peak_pressure, np.nanargmax, 1e-6, "MPa"),
+    ):
+        if np.any(np.isfinite(values)):
+            k = int(worst(values))
+            text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
+    halved = _halved(time) if counts_halved else 0
+    text += f", {halved} halved steps" if halved else ""
+    doubts = worth_an_audit(bearing, history)
+    return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
+
+
+def _halved(time: np.ndarray) -> int:
+    """Steps far smaller than the largest; the last one may end anywhere."""
+    steps = np.diff(time)[:-1]
+    return int(np.sum(steps < HALVED * steps.max())) if steps.size else 0
+
+
+def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
+    """Effects that the record alone shows to matter, and that the bearing leaves out."""
+    b, h = bearing, history
+    thinnest, highest = float(np.nanmin(h.minimum_gap)), float(np.nanmax(h.peak_pressure, initial=0.0))
+    speed = float(np.max(np.abs(h.motion[:, 8]))) * b.journal_radius
+    couette = 0.5 * float(np.mean(np.abs(h.motion[:, 8]))) * b.journal_radius * b.radial_clearance * b.length
+    flow = max(float(np.nanmean(h.leakage)) if np.any(np.isfinite(h.leakage)) else 0.0, couette)
+    heat = b.lubricant.density * b.lubricant.specific_heat * flow
+    rise = float(np.nanmean(h.power_loss)) / heat if heat > 0.0 else 0.0
+    rough = not (b.asperity is None and b.contact is None and b.roughness is None)
+    found = {
+        "elasticity": b.bush is None and highest * b.journal_radius / STEEL > LIMITS["elasticity"].value * thinnest,
+        "piezoviscosity": b.lubricant.pressure_law is None
+        and TYPICAL_PRESSURE_COEFFICIENT * highest > LIMITS["piezoviscosity"].value,
+        "heating": b.thermal is None and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
+        "shear thinning": b.lubricant.shear_law is None
+        and speed > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET * thinnest,
+        "roughness": not rough and thinnest < LIMITS["roughness"].value * TYPICAL_ROUGHNESS,
+    }
+    return [name for name, matters in found.items() if matters]

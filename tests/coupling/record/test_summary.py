@@ -1,0 +1,154 @@
+"""A run ends with one line per joint: what was thinnest and highest, when, and what was left out."""
+
+import logging
+import subprocess
+import sys
+
+import exudyn as exu
+import numpy as np
+import pytest
+import scenes
+
+import exudyn_ehd as ehd
+from exudyn_ehd.coupling.record import summary
+
+
+@pytest.fixture
+def lines():
+    """Lines of the package's logger; pytest's own handlers see none of them."""
+    said = []
+    handler = logging.Handler()
+    handler.emit = lambda record: said.append(record.getMessage())
+    logger = summary.LOGGER
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)
+    logger.propagate = False
+    yield said
+    logger.removeHandler(handler)
+    logger.setLevel(logging.NOTSET)
+    logger.propagate = True
+
+
+def scene(load=3000.0, **options):
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.025,
+        radial_clearance=25e-6,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        film=ehd.FiniteLength(n_theta=32, n_z=6),
+        **options,
+    )
+    mbs, joint = scenes.loaded_journal(bearing, [0.0, -load, 0.0])
+    mbs.Assemble()
+    return mbs, joint
+
+
+def test_the_line_names_worst_values_and_times(lines):
+    mbs, joint = scene()
+    ehd.SolveDynamic(mbs, scenes.settings(0.02, 100, tolerance=1e-8))
+    (line,) = lines
+    history = joint.history
+    assert lines == [line]
+    assert "'bearing', 100 steps to t = 0.02 s" in line
+    thin, high = int(np.argmin(history.minimum_gap)), int(np.argmax(history.peak_pressure))
+    assert f"minimum film thickness {1e6 * history.minimum_gap[thin]:.3g} um at {history.time[thin]:.6g} s" in line
+    assert f"peak pressure {1e-6 * history.peak_pressure[high]:.3g} MPa at {history.time[high]:.6g} s" in line
+    assert "halved" not in line
+
+
+def test_every_run_has_a_line_of_its_own_and_static_solves_too(lines):
+    mbs, _ = scene()
+    ehd.SolveDynamic(mbs, scenes.settings(0.002, 10, tolerance=1e-8))
+    ehd.SolveDynamic(mbs, scenes.settings(0.004, 20, tolerance=1e-8))
+    assert ["10 steps" in lines[0], "20 steps" in lines[1], len(lines)] == [True, True, 2]
+
+
+def test_a_run_by_exudyn_itself_says_it_when_the_history_is_read_first(lines):
+    mbs, joint = scene()
+    mbs.SolveDynamic(scenes.settings(0.002, 10, tolerance=1e-8))
+    assert not lines
+    assert joint.history.time.size == 11
+    assert joint.history.time.size == 11
+    assert len(lines) == 1
+
+
+def test_halved_steps_are_counted_and_the_last_one_is_not():
+    steps = np.array([1.0, 1.0, 0.5, 0.25, 0.25, 1.0, 0.3])
+    assert summary._halved(np.concatenate(([0.0], np.cumsum(steps)))) == 3
+    assert summary._halved(np.array([0.0, 1.0])) == 0
+
+
+def test_a_run_that_ends_with_an_error_has_its_line(lines):
+    mbs, _ = scene()
+
+    def fails(mbs, t, load):
+        if t > 1e-3:
+            raise ValueError("user")
+        return [0.0, 0.0, 0.0]
+
+    mbs.Reset()
+    mbs, _ = scene()
+    body = exu.ObjectIndex(1)
+    mbs.CreateForce(itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=fails)
+    mbs.Assemble()
+    with pytest.raises(Exception, match="user"):
+        ehd.SolveDynamic(mbs, scenes.settings(0.002, 10, tolerance=1e-8))
+    assert len(lines) == 1
+
+
+@pytest.mark.parametrize(
+    ("load", "options", "named", "absent"),
+    [
+        (300.0, {}, (), ("elasticity", "piezoviscosity", "roughness")),
+        (120e3, {}, ("elasticity", "piezoviscosity", "shear thinning", "roughness"), ()),
+        (
+            60e3,
+            {"asperity": ehd.GreenwoodTripp(composite_roughness=3e-7, composite_modulus=1e11)},
+            ("elasticity",),
+            ("roughness",),
+        ),
+    ],
+    ids=["light", "heavy", "rough"],
+)
+def test_effects_left_out_are_named_where_they_matter(lines, load, options, named, absent):
+    mbs, _ = scene(load, **options)
+    ehd.SolveDynamic(mbs, scenes.settings(0.02, 100, tolerance=1e-8))
+    (line,) = lines
+    assert [name for name in named if name not in line] == []
+    assert [name for name in absent if name in line] == []
+
+
+def test_one_switch_turns_the_lines_off(lines):
+    summary.LOGGER.setLevel(logging.WARNING)
+    mbs, joint = scene()
+    ehd.SolveDynamic(mbs, scenes.settings(0.002, 10, tolerance=1e-8))
+    assert joint.history.time.size == 11
+    assert not lines
+
+
+PROGRAM = """
+import logging, sys
+if "configured" in sys.argv:
+    logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
+from exudyn_ehd.coupling.record import summary
+if "off" in sys.argv:
+    logging.getLogger("exudyn_ehd").setLevel("WARNING")
+if summary.is_on():
+    summary.LOGGER.info("line")
+if summary.is_on():
+    summary.LOGGER.info("second")
+"""
+
+
+@pytest.mark.parametrize(
+    ("argument", "out", "err"),
+    [
+        ("plain", "", "exudyn_ehd: line\nexudyn_ehd: second\n"),
+        ("configured", "own line\nown second\n", ""),
+        ("off", "", ""),
+    ],
+)
+@pytest.mark.slow
+def test_a_program_without_handlers_gets_one(argument, out, err):
+    run = subprocess.run([sys.executable, "-c", PROGRAM, argument], capture_output=True, text=True, check=True)
+    assert (run.stdout, run.stderr) == (out, err)
