@@ -16,7 +16,7 @@ from exudyn_ehd.joint.audit.switches import refined
 
 # Grids this many times finer than needed cost time for nothing.
 TOO_FINE = 6.0
-# Grids that are so much finer than needed are not compared with finer ones.
+# Grids that are so much finer than needed, and not coarser than the default, are not compared with finer ones.
 SURELY_FINE = 2.0
 
 
@@ -66,7 +66,8 @@ def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
     value, size = case.smallest(field), getattr(film, name)
     sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
     needed = LIMITS[effect].value
-    change = None if value > SURELY_FINE * needed else case.films.change(refined(**sizes | {name: 2 * size}))
+    plain = value > SURELY_FINE * needed and size >= getattr(FiniteLength(), name, 0)
+    change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     found = replace(finding(effect, indicator, value, None), change=change)
     if change is not None and change.size > MATTERS:

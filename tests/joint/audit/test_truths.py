@@ -44,7 +44,7 @@ def test_stored_truths_are_those_of_today(number):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [0, 2, 3, 5])
+@pytest.mark.parametrize("number", [2, 5, 9, 12])
 def test_followed_advice_ends_at_the_film_with_everything_on(number, measured):
     clean, rounds, differences = truths.follow(truths.draw(number))
     assert clean and rounds <= 4

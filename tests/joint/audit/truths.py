@@ -176,8 +176,9 @@ def main() -> None:
                 print(number, str(error)[:100], flush=True)
         return
     for number in range(len(read()), count):
+        row = json.dumps(truth(draw(number)))
         with FILE.open("a") as file:
-            file.write(json.dumps(truth(draw(number))) + "\n")
+            file.write(row + "\n")
 
 
 if __name__ == "__main__":
