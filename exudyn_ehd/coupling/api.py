@@ -322,7 +322,9 @@ def CreateLubricatedJoint(
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
     axis : (3,)
-        Joint axis z, global or in the frame of the housing item; may be [] if ``rotationMatrixAxes`` is given.
+        Joint axis z, global or in the frame of the housing item; may be [] if ``rotationMatrixAxes`` is given. It is
+        that of bore and journal: tilted axes do not misalign a shaft, bearings off a line do (two markers, see
+        ``position``).
     bearing : JournalBearing
         Geometry, lubricant, film and effects.
     rotationMatrixAxes : (3, 3), optional
