@@ -4,6 +4,7 @@ Module map
 ----------
 bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
 mesh                hollow cylinders and users' meshes; their surfaces and lines
+mesh_files          users' meshes from files
 hex20               the element: nodes, shape functions, faces, quadratures
 hex20_kernels       compiled loops over elements: force and tangent
 total_lagrange      a mesh with a material: force, tangent, mass, energy

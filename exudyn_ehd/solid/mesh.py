@@ -6,10 +6,11 @@ z = -length/2 to length/2.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from scipy.sparse import csr_matrix
@@ -323,8 +324,68 @@ class FEMData(Protocol):
     elements: list
 
 
+@dataclass(frozen=True, kw_only=True)
+class OnCylinder:
+    """Nodes on a cylinder about the bush's axis: ``held`` of an imported mesh.
+
+    Parameters
+    ----------
+    radius : float
+        [m]
+    tolerance : float
+        On a node's radius, over the radius.
+    """
+
+    radius: float
+    tolerance: float = 5e-3
+
+    def __post_init__(self) -> None:
+        require_numbers(self, above=0.0, radius="m", tolerance="")
+
+    def __call__(self, positions: np.ndarray) -> np.ndarray:
+        """Flags (n,) of positions (n, 3) in the bush frame [m]."""
+        return np.abs(np.hypot(positions[:, 0], positions[:, 1]) - self.radius) <= self.tolerance * self.radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class OnPlane:
+    """Nodes on a plane: ``held`` of an imported mesh.
+
+    Parameters
+    ----------
+    point, normal : three numbers
+        A point of the plane [m] and its normal, bush frame.
+    tolerance : float
+        Distance from the plane [m].
+    """
+
+    point: tuple[float, float, float]
+    normal: tuple[float, float, float]
+    tolerance: float = 1e-5
+
+    def __post_init__(self) -> None:
+        require_vector("OnPlane.point", self.point, 3, "m")
+        if not np.linalg.norm(require_vector("OnPlane.normal", self.normal, 3)) > 0.0:
+            raise InputError(f"OnPlane.normal must be a direction, got {self.normal!r}.")
+        require_numbers(self, above=0.0, tolerance="m")
+
+    def __call__(self, positions: np.ndarray) -> np.ndarray:
+        """Flags (n,) of positions (n, 3) in the bush frame [m]."""
+        normal = np.asarray(self.normal) / np.linalg.norm(self.normal)
+        return np.abs((positions - np.asarray(self.point)) @ normal) <= self.tolerance
+
+
+Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
+"""Nodes of a user's mesh by number, or flags (n,) of positions (n, 3) in the bush frame."""
+
+
 def mesh_from_fem(
-    fem: FEMData, *, bore_radius: float, origin: tuple = (0.0, 0.0, 0.0), axis: tuple = (0.0, 0.0, 1.0)
+    fem: FEMData,
+    *,
+    bore_radius: float,
+    held: Held | None = None,
+    origin: tuple = (0.0, 0.0, 0.0),
+    axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
     """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra.
 
@@ -332,7 +393,7 @@ def mesh_from_fem(
     ----------
     fem : FEMinterface
         Exudyn's, with Hex20 elements (Abaqus C3D20 order) only.
-    bore_radius, origin, axis
+    bore_radius, held, origin, axis
         As in `mesh_from_arrays`, which also says what comes back and what is refused.
     """
     sets = [np.asarray(block["Hex20"], dtype=int) for block in fem.elements if len(block.get("Hex20", ())) > 0]
@@ -343,7 +404,8 @@ def mesh_from_fem(
             "bush with C3D20 elements and put other parts into a FEMinterface of their own."
         )
     position = np.asarray(fem.nodes["Position"], dtype=float)
-    return mesh_from_arrays(position, np.concatenate(sets), bore_radius=bore_radius, origin=origin, axis=axis)
+    elements = np.concatenate(sets)
+    return mesh_from_arrays(position, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 
 
 def mesh_from_arrays(
@@ -351,6 +413,7 @@ def mesh_from_arrays(
     elements: np.ndarray,
     *,
     bore_radius: float,
+    held: Held | None = None,
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
@@ -364,6 +427,10 @@ def mesh_from_arrays(
         Abaqus C3D20 node order, zero-based.
     bore_radius : float
         Radius [m] of the bore; its corner nodes must lie within 1 % of the radius.
+    held : nodes, `OnCylinder`, `OnPlane` or function, optional
+        Where the housing holds the bush: the faces all of whose nodes are among these (numbers, or flags of the user's
+        nodes), or have the function of positions (n, 3) in the bush frame [m] true. By default every face that belongs
+        neither to the bore nor to the ends.
     origin, axis : three numbers
         A point on the bearing's mid-plane and axis, and the axis direction, user's frame. The mesh comes back in the
         bush frame; with the default axis its x and y are the user's.
@@ -371,13 +438,18 @@ def mesh_from_arrays(
     Returns
     -------
     BushMesh
-        Outer surface: the boundary faces that belong neither to the bore nor to the ends; ends: the boundary faces
-        normal to the axis at the smallest and the largest z. Unused nodes are dropped.
+        Outer surface: the faces that are held; ends: the boundary faces normal to the axis at the smallest and the
+        largest z. Unused nodes are dropped.
+
+    Warns
+    -----
+    UserWarning
+        If held faces reach the bore (a chamfer, a groove, an oil hole), whose edge is then clamped.
 
     Raises
     ------
     InputError
-        No bore at this radius, inverted elements, or array shapes that don't fit.
+        No bore at this radius, no held face, inverted elements, or array shapes that don't fit.
     """
     radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
     nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
@@ -404,16 +476,52 @@ def mesh_from_arrays(
             f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
             f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
         )
-    elsewhere = [low, high, np.isin(np.arange(len(r)), bore.nodes)]
-    taken = np.any([member[boundary].all(axis=1) for member in elsewhere], axis=0)
+    on_bore = np.isin(np.arange(len(r)), bore.nodes)
+    outer = _held_faces(nodes, boundary, used, held, (low, high, on_bore))
+    reaching = np.intersect1d(outer, bore.nodes).size
+    if reaching:
+        warnings.warn(
+            f"mesh_from_arrays: {reaching} nodes of the bore belong to held faces (a chamfer, a groove or a hole) and "
+            "are clamped; name the held faces, e.g. held=OnCylinder(radius=...) for the outer cylinder alone.",
+            stacklevel=2,
+        )
     return BushMesh(
         nodes=nodes,
         elements=elements,
         bore=bore,
-        outer=_patch(nodes, boundary[~taken]),
+        outer=_patch(nodes, outer),
         end_low=_surface(nodes, boundary, low),
         end_high=_surface(nodes, boundary, high),
     )
+
+
+def _held_faces(
+    nodes: np.ndarray, boundary: np.ndarray, used: np.ndarray, held: Held | None, elsewhere: tuple[np.ndarray, ...]
+) -> np.ndarray:
+    """Faces (f, 8) that the housing holds; ``used`` are the user's numbers of the nodes, ``elsewhere`` flags (n,) of
+    the ends and, last, of the bore."""
+    whole = [member[boundary].all(axis=1) for member in elsewhere]
+    if held is None:
+        return boundary[~np.any(whole, axis=0)]
+    if callable(held):
+        member = np.asarray(held(nodes))
+    else:
+        numbers = np.asarray(held)
+        member = np.isin(used, np.flatnonzero(numbers) if numbers.dtype == bool else numbers)
+    if member.shape != (len(nodes),) or member.dtype != bool:
+        raise InputError(
+            f"mesh_from_arrays held: the function must give one bool for each of {len(nodes)} nodes, got an array of "
+            f"shape {member.shape} and type {member.dtype}."
+        )
+    faces = boundary[member[boundary].all(axis=1) & ~whole[-1]]
+    if len(faces) == 0:
+        r = np.hypot(nodes[:, 0], nodes[:, 1])
+        raise InputError(
+            f"mesh_from_arrays held: {int(member.sum())} nodes are chosen, and no boundary face besides the bore has "
+            f"all of its 8 nodes among them; the nodes have radii {r.min():g} to {r.max():g} m and z from "
+            f"{nodes[:, 2].min():g} to {nodes[:, 2].max():g} m in the bush frame. Check units, radius and tolerance."
+        )
+    return faces
 
 
 def _frame(axis: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.solid.hex20 import EDGES, GAUSS27
-from exudyn_ehd.solid.mesh import HollowCylinder, mesh_from_arrays, mesh_from_fem
+from exudyn_ehd.solid.mesh import HollowCylinder, OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
 from exudyn_ehd.solid.total_lagrange import reference_gradients
 from exudyn_ehd.status import InputError
 
@@ -93,6 +93,62 @@ def test_an_imported_mesh_finds_bore_outer_surface_and_ends():
     assert mesh.bore.faces.shape == mesh.outer.faces.shape == (160, 8)
     assert mesh.end_low.faces.shape == mesh.end_high.faces.shape == (80, 8)
     assert np.allclose(np.hypot(*mesh.bore.positions[:, :2].T), 0.225, rtol=1e-12)
+
+
+def chamfered():
+    """Positions of the structured mesh with both edges of its bore broken: the outermost layers open outwards."""
+    x = MESH.nodes.copy()
+    r, z = np.hypot(x[:, 0], x[:, 1]), np.abs(x[:, 2])
+    edge = MESH.nodes[:, 2].max()
+    layer = np.unique(np.round(z, 9))[-3]
+    cut = 0.02 * np.clip((z - layer) / (edge - layer), 0.0, 1.0) * (0.275 - r) / 0.05
+    x[:, :2] *= ((r + cut) / r)[:, None]
+    return x
+
+
+HELD = {
+    "cylinder": OnCylinder(radius=0.275),
+    "function": lambda x: np.hypot(x[:, 0], x[:, 1]) > 0.274,
+    "numbers": MESH.outer.nodes,
+    "flags": np.hypot(MESH.nodes[:, 0], MESH.nodes[:, 1]) > 0.274,
+}
+
+
+@pytest.mark.parametrize("kind", HELD)
+def test_held_faces_are_those_that_the_user_names(kind):
+    mesh = mesh_from_arrays(chamfered(), MESH.elements, bore_radius=0.225, held=HELD[kind])
+    assert mesh.outer.faces.shape == (160, 8)
+    assert np.hypot(*mesh.outer.positions[:, :2].T).min() > 0.2749
+    # the chamfers' faces are neither held nor bore
+    assert mesh.bore.faces.shape == (80, 8) and len(mesh.boundary) == 480
+
+
+def test_a_held_chamfer_that_clamps_the_bore_warns():
+    with pytest.warns(UserWarning, match=r"160 nodes of the bore belong to held faces .*held=OnCylinder"):
+        mesh = mesh_from_arrays(chamfered(), MESH.elements, bore_radius=0.225)
+    assert mesh.outer.faces.shape == (240, 8)
+
+
+def test_a_flange_is_held_by_its_plane():
+    """It reaches the bore's edge, which is said."""
+    plane = OnPlane(point=(0.0, 0.0, MESH.nodes[:, 2].max()), normal=(0.0, 0.0, -2.0))
+    with pytest.warns(UserWarning, match="80 nodes of the bore"):
+        mesh = mesh_from_arrays(MESH.nodes, MESH.elements, bore_radius=0.225, held=plane)
+    assert np.array_equal(mesh.outer.nodes, mesh.end_high.nodes)
+
+
+@pytest.mark.parametrize(
+    ("held", "message"),
+    [
+        (OnCylinder(radius=275.0), "0 nodes are chosen.*radii 0.225 to 0.275 m.*Check units"),
+        (MESH.outer.nodes[:3], "3 nodes are chosen"),
+        (MESH.bore.nodes, "besides the bore"),
+        (lambda x: x[:, 0], "one bool for each"),
+    ],
+)
+def test_held_faces_that_do_not_exist_are_refused(held, message):
+    with pytest.raises(InputError, match=f"mesh_from_arrays held.*{message}"):
+        mesh_from_arrays(MESH.nodes, MESH.elements, bore_radius=0.225, held=held)
 
 
 def test_import_reads_the_layout_of_exudyn_s_fem_interface():
