@@ -3,8 +3,8 @@
 Module map
 ----------
 bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
-mesh                hollow cylinders and users' meshes; their surfaces and lines
-mesh_files          users' meshes from files
+mesh                hollow cylinders; surfaces and lines of meshes
+mesh_import         users' meshes, from memory and from files
 hex20               the element: nodes, shape functions, faces, quadratures
 hex20_kernels       compiled loops over elements: force and tangent
 total_lagrange      a mesh with a material: force, tangent, mass, energy

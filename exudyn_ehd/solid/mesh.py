@@ -6,17 +6,15 @@ z = -length/2 to length/2.
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol, TypeAlias
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.hex20 import EDGES, GAUSS27, NODES, boundary_faces, face_shapes, shape_gradients
-from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_vector
+from exudyn_ehd.solid.hex20 import EDGES, NODES, boundary_faces, face_shapes
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -220,7 +218,7 @@ class BushMesh:
 
     def surface(self, nodes: np.ndarray) -> Surface:
         """Return the boundary faces all of whose nodes are in ``nodes`` (mesh node numbers)."""
-        return _surface(self.nodes, self.boundary, np.isin(np.arange(len(self.nodes)), nodes))
+        return surface_of(self.nodes, self.boundary, np.isin(np.arange(len(self.nodes)), nodes))
 
     def line(self, nodes: np.ndarray) -> Line:
         """Return the element edges all of whose nodes are in ``nodes`` (mesh node numbers)."""
@@ -256,11 +254,13 @@ class BushMesh:
         return self.line(near)
 
 
-def _surface(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> Surface:
-    return _patch(nodes, boundary[member[boundary].all(axis=1)])
+def surface_of(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> Surface:
+    """Patch of the faces ``boundary`` (f, 8) all of whose nodes are flagged by ``member`` (n,)."""
+    return patch(nodes, boundary[member[boundary].all(axis=1)])
 
 
-def _patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
+def patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
+    """Patch of faces (f, 8) on nodes (n, 3)."""
     used = np.unique(faces)
     return Surface(positions=nodes[used], nodes=used, faces=faces, local_faces=np.searchsorted(used, faces))
 
@@ -313,224 +313,8 @@ class HollowCylinder:
         nodes = np.stack([radius * np.cos(theta), radius * np.sin(theta), z], axis=1)
         boundary = boundary_faces(elements)
         members = (i == 0, i == 2 * self.radial, k == 0, k == 2 * self.axial)
-        bore, outer, end_low, end_high = (_surface(nodes, boundary, member) for member in members)
+        bore, outer, end_low, end_high = (surface_of(nodes, boundary, member) for member in members)
         return BushMesh(nodes=nodes, elements=elements, bore=bore, outer=outer, end_low=end_low, end_high=end_high)
-
-
-class FEMData(Protocol):
-    """What is read of Exudyn's ``FEMinterface``: nodes['Position'] (n, 3) and elements, a list with 'Hex20' (m, 20)."""
-
-    nodes: dict
-    elements: list
-
-
-@dataclass(frozen=True, kw_only=True)
-class OnCylinder:
-    """Nodes on a cylinder about the bush's axis: ``held`` of an imported mesh.
-
-    Parameters
-    ----------
-    radius : float
-        [m]
-    tolerance : float
-        On a node's radius, over the radius.
-    """
-
-    radius: float
-    tolerance: float = 5e-3
-
-    def __post_init__(self) -> None:
-        require_numbers(self, above=0.0, radius="m", tolerance="")
-
-    def __call__(self, positions: np.ndarray) -> np.ndarray:
-        """Flags (n,) of positions (n, 3) in the bush frame [m]."""
-        return np.abs(np.hypot(positions[:, 0], positions[:, 1]) - self.radius) <= self.tolerance * self.radius
-
-
-@dataclass(frozen=True, kw_only=True)
-class OnPlane:
-    """Nodes on a plane: ``held`` of an imported mesh.
-
-    Parameters
-    ----------
-    point, normal : three numbers
-        A point of the plane [m] and its normal, bush frame.
-    tolerance : float
-        Distance from the plane [m].
-    """
-
-    point: tuple[float, float, float]
-    normal: tuple[float, float, float]
-    tolerance: float = 1e-5
-
-    def __post_init__(self) -> None:
-        require_vector("OnPlane.point", self.point, 3, "m")
-        if not np.linalg.norm(require_vector("OnPlane.normal", self.normal, 3)) > 0.0:
-            raise InputError(f"OnPlane.normal must be a direction, got {self.normal!r}.")
-        require_numbers(self, above=0.0, tolerance="m")
-
-    def __call__(self, positions: np.ndarray) -> np.ndarray:
-        """Flags (n,) of positions (n, 3) in the bush frame [m]."""
-        normal = np.asarray(self.normal) / np.linalg.norm(self.normal)
-        return np.abs((positions - np.asarray(self.point)) @ normal) <= self.tolerance
-
-
-Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
-"""Nodes of a user's mesh by number, or flags (n,) of positions (n, 3) in the bush frame."""
-
-
-def mesh_from_fem(
-    fem: FEMData,
-    *,
-    bore_radius: float,
-    held: Held | None = None,
-    origin: tuple = (0.0, 0.0, 0.0),
-    axis: tuple = (0.0, 0.0, 1.0),
-) -> BushMesh:
-    """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra.
-
-    Parameters
-    ----------
-    fem : FEMinterface
-        Exudyn's, with Hex20 elements (Abaqus C3D20 order) only.
-    bore_radius, held, origin, axis
-        As in `mesh_from_arrays`, which also says what comes back and what is refused.
-    """
-    sets = [np.asarray(block["Hex20"], dtype=int) for block in fem.elements if len(block.get("Hex20", ())) > 0]
-    other = sorted({key for block in fem.elements for key in block if key not in ("Name", "Hex20") and len(block[key])})
-    if not sets or other:
-        raise InputError(
-            f"mesh_from_fem fem.elements must hold Hex20 elements only, got {['Hex20'] * bool(sets) + other}; mesh the "
-            "bush with C3D20 elements and put other parts into a FEMinterface of their own."
-        )
-    position = np.asarray(fem.nodes["Position"], dtype=float)
-    elements = np.concatenate(sets)
-    return mesh_from_arrays(position, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
-
-
-def mesh_from_arrays(
-    nodes: np.ndarray,
-    elements: np.ndarray,
-    *,
-    bore_radius: float,
-    held: Held | None = None,
-    origin: tuple = (0.0, 0.0, 0.0),
-    axis: tuple = (0.0, 0.0, 1.0),
-) -> BushMesh:
-    """Return a bush mesh from a user's own nodes and C3D20 connectivity; the bore is found by its radius.
-
-    Parameters
-    ----------
-    nodes : ndarray, shape (n, 3)
-        Positions [m] in the user's frame.
-    elements : ndarray of int, shape (m, 20)
-        Abaqus C3D20 node order, zero-based.
-    bore_radius : float
-        Radius [m] of the bore; its corner nodes must lie within 1 % of the radius.
-    held : nodes, `OnCylinder`, `OnPlane` or function, optional
-        Where the housing holds the bush: the faces all of whose nodes are among these (numbers, or flags of the user's
-        nodes), or have the function of positions (n, 3) in the bush frame [m] true. By default every face that belongs
-        neither to the bore nor to the ends.
-    origin, axis : three numbers
-        A point on the bearing's mid-plane and axis, and the axis direction, user's frame. The mesh comes back in the
-        bush frame; with the default axis its x and y are the user's.
-
-    Returns
-    -------
-    BushMesh
-        Outer surface: the faces that are held; ends: the boundary faces normal to the axis at the smallest and the
-        largest z. Unused nodes are dropped.
-
-    Warns
-    -----
-    UserWarning
-        If held faces reach the bore (a chamfer, a groove, an oil hole), whose edge is then clamped.
-
-    Raises
-    ------
-    InputError
-        No bore at this radius, no held face, inverted elements, or array shapes that don't fit.
-    """
-    radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
-    nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
-    if nodes.ndim != 2 or nodes.shape[1] != 3 or elements.ndim != 2 or elements.shape[1] != 20:
-        raise InputError(
-            f"mesh_from_arrays nodes and elements must have shapes (n, 3) and (m, 20), got {nodes.shape} and "
-            f"{elements.shape}; only 20-node hexahedra are supported."
-        )
-    centre = require_vector("mesh_from_arrays origin", origin, 3, "m")
-    nodes = (nodes - centre) @ _frame(require_vector("mesh_from_arrays axis", axis, 3)).T
-    for number in (elements.min(initial=len(nodes)), elements.max(initial=-1)):
-        counts = "subtract 1 from numbers that count from 1, as Abaqus does."
-        require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
-    used, elements = np.unique(elements, return_inverse=True)
-    nodes, elements = nodes[used], elements.reshape(-1, 20)
-    _check_volume(nodes, elements)
-    boundary = boundary_faces(elements)
-    r, z = np.hypot(nodes[:, 0], nodes[:, 1]), nodes[:, 2]
-    flat = 1e-4 * np.ptp(z)
-    low, high = z < z.min() + flat, z > z.max() - flat
-    bore = _surface(nodes, boundary, np.abs(r - radius) < 0.01 * radius)
-    if len(bore.nodes) == 0:
-        raise InputError(
-            f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
-            f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
-        )
-    on_bore = np.isin(np.arange(len(r)), bore.nodes)
-    outer = _held_faces(nodes, boundary, used, held, (low, high, on_bore))
-    reaching = np.intersect1d(outer, bore.nodes).size
-    if reaching:
-        warnings.warn(
-            f"mesh_from_arrays: {reaching} nodes of the bore belong to held faces (a chamfer, a groove or a hole) and "
-            "are clamped; name the held faces, e.g. held=OnCylinder(radius=...) for the outer cylinder alone.",
-            stacklevel=2,
-        )
-    return BushMesh(
-        nodes=nodes,
-        elements=elements,
-        bore=bore,
-        outer=_patch(nodes, outer),
-        end_low=_surface(nodes, boundary, low),
-        end_high=_surface(nodes, boundary, high),
-    )
-
-
-def _held_faces(
-    nodes: np.ndarray, boundary: np.ndarray, used: np.ndarray, held: Held | None, elsewhere: tuple[np.ndarray, ...]
-) -> np.ndarray:
-    """Faces (f, 8) that the housing holds; ``used`` are the user's numbers of the nodes, ``elsewhere`` flags (n,) of
-    the ends and, last, of the bore."""
-    whole = [member[boundary].all(axis=1) for member in elsewhere]
-    if held is None:
-        return boundary[~np.any(whole, axis=0)]
-    if callable(held):
-        member = np.asarray(held(nodes))
-    else:
-        numbers = np.asarray(held)
-        member = np.isin(used, np.flatnonzero(numbers) if numbers.dtype == bool else numbers)
-    if member.shape != (len(nodes),) or member.dtype != bool:
-        raise InputError(
-            f"mesh_from_arrays held: the function must give one bool for each of {len(nodes)} nodes, got an array of "
-            f"shape {member.shape} and type {member.dtype}."
-        )
-    faces = boundary[member[boundary].all(axis=1) & ~whole[-1]]
-    if len(faces) == 0:
-        r = np.hypot(nodes[:, 0], nodes[:, 1])
-        raise InputError(
-            f"mesh_from_arrays held: {int(member.sum())} nodes are chosen, and no boundary face besides the bore has "
-            f"all of its 8 nodes among them; the nodes have radii {r.min():g} to {r.max():g} m and z from "
-            f"{nodes[:, 2].min():g} to {nodes[:, 2].max():g} m in the bush frame. Check units, radius and tolerance."
-        )
-    return faces
-
-
-def _frame(axis: np.ndarray) -> np.ndarray:
-    """Rotation matrix whose rows are the bush axes; z = axis, x = the user's x (else y) projected normal to it."""
-    length = np.linalg.norm(axis)
-    if length == 0:
-        raise InputError("mesh_from_arrays axis must be a direction, got a zero vector; use (0, 0, 1) for z.")
-    z = axis / length
-    return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1 - 1e-9 else 1]).T
 
 
 def frame_of(z: np.ndarray, towards: np.ndarray) -> np.ndarray:
@@ -538,14 +322,3 @@ def frame_of(z: np.ndarray, towards: np.ndarray) -> np.ndarray:
     x = towards - z * (z @ towards)
     x /= np.linalg.norm(x)
     return np.column_stack([x, np.cross(z, x), z])
-
-
-def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:
-    jacobian = np.einsum("qar,eai->eqir", shape_gradients(GAUSS27.points), nodes[elements])
-    volume = np.linalg.det(jacobian).min(axis=1)
-    if volume.min() <= 0:
-        bad = np.flatnonzero(volume <= 0)
-        raise InputError(
-            f"mesh_from_arrays elements must have a positive volume everywhere, got {len(bad)} inverted or degenerate "
-            f"ones, the first is element {bad[0]}; check the node order (Abaqus C3D20) and the mesh quality."
-        )

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from exudyn_ehd.solid.hex20 import EDGES, GAUSS27
-from exudyn_ehd.solid.mesh import HollowCylinder, OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
+from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.mesh_import import OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
 from exudyn_ehd.solid.total_lagrange import reference_gradients
 from exudyn_ehd.status import InputError
 

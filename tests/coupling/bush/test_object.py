@@ -18,7 +18,8 @@ from exudyn_ehd.coupling.bush.object import (
 from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
 from exudyn_ehd.solid.bush import ANCFBush, Rayleigh
 from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
-from exudyn_ehd.solid.mesh import HollowCylinder, mesh_from_fem
+from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.mesh_import import mesh_from_fem
 from exudyn_ehd.solid.static_equilibrium import equilibrium
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError

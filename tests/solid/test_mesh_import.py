@@ -38,7 +38,7 @@ def test_abaqus_input_is_read_with_its_numbers_units_and_node_sets(tmp_path):
             assert got.faces.shape == expected.faces.shape
         order = np.lexsort(np.round(mesh.nodes, 9).T), np.lexsort(np.round(MESH.nodes, 9).T)
         np.testing.assert_allclose(mesh.nodes[order[0]], MESH.nodes[order[1]], atol=1e-12)
-    from exudyn_ehd.solid.mesh_files import read_abaqus
+    from exudyn_ehd.solid.mesh_import import read_abaqus
 
     assert len(read_abaqus(path).sets["row"]) == 5
 
