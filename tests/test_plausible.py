@@ -30,10 +30,12 @@ PURE = {
     "add_bore_modes.axis", "add_bore_modes.tolerance", "add_bore_modes.radius_tolerance", "bearing_grid.stretch",
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
+    "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
     "mesh_from_arrays.nodes",
+    "mesh_from_file.bore_radius",
     "EquilibriumPoint.speed",
     "EquilibriumPoint.load",
     "varied.parameters",
@@ -43,7 +45,8 @@ HANDED_ON = {
 READING = {
     "LubricatedJoint.plot_bearing.camera", "LubricatedJoint.plot_traces.quantities",
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
-    "CreateFlexibleBush.loads", "Support.nodes", "parameter_study.function", "parameter_study.hosts",
+    "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
+    "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
 }  # fmt: skip
 # What the package makes, and hands out to be read.
 RESULTS = {

@@ -141,7 +141,7 @@ def test_a_flange_is_held_by_its_plane():
 @pytest.mark.parametrize(
     ("held", "message"),
     [
-        (OnCylinder(radius=275.0), "0 nodes are chosen.*radii 0.225 to 0.275 m.*Check units"),
+        (OnCylinder(radius=0.5), "0 nodes are chosen.*radii 0.225 to 0.275 m.*Check units"),
         (MESH.outer.nodes[:3], "3 nodes are chosen"),
         (MESH.bore.nodes, "besides the bore"),
         (lambda x: x[:, 0], "one bool for each"),
