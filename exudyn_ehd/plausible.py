@@ -167,7 +167,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "tilt": ("steady.tilt", "equilibrium.tilt"),
     "viscosity": ("Lubricant.viscosity",),
     "oil density": ("Lubricant.density",),
-    "density": ("SaintVenantKirchhoff.density",),
+    "density": (
+        "SaintVenantKirchhoff.density",
+        "NeoHooke.density",
+    ),
     "specific heat": ("Lubricant.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
@@ -205,6 +208,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "wall pressure": ("RegularisedWall.pressure",),
     "modulus": (
         "SaintVenantKirchhoff.youngs_modulus",
+        "NeoHooke.youngs_modulus",
         "ElasticLiner.youngs_modulus",
         "GreenwoodTripp.composite_modulus",
         "composite_modulus.youngs_moduli",

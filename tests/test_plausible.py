@@ -30,7 +30,7 @@ PURE = {
     "add_bore_modes.axis", "add_bore_modes.tolerance", "add_bore_modes.radius_tolerance", "bearing_grid.stretch",
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
-    "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale",
+    "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
@@ -103,6 +103,8 @@ CLASS_NEEDS = {
     "Pocket": {"angle": 0.0, "width_angle": 0.3, "length": 0.01},
     "CircumferentialGroove": {"width": 3e-3},
     "HollowCylinder": {"inner_radius": 0.025, "thickness": 5e-3, "length": 0.025},
+    "NeoHooke": {"youngs_modulus": 5e6, "poisson_ratio": 0.45, "density": 1100.0},
+    "OnPlane": {"point": (0.0, 0.0, 0.01), "normal": (0.0, 0.0, 1.0)},
     "SaintVenantKirchhoff": {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0},
     "ElasticLiner": {"thickness": 1e-3, "youngs_modulus": 2e9},
     "GreenwoodTripp": {"composite_roughness": 5e-7, "composite_modulus": 1e11},

@@ -70,8 +70,9 @@ class ANCFBush(_Solid):
     Parameters
     ----------
     mesh : HollowCylinder or BushMesh
-        A structured cylinder, or a mesh of `mesh_from_arrays` or `mesh_from_fem`.
-    material : SaintVenantKirchhoff
+        A structured cylinder, or a mesh of `mesh_from_file`, `mesh_from_arrays` or `mesh_from_fem`.
+    material : SaintVenantKirchhoff or NeoHooke
+        `NeoHooke` for soft bushes, beyond strains of a few per cent.
     quadrature : Quadrature
         `IRONS14` by default; `GAUSS27` for the reference, `GAUSS8` for speed.
     damping : Rayleigh, optional

@@ -65,7 +65,7 @@ def equilibrium(
     Raises
     ------
     EquilibriumError
-        A load step did not converge in 30 iterations.
+        A load step did not converge in 30 iterations, or an element has turned inside out.
     """
     require_integer("equilibrium steps", steps, at_least=1)
     free = np.flatnonzero(~held.ravel())
@@ -104,6 +104,8 @@ def equilibrium(
                 raise _failure(step, steps, float("nan"))
         else:
             raise _failure(step, steps, float(error / scale))
+    if turned := solid.inversion(u):
+        raise EquilibriumError(f"equilibrium: {turned}")
     return Equilibrium(displacements=u, iterations=count, reactions=np.where(held, residual, 0.0))
 
 

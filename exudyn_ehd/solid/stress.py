@@ -109,11 +109,8 @@ def von_mises(stress: np.ndarray) -> np.ndarray:
 
 def _cauchy(H: np.ndarray, material: SaintVenantKirchhoff) -> np.ndarray:
     """Cauchy stress of displacement gradients H (..., 3, 3)."""
-    lam, mu = material.lame
     F = H + np.eye(3)
-    E = 0.5 * (H + H.swapaxes(-1, -2) + np.einsum("...ki,...kj->...ij", H, H))
-    S = 2 * mu * E + lam * np.einsum("...ii->...", E)[..., None, None] * np.eye(3)
-    return np.einsum("...ij,...jk,...lk->...il", F, S, F) / np.linalg.det(F)[..., None, None]
+    return material.first_piola(H) @ F.swapaxes(-1, -2) / np.linalg.det(F)[..., None, None]
 
 
 def _invert(corners: np.ndarray, candidates: np.ndarray, position: np.ndarray) -> tuple[int, np.ndarray]:

@@ -3,9 +3,10 @@
 Positions are absolute (the absolute nodal coordinate formulation): x = X + u with the displacement u in one fixed
 frame, interpolated by the 20-node hexahedron. Internal virtual work in first Piola-Kirchhoff form,
 
-    delta W = int P : d(delta u)/dX dV0,   P = F S,   S = lam tr(E) I + 2 mu E,   E = (F^T F - I)/2,   F = I + du/dX,
+    delta W = int P : d(delta u)/dX dV0,   F = I + du/dX,   E = (F^T F - I)/2,
 
-the St. Venant-Kirchhoff material: exact at any rotation and displacement, meant for small strain.
+with the St. Venant-Kirchhoff material, P = F S and S = lam tr(E) I + 2 mu E, exact at any rotation and displacement and
+meant for small strain, or the compressible Neo-Hooke one, P = mu (F - F^-T) + lam ln(det F) F^-T, for large strain.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ from exudyn_ehd.status import InputError, require_number, require_numbers
 
 @dataclass(frozen=True, kw_only=True)
 class SaintVenantKirchhoff:
-    """Isotropic material of a bush.
+    """Isotropic material of a bush, linear in the Green-Lagrange strain.
+
+    For small strain at any rotation: steel, bronze, polymers. It softens under compression, has no stiffness left at
+    half its length or so, and lets elements turn inside out: soft bushes take `NeoHooke`.
 
     Parameters
     ----------
@@ -42,15 +46,62 @@ class SaintVenantKirchhoff:
 
     def __post_init__(self) -> None:
         require_numbers(self, above=0.0, youngs_modulus="Pa", density="kg/m^3")
-        require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, above=-1.0)
+        where = f"{type(self).__name__}.poisson_ratio"
+        require_number(where, self.poisson_ratio, above=-1.0)
         hint = "an incompressible bush needs another element, 0.49 is the sensible limit of this one."
-        require_number("SaintVenantKirchhoff.poisson_ratio", self.poisson_ratio, below=0.5, hint=hint)
+        require_number(where, self.poisson_ratio, below=0.5, hint=hint)
 
     @property
     def lame(self) -> tuple[float, float]:
         """Lamé's constants (lam, mu) [Pa]."""
         E, nu = self.youngs_modulus, self.poisson_ratio
         return E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+
+    def energy_density(self, H: np.ndarray) -> np.ndarray:
+        """Strain energy per reference volume (...) [J/m^3] at displacement gradients H (..., 3, 3)."""
+        lam, mu = self.lame
+        E = green_lagrange(H)
+        return 0.5 * lam * np.einsum("...ii->...", E) ** 2 + mu * np.einsum("...ij,...ij->...", E, E)
+
+    def first_piola(self, H: np.ndarray) -> np.ndarray:
+        """First Piola-Kirchhoff stress (..., 3, 3) [Pa] at displacement gradients H (..., 3, 3)."""
+        lam, mu = self.lame
+        E = green_lagrange(H)
+        S = 2 * mu * E + lam * np.einsum("...ii->...", E)[..., None, None] * np.eye(3)
+        return (H + np.eye(3)) @ S
+
+
+@dataclass(frozen=True, kw_only=True)
+class NeoHooke(SaintVenantKirchhoff):
+    """Isotropic material of a soft bush: compressible Neo-Hooke, for large strain.
+
+    Energy per volume ``mu/2 (tr(F^T F) - 3) - mu ln J + lam/2 (ln J)^2`` with J = det F: infinite where an element
+    would turn inside out; in the small that of `SaintVenantKirchhoff`. J. Bonet and R. D. Wood, Nonlinear Continuum
+    Mechanics for Finite Element Analysis, 2nd ed., 2008, section 6.4.3.
+
+    Parameters
+    ----------
+    youngs_modulus, poisson_ratio, density
+        As in `SaintVenantKirchhoff`, of small strain.
+    """
+
+    def energy_density(self, H: np.ndarray) -> np.ndarray:
+        """Strain energy per reference volume (...) [J/m^3] at displacement gradients H (..., 3, 3)."""
+        lam, mu = self.lame
+        log = np.log(np.linalg.det(H + np.eye(3)))
+        return mu * (np.einsum("...ii->...", green_lagrange(H)) - log) + 0.5 * lam * log**2
+
+    def first_piola(self, H: np.ndarray) -> np.ndarray:
+        """First Piola-Kirchhoff stress (..., 3, 3) [Pa] at displacement gradients H (..., 3, 3)."""
+        lam, mu = self.lame
+        F = H + np.eye(3)
+        inverse = np.linalg.inv(F).swapaxes(-1, -2)
+        return mu * (F - inverse) + lam * np.log(np.linalg.det(F))[..., None, None] * inverse
+
+
+def green_lagrange(H: np.ndarray) -> np.ndarray:
+    """Green-Lagrange strain (..., 3, 3) of displacement gradients H (..., 3, 3)."""
+    return 0.5 * (H + H.swapaxes(-1, -2) + np.einsum("...ki,...kj->...ij", H, H))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,12 +111,13 @@ class TotalLagrange:
     Parameters
     ----------
     mesh : BushMesh
-    material : SaintVenantKirchhoff
+    material : SaintVenantKirchhoff or NeoHooke
     quadrature : Quadrature
         `GAUSS27`, `IRONS14` (default) or `GAUSS8`. The mass always takes 27 points.
     viscosity_time : float
         beta [s] of the Kelvin-Voigt law S = C : (E + beta dE/dt). In the small it is the stiffness-proportional part
-        of Rayleigh damping, D = beta K; unlike that, it does no work in a rigid motion.
+        of Rayleigh damping, D = beta K; unlike that, it does no work in a rigid motion. `NeoHooke` gets its part beta
+        C : dE/dt.
     parallel : bool
         Run the loops over elements on numba's threads; the results are the same, bit for bit.
     """
@@ -102,13 +154,12 @@ class TotalLagrange:
     def force(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
         """Return the internal force, shape (n, 3) [N], of displacements u [m] and velocities v [m/s], shape (n, 3)."""
         elements, colours, G, w = self._geometry
-        u, v, beta = self._state(u, v)
-        lam, mu = self.material.lame
+        u, v, law = self._state(u, v)
         f = np.empty_like(u)
         if self.parallel:
-            kernels.force_parallel(G, w, elements, colours, u, v, lam, mu, beta, f)
+            kernels.force_parallel(G, w, elements, colours, u, v, law, f)
         else:
-            kernels.force_serial(G, w, elements, u, v, lam, mu, beta, f)
+            kernels.force_serial(G, w, elements, u, v, law, f)
         return f
 
     def tangent(
@@ -127,27 +178,35 @@ class TotalLagrange:
     ) -> np.ndarray:
         """Return the values of `tangent` in the order of `pattern`, shape (nnz,)."""
         elements, colours, G, w = self._geometry
-        u, v, beta = self._state(u, v)
-        lam, mu = self.material.lame
+        u, v, law = self._state(u, v)
         pattern = self.pattern
         data = np.empty(pattern.size)
         factors = (position_factor, position_factor + self.viscosity_time * velocity_factor)
         if self.parallel:
-            kernels.tangent_parallel(
-                G, w, elements, colours, u, v, lam, mu, beta, *factors, pattern.stride, pattern.slot, data
-            )
+            kernels.tangent_parallel(G, w, elements, colours, u, v, law, *factors, pattern.stride, pattern.slot, data)
         else:
-            kernels.tangent_serial(G, w, elements, u, v, lam, mu, beta, *factors, pattern.stride, pattern.slot, data)
+            kernels.tangent_serial(G, w, elements, u, v, law, *factors, pattern.stride, pattern.slot, data)
         return data
 
     def energy(self, u: np.ndarray) -> float:
-        """Return the strain energy [J], int (lam/2 tr(E)^2 + mu E:E) dV0."""
+        """Return the strain energy [J]."""
         elements, _, G, w = self._geometry
-        lam, mu = self.material.lame
         H = np.einsum("eai,eqja->eqij", np.asarray(u)[elements], G)
-        E = 0.5 * (H + H.swapaxes(-1, -2) + np.einsum("eqki,eqkj->eqij", H, H))
-        trace = np.einsum("eqii->eq", E)
-        return float(np.sum(w * (0.5 * lam * trace**2 + mu * np.einsum("eqij,eqij->eq", E, E))))
+        return float(np.sum(w * self.material.energy_density(H)))
+
+    def inversion(self, u: np.ndarray) -> str:
+        """Which element the displacements u (n, 3) turn inside out, and what to do about it; empty if none."""
+        elements, _, G, _ = self._geometry
+        ratio, row = kernels.smallest_volume_ratio(G, elements, np.ascontiguousarray(u, dtype=float))
+        if not ratio <= 0.0:
+            return ""
+        element = int(_colouring(self.mesh.elements)[0][row])
+        place = self.mesh.nodes[self.mesh.elements[element]].mean(axis=0)
+        return (
+            f"element {element} at {place[0]:.4g}, {place[1]:.4g}, {place[2]:.4g} m has turned inside out (det F = "
+            f"{ratio:.3g}): {type(self.material).__name__} softens under compression; take NeoHooke(...) for strains "
+            "beyond a few per cent, a finer mesh, or less load."
+        )
 
     @cached_property
     def scalar_mass(self) -> csr_matrix:
@@ -169,12 +228,14 @@ class TotalLagrange:
         size = 3 * len(self.mesh.nodes)
         return csr_matrix((np.repeat(block.data, 3), (rows, columns)), shape=(size, size))
 
-    def _state(self, u: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, float]:
+    def _state(self, u: np.ndarray, v: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, kernels.Law]:
         shape = self.mesh.nodes.shape
         u = np.ascontiguousarray(u, dtype=float).reshape(shape)
+        neo_hooke = isinstance(self.material, NeoHooke)
         if v is None or self.viscosity_time == 0.0:
-            return u, u, 0.0
-        return u, np.ascontiguousarray(v, dtype=float).reshape(shape), self.viscosity_time
+            return u, u, kernels.Law(*self.material.lame, 0.0, neo_hooke)
+        v = np.ascontiguousarray(v, dtype=float).reshape(shape)
+        return u, v, kernels.Law(*self.material.lame, self.viscosity_time, neo_hooke)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -47,6 +47,7 @@ GOOD = [
     ehd.ReynoldsTemperature(point=(313.0, 0.04), coefficient=0.03),
     ehd.HollowCylinder(inner_radius=0.02, thickness=0.01, length=0.02, axial=2, radial=1, circumferential=8),
     STEEL,
+    ehd.NeoHooke(youngs_modulus=5e6, poisson_ratio=0.45, density=1100.0),
     ehd.OnCylinder(radius=0.03),
     ehd.OnPlane(point=(0.0, 0.0, 0.01), normal=(0.0, 0.0, 1.0)),
     ehd.Gravity(acceleration=(0.0, -9.81, 0.0)),

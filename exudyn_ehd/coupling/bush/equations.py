@@ -20,6 +20,7 @@ from exudyn_ehd.coupling.items.carrier import Carrier
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.solid.loads import FollowerPressure, Load, dead_forces, factor
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.status import RunError
 
 HOLD = 1e9
 """Spring of a single supported direction over the stiffest entry of the mesh."""
@@ -127,6 +128,15 @@ class BushEquations:
         if self.contained is not None:
             own -= self.contained.matrix(self.carrier.side)
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
+
+    def require_upright(self, mbs: exu.MainSystem, item: int, time: float, name: str) -> None:
+        """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
+        start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
+        places = data.GetObjectLTGODE2(item)
+        q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
+        turned = self.solid.inversion(self.motion(q, q_t, start)[0])
+        if turned:
+            raise RunError(f"FlexibleBush '{name}' at t = {time:.9g} s: {turned}")
 
     def warn_if_light(self, mbs: exu.MainSystem, name: str, q: np.ndarray) -> None:
         """Warn if the carrier must contain the bush and has less mass than it, once the system is assembled."""

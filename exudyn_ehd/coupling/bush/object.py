@@ -361,7 +361,13 @@ def _add_object(
     show: bool,
     color: Sequence[float],
 ) -> FlexibleBush:
+    watched: list[float] = []
+
     def force(mbs, t, itemNumber, q, q_t):
+        start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+        if not watched or watched[0] != start:
+            watched[:] = [start]
+            equations.require_upright(mbs, itemNumber, start, name)
         return equations.force(t, np.array(q), np.array(q_t))
 
     def jacobian(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):

@@ -21,8 +21,8 @@ from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, LineLoad
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.mesh_import import mesh_from_fem
 from exudyn_ehd.solid.static_equilibrium import equilibrium
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
-from exudyn_ehd.status import InputError
+from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.status import InputError, RunError
 from tests.sampling import sample
 from tests.solid_vibrations import eigenfrequencies
 
@@ -516,3 +516,33 @@ def test_own_factorisation_equals_exudyn_s_solver_on_the_paper_s_mesh():
     # both stop at 1e-8 of the step's first residual; 300 steps add up
     assert np.abs(shapes[0]).max() > 0.01
     assert np.allclose(shapes[0], shapes[1], atol=1e-6 * np.abs(shapes[0]).max())
+
+
+def pressed(material, pressure, steps=20):
+    """A rubber ring, held outside, pressed on one side of its bore within 10 ms, and its smallest det F."""
+    model = Model()
+    mesh = HollowCylinder(inner_radius=0.03, thickness=0.01, length=0.02, axial=1, radial=2, circumferential=12).mesh()
+    load = FollowerPressure(
+        surface=mesh.bore,
+        pressure=pressure,
+        distribution=np.maximum(np.cos(mesh.bore.theta), 0.0) ** 3,
+        history=lambda t: min(t / 0.01, 1.0),
+    )
+    bush = CreateFlexibleBush(
+        model.mbs,
+        "pad",
+        bush=ANCFBush(mesh=mesh, material=material, damping=Rayleigh(stiffness_time=1e-4)),
+        outer=FixedOuter(),
+        loads=[load],
+    )
+    model.mbs.Assemble()
+    SolveDynamicSparse(model.mbs, settings(steps, 0.01 / steps, radius=0.6, tolerance=1e-6))
+    return bush
+
+
+def test_elements_that_turn_inside_out_end_a_run_and_neo_hooke_bears_five_times_as_much():
+    rubber = {"youngs_modulus": 5e6, "poisson_ratio": 0.45, "density": 1100.0}
+    with pytest.raises(RunError, match=r"'pad' at t = 0\.00.* element \d+ at .*inside out .det F = -.*NeoHooke"):
+        pressed(SaintVenantKirchhoff(**rubber), 5e6, 40)
+    bush = pressed(NeoHooke(**rubber), 5e6)
+    assert bush.solid.inversion(bush.displacements()) == ""
