@@ -104,7 +104,6 @@ CLASS_NEEDS = {
     "CircumferentialGroove": {"width": 3e-3},
     "HollowCylinder": {"inner_radius": 0.025, "thickness": 5e-3, "length": 0.025},
     "NeoHooke": {"youngs_modulus": 5e6, "poisson_ratio": 0.45, "density": 1100.0},
-    "OnPlane": {"point": (0.0, 0.0, 0.01), "normal": (0.0, 0.0, 1.0)},
     "SaintVenantKirchhoff": {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0},
     "ElasticLiner": {"thickness": 1e-3, "youngs_modulus": 2e9},
     "GreenwoodTripp": {"composite_roughness": 5e-7, "composite_modulus": 1e11},
