@@ -107,9 +107,8 @@ def mesh_from_fem(
             f"mesh_from_fem fem.elements must hold Hex20 elements only, got {['Hex20'] * bool(sets) + other}; mesh the "
             "bush with C3D20 elements and put other parts into a FEMinterface of their own."
         )
-    position = np.asarray(fem.nodes["Position"], dtype=float)
-    elements = np.concatenate(sets)
-    return mesh_from_arrays(position, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+    nodes, elements = fem.nodes["Position"], np.concatenate(sets)
+    return mesh_from_arrays(nodes, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 
 
 def mesh_from_arrays(
@@ -180,10 +179,8 @@ def mesh_from_arrays(
             f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
             f"there: the nodes have radii {r.min():g} to {r.max():g} m. Check units, origin and axis."
         )
-    on_bore = np.isin(np.arange(len(r)), bore.nodes)
-    outer = _held_faces(nodes, boundary, used, held, (low, high, on_bore))
-    reaching = np.intersect1d(outer, bore.nodes).size
-    if reaching:
+    outer = _held_faces(nodes, boundary, used, held, (low, high, np.isin(np.arange(len(r)), bore.nodes)))
+    if reaching := np.intersect1d(outer, bore.nodes).size:
         warnings.warn(
             f"mesh_from_arrays: {reaching} nodes of the bore belong to held faces (a chamfer, a groove or a hole) and "
             "are clamped; name the held faces, e.g. held=OnCylinder(radius=...) for the outer cylinder alone.",
