@@ -1,0 +1,20 @@
+"""Four to nine effects over cycles of load on every kind of bore: runs with the usual settings come to their end."""
+
+import numpy as np
+import pytest
+
+from tests.fuzz import mixed_runs
+
+SEEDS = {"rigid": range(10), "liner": range(4), "modal": range(3), "dynamic": range(2), "nodal": range(1)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "seed"), [(kind, seed) for kind, seeds in SEEDS.items() for seed in seeds])
+def test_mixed_runs(kind, seed):
+    scene = mixed_runs.draw(seed, kind)
+    out = mixed_runs.run(scene, 0.5 * mixed_runs.CYCLES[kind])
+    assert out.error is None, f"{mixed_runs.words(scene)}: {out.error}"
+    assert out.rows < 4.0 and out.smallest > 1e-3
+    for name in ("minimum_gap", "peak_pressure", "force", "power_loss"):
+        assert np.all(np.isfinite(getattr(out.history, name))), name
+    assert "OverloadWarning" not in out.warned
