@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import logging
 import math
 import numbers
 import pathlib
@@ -39,13 +40,19 @@ class Row:
 
 
 def evaluated(function: Function, point: Point) -> Row:
-    """Call a function at a point; what it raises becomes the row's error, so that it does not take the others along."""
-    start = time.perf_counter()
-    results, error = {}, ""
+    """Call a function at a point; what it raises becomes the row's error, so that it does not take the others along.
+
+    The lines that runs log are left out: a study has its table.
+    """
+    start, log = time.perf_counter(), logging.getLogger("exudyn_ehd")
+    level, results, error = log.level, {}, ""
+    log.setLevel(max(level, logging.WARNING))
     try:
         results = as_numbers(function(dict(point)))
     except Exception as caught:
         error = " ".join(f"{type(caught).__name__}: {caught}".split())
+    finally:
+        log.setLevel(level)
     return Row(results, error, time.perf_counter() - start)
 
 

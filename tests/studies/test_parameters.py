@@ -112,13 +112,15 @@ def settling(parameters):
 
 # the workers find this test module only if they are copies of this process
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")
-def test_exudyn_models_run_in_processes():
+def test_exudyn_models_run_in_processes(capfd):
+    """Their runs log no lines."""
     parameters = {"radial_clearance": [20e-6, 40e-6]}
     here = ehd.parameter_study(settling, parameters, show_progress=False)
     there = ehd.parameter_study(settling, parameters, processes=2, show_progress=False)
     np.testing.assert_array_equal(here["steps"], 10)
     np.testing.assert_array_equal(here["minimum_gap"], there["minimum_gap"])
     assert here["minimum_gap"][0] < here["minimum_gap"][1]
+    assert "LubricatedJoint" not in capfd.readouterr().err
 
 
 def stubborn(parameters):
