@@ -36,6 +36,7 @@ rounding of positions over h is no noise to Newton's method. It is in forms with
 from __future__ import annotations
 
 import dataclasses
+import functools
 
 import numpy as np
 
@@ -72,18 +73,28 @@ class StepStart:
     misses: np.ndarray
     clearance: float
 
+    @functools.cached_property
+    def _expected(self) -> np.ndarray:
+        return np.asarray(WEIGHTS[len(self.misses)] @ self.misses)
+
     def film_motion(self, motion: np.ndarray, time: float) -> np.ndarray:
         """Motion (10 + 2 k,) as given for the end of the step, with the rates that the film takes."""
         step, known = time - self.time, len(self.misses)
         if known == 0 or step > LARGEST_GROWTH * self.step:
             return motion
-        expected = step**2 * (WEIGHTS[known] @ self.misses)
+        expected = step**2 * self._expected
         if step * np.abs(expected[:2]).max() < SMALLEST_MISS * self.clearance:
             return motion
         out = motion.copy()
         out[_RATES] += expected[:4]
         out[motion.size - expected.size + 4 :] += expected[4:]
         return out
+
+
+@functools.cache
+def _places(k: int) -> tuple[np.ndarray, np.ndarray]:
+    """Where a motion with k bore coordinates holds places and their rates, (4 + k,) each."""
+    return np.r_[:4, _BORE : _BORE + k], np.r_[4:8, _BORE + k : _BORE + 2 * k]
 
 
 def next_start(before: StepStart | None, motion: np.ndarray, time: float, clearance: float) -> StepStart:
@@ -107,7 +118,7 @@ def next_start(before: StepStart | None, motion: np.ndarray, time: float, cleara
         return dataclasses.replace(before, motion=motion)
     step = time - before.time
     change, mean = (motion - before.motion) / step, 0.5 * (motion + before.motion)
-    place, rate = np.r_[:4, _BORE : _BORE + k], np.r_[4:8, _BORE + k : _BORE + 2 * k]
+    place, rate = _places(k)
     known = before.misses[:2] if step <= LARGEST_GROWTH * before.step else before.misses[:0]
     misses = np.vstack(((change[place] - mean[rate]) / step**2, known))
     return StepStart(time, motion, step, misses, clearance)

@@ -131,17 +131,17 @@ def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.
         return None
 
     def sizes(values: np.ndarray) -> np.ndarray:
-        return np.sqrt(np.bincount(groups, values * values))
+        return np.sqrt(np.bincount(groups, values * values))[groups] if groups.any() else np.sqrt(values @ values)
 
     (t_1, before), (t_0, now) = past[-2:]
     change = sizes(now - before)
-    lasts = (change <= LARGEST_CHANGE * sizes(now))[groups]
+    lasts = change <= LARGEST_CHANGE * sizes(now)
     expected = np.where(before * now > 0.0, np.sign(now) * np.minimum(np.abs(before), np.abs(now)), 0.0)
     if len(past) > 2:
         t_2, earlier = past[-3]
         even = abs((t_0 - t_1) - (t_1 - t_2)) < 1e-6 * (t_0 - t_1)
         if even:
-            straight = (sizes(now - 2.0 * before + earlier) < LARGEST_BEND * change)[groups]
+            straight = sizes(now - 2.0 * before + earlier) < LARGEST_BEND * change
             expected = np.where(straight, 2.0 * now - before, expected)
     return np.where(lasts, expected, 0.0)
 
