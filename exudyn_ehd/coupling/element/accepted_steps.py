@@ -347,7 +347,7 @@ class AcceptedSteps:
         history = self.history(mbs)
         if history.time.size > 1:
             implicit = solver_state.is_implicit(self.solver)
-            summary.tell(self.film.failures.name, self.film.model.bearing, history, counts_halved=implicit)
+            summary.tell(self.film.failures.name, self.film.model.bearing, history, in_time=implicit)
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """The record, completed by the current state if that is later than the last step; warns if it has no film."""

@@ -13,6 +13,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
+from exudyn_ehd.joint.audit.samples import largest_advance
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
@@ -37,7 +38,7 @@ def is_on() -> bool:
     return LOGGER.isEnabledFor(logging.INFO)
 
 
-def tell(name: str, bearing: JournalBearing, history: JointHistory, *, counts_halved: bool) -> None:
+def tell(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: bool) -> None:
     """Log the line of a joint whose run has ended.
 
     Parameters
@@ -47,13 +48,13 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, counts_ha
     bearing : JournalBearing
     history : JointHistory
         With one step or more.
-    counts_halved : bool
-        Whether steps differ in size because they were halved.
+    in_time : bool
+        Whether the run has steps in time, which differ in size only where they were halved.
     """
-    LOGGER.info("%s", line(name, bearing, history, counts_halved=counts_halved))
+    LOGGER.info("%s", line(name, bearing, history, in_time=in_time))
 
 
-def line(name: str, bearing: JournalBearing, history: JointHistory, *, counts_halved: bool) -> str:
+def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: bool) -> str:
     """The line that `tell` logs."""
     h, time = history, history.time
     text = f"LubricatedJoint '{name}', {time.size - 1} steps to t = {time[-1]:.6g} s"
@@ -64,8 +65,11 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, counts_ha
         if np.any(np.isfinite(values)):
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
-    halved = _halved(time) if counts_halved else 0
+    halved = _halved(time) if in_time else 0
     text += f", {halved} halved steps" if halved else ""
+    crossed = largest_advance(h.motion, h.minimum_gap, bearing.length) if in_time else 0.0
+    if crossed > LIMITS["time step"].value:
+        text += f", {100.0 * crossed:.0f} % of the film crossed in one step: take more steps"
     doubts = worth_an_audit(bearing, history)
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 

@@ -12,6 +12,7 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
+from exudyn_ehd.joint.audit.samples import largest_advance
 from exudyn_ehd.joint.audit.switches import refined
 
 # Grids this many times finer than needed cost time for nothing.
@@ -122,7 +123,7 @@ def time_step(case: Case) -> Finding | None:
     return finding(
         "time step",
         "motion in a step / minimum film thickness",
-        case.record.largest_advance(case.bearing.length),
+        largest_advance(case.record.motion, case.record.minimum_gap, case.bearing.length),
         None,
         mattering="the journal crosses much of its gap in one step: take smaller steps.",
     )

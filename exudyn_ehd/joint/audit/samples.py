@@ -60,14 +60,25 @@ class RecordedSteps:
         keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, deflected)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
 
-    def largest_advance(self, length: float) -> float:
-        """Largest motion of the journal's axis at a bearing's end within a step, over the smaller of its two gaps."""
-        if self.time.size < 2:
-            return 0.0
-        ends = [self.motion[:, :2] + s * 0.5 * length * self.motion[:, 2:4] for s in (-1.0, 1.0)]
-        moved = np.max([np.hypot(*np.diff(e, axis=0).T) for e in ends], axis=0)
-        gap = np.minimum(self.minimum_gap[1:], self.minimum_gap[:-1])
-        return float(np.max(moved / np.maximum(gap, 1e-3 * np.abs(self.minimum_gap).max() + 1e-300)))
+
+def largest_advance(motion: np.ndarray, minimum_gap: np.ndarray, length: float) -> float:
+    """Largest motion of the journal's axis at a bearing's end within a step, over the smaller of its two gaps.
+
+    Parameters
+    ----------
+    motion : (n, 10 or more) array
+        Of the accepted steps.
+    minimum_gap : (n,) array
+        m.
+    length : float
+        m.
+    """
+    if len(motion) < 2:
+        return 0.0
+    ends = [motion[:, :2] + s * 0.5 * length * motion[:, 2:4] for s in (-1.0, 1.0)]
+    moved = np.max([np.hypot(*np.diff(e, axis=0).T) for e in ends], axis=0)
+    gap = np.minimum(minimum_gap[1:], minimum_gap[:-1])
+    return float(np.max(moved / np.maximum(gap, 1e-3 * np.abs(minimum_gap).max() + 1e-300)))
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,5 +1,6 @@
 """A run ends with one line per joint: what was thinnest and highest, when, and what was left out."""
 
+import copy
 import logging
 import subprocess
 import sys
@@ -11,6 +12,7 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.joint.audit.samples import largest_advance
 
 
 @pytest.fixture
@@ -118,6 +120,24 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
     assert [name for name in absent if name in line] == []
 
 
+def test_steps_that_cross_much_of_the_film_are_named():
+    """By the audit's measure of a run, and of every twentieth of its steps."""
+    mbs, joint = scene(30e3)
+    ehd.SolveDynamic(mbs, scenes.settings(0.02, 400, tolerance=1e-8))
+    (fine,) = [f for f in joint.audit().findings if f.effect == "time step"]
+    coarse = copy.copy(joint.history)
+    for name, values in vars(coarse).items():
+        if isinstance(values, np.ndarray) and len(values) == 401:
+            object.__setattr__(coarse, name, values[::20])
+    bearing = joint.bearing
+    crossed = largest_advance(coarse.motion, coarse.minimum_gap, bearing.length)
+    assert crossed > fine.threshold > fine.value
+    named = f"{100.0 * crossed:.0f} % of the film crossed in one step: take more steps"
+    assert named in summary.line("bearing", bearing, coarse, in_time=True)
+    assert "crossed" not in summary.line("bearing", bearing, coarse, in_time=False)
+    assert "crossed" not in summary.line("bearing", bearing, joint.history, in_time=True)
+
+
 def test_one_switch_turns_the_lines_off(lines):
     summary.LOGGER.setLevel(logging.WARNING)
     mbs, joint = scene()
@@ -131,6 +151,7 @@ import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
 from exudyn_ehd.coupling.record import summary
+from exudyn_ehd.joint.audit.samples import largest_advance
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")
 if summary.is_on():
