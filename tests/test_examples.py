@@ -56,6 +56,7 @@ def test_rotating_journal(example, tmp_path):
                 assert case["asymmetry"] < 1e-9 if name == "aligned" else case["asymmetry"] > 0.5
 
 
+@pytest.mark.slow
 def test_elastic_big_end(example, tmp_path):
     cases = example("elastic_big_end").main(quick=True, results=tmp_path)
     assert cases.pop("picture").stat().st_size > 10_000
@@ -100,6 +101,7 @@ def test_modes_of_the_connecting_rod_deform_as_the_mesh_does(example):
     assert shortening == pytest.approx(25e3 * 0.091 / (2.1e11 * 0.022 * 0.0183), rel=0.1)
 
 
+@pytest.mark.slow
 def test_engine_big_end(example, tmp_path):
     rows = example("engine_big_end").main(quick=True, output=tmp_path)
     assert (tmp_path / "engine_big_end.png").stat().st_size > 10_000
@@ -173,6 +175,7 @@ def test_elastic_slider_crank(example, tmp_path):
         )
 
 
+@pytest.mark.slow
 def test_start_stop(example, tmp_path):
     rows = example("start_stop").main(quick=True, output=tmp_path)
     assert (tmp_path / "start_stop.png").stat().st_size > 10_000
@@ -233,6 +236,7 @@ def test_four_bar_spatial(example, tmp_path):
     assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
 
 
+@pytest.mark.slow
 def test_hydrostatic_or_grooved(example, tmp_path):
     rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)
     assert (tmp_path / "hydrostatic_or_grooved.png").stat().st_size > 10_000

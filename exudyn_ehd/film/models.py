@@ -94,11 +94,11 @@ def _check_grid(film: FiniteLength | ShortBearing) -> None:
     require_integer(f"{name}.n_theta", film.n_theta, at_least=16, hint="96 is a good start.")
     require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
     coupled = film.n_z if film.circumferential_pressure_flow else 1
-    size = 16.0 * film.n_theta * film.n_z * coupled
-    if size > LARGEST_MATRIX:
+    # Python's integers: neither numpy's nor floats hold any product
+    if 16 * int(film.n_theta) * int(film.n_z) * int(coupled) > LARGEST_MATRIX:
         raise InputError(
-            f"{name}: a grid of {film.n_theta} x {film.n_z} takes {size:.3g} bytes for one matrix, more than "
-            f"{LARGEST_MATRIX:g}; 192 x 16 is fine."
+            f"{name}: a grid of {film.n_theta} x {film.n_z} takes more than {LARGEST_MATRIX:g} bytes for one matrix; "
+            "192 x 16 is fine."
         )
     require_number(f"{name}.stretch", film.stretch, at_least=0.0, at_most=0.95, hint="0.75 suits most bearings.")
 

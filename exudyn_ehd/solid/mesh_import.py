@@ -69,14 +69,16 @@ class OnPlane:
 
     def __post_init__(self) -> None:
         require_vector("OnPlane.point", self.point, 3, "m")
-        if not np.linalg.norm(require_vector("OnPlane.normal", self.normal, 3)) > 0.0:
+        if not np.any(require_vector("OnPlane.normal", self.normal, 3)):
             raise InputError(f"OnPlane.normal must be a direction, got {self.normal!r}.")
         require_numbers(self, above=0.0, tolerance="m")
 
     def __call__(self, positions: np.ndarray) -> np.ndarray:
         """Flags (n,) of positions (n, 3) in the bush frame [m]."""
-        normal = np.asarray(self.normal) / np.linalg.norm(self.normal)
-        return np.abs((positions - np.asarray(self.point)) @ normal) <= self.tolerance
+        # any length: neither its square nor its inverse need be a number
+        normal = np.asarray(self.normal) / np.abs(self.normal).max()
+        distance = (positions - np.asarray(self.point)) @ (normal / np.linalg.norm(normal))
+        return np.abs(distance) <= self.tolerance
 
 
 Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
