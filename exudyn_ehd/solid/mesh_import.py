@@ -77,8 +77,7 @@ class OnPlane:
         """Flags (n,) of positions (n, 3) in the bush frame [m]."""
         # any length: neither its square nor its inverse need be a number
         normal = np.asarray(self.normal) / np.abs(self.normal).max()
-        distance = (positions - np.asarray(self.point)) @ (normal / np.linalg.norm(normal))
-        return np.abs(distance) <= self.tolerance
+        return np.abs((positions - np.asarray(self.point)) @ normal) <= self.tolerance * np.linalg.norm(normal)
 
 
 Held: TypeAlias = Sequence[int] | np.ndarray | Callable[[np.ndarray], np.ndarray]
