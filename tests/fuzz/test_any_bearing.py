@@ -65,7 +65,8 @@ def bearings(draw):
         warnings.simplefilter("ignore", UserWarning)
         return ehd.JournalBearing(
             journal_radius=radius,
-            length=2.0 * radius * ratio,
+            # longer ones are refused as typed in other units
+            length=min(2.0 * radius * ratio, 10.0),
             radial_clearance=clearance,
             film=film,
             cavitation=closure,
