@@ -78,7 +78,7 @@ KINDS: dict[str, Kind] = {
     "cavity pressure": Kind("Pa", 0.0, 50.0, 1e7, 1e10, _PRESSURE, "it is a gauge pressure, vacuum is -1e5"),
     "stress": Kind("Pa", 0.0, 1.0, 1e10, 1e13, _STRESS),
     "wall pressure": Kind("Pa", 1e3, 1e5, 1e12, 1e14, _STRESS),
-    "modulus": Kind("Pa", 1e3, 5e5, 2e12, 1e18, _STRESS),
+    "modulus": Kind("Pa", 1e3, 5e5, 2.5e12, 1e18, _STRESS),
     "pressure coefficient": Kind("1/Pa", 0.0, 0.0, 1e-5, 1e-4, (("1/GPa", 1e-9), ("1/MPa", 1e-6))),
     "compressibility": Kind("1/Pa", 0.0, 0.0, 1e-8, 1e-6, (("1/GPa", 1e-9),)),
     "law's pressure": Kind("Pa", 1e5, 1e7, 1e10, 1e12, _STRESS),

@@ -139,14 +139,15 @@ def test_force_is_the_derivative_of_the_energy():
 
 @pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
-def test_serial_and_parallel_kernels_agree_bit_for_bit(rule):
+def test_serial_and_parallel_kernels_agree_to_rounding(rule):
+    """They are compiled one by one, and need not round products in sums alike."""
     u, v = np.random.default_rng(10).standard_normal((2, *SMALL.nodes.shape)) * 0.01
     results = []
     for parallel in (False, True):
         solid = TotalLagrange(mesh=SMALL, material=SOFT, quadrature=rule, parallel=parallel, viscosity_time=1e-3)
         results.append((solid.force(u, v), solid.tangent_values(u, v)))
-    assert np.array_equal(results[0][0], results[1][0])
-    assert np.array_equal(results[0][1], results[1][1])
+    for serial, parallel in zip(*results, strict=True):
+        assert np.abs(serial - parallel).max() < 1e-14 * np.abs(serial).max()
 
 
 def block_mesh():
