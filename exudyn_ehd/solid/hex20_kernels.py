@@ -8,7 +8,7 @@ St. Venant-Kirchhoff: S = lam tr(E) I + 2 mu E. Neo-Hooke: P = mu (F - F^-T) + l
 J > 0; written as mu (H + F^-T H^T) and with log1p(J - 1), so that small strains keep their digits.
 
 Elements come sorted by colour: two elements of one colour share no node, so that a parallel loop over one colour needs
-no locks, and serial and parallel loops add in the same order: their results are equal bit for bit. Serial and parallel
+no locks, and serial and parallel loops add in the same order: their results are equal to rounding. Serial and parallel
 kernels are distinct functions, since numba would let them share one cache entry.
 """
 

@@ -119,7 +119,7 @@ class TotalLagrange:
         of Rayleigh damping, D = beta K; unlike that, it does no work in a rigid motion. `NeoHooke` gets its part beta
         C : dE/dt.
     parallel : bool
-        Run the loops over elements on numba's threads; the results are the same, bit for bit.
+        Run the loops over elements on numba's threads; the results are the same to rounding.
     """
 
     mesh: BushMesh
