@@ -23,7 +23,7 @@ from matplotlib.text import Text
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RADIUS = 0.025

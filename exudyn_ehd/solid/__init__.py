@@ -11,8 +11,7 @@ total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
 static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held
 stress              Cauchy and von Mises stress at nodes and at any point
-static_modes        a bush reduced to static modes of its bore
-dynamic_modes       what these lack in motion: vibrations, responses to body forces
+modes               a bush reduced to modes: static ones of its bore, what these lack in motion
 fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`
 fe_faces            its nodes and faces, and their shape functions
 """

@@ -10,7 +10,7 @@ that the gap of the film sees the residual only, ``delta = e_r (S Psi - P - Thet
 clearances without error. Loads are carried back by the transposes.
 
 Source of the modes: static (attachment) modes, R. R. Craig, J. Modal Analysis 2 (1987) 59, here for pressures on a bore
-as in `exudyn_ehd.solid.static_modes`.
+as in `exudyn_ehd.solid.modes.static`.
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ from scipy.sparse import csr_matrix, diags
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
 from exudyn_ehd.solid.mesh import directed, frame_of
-from exudyn_ehd.solid.static_equilibrium import symmetric_factor
-from exudyn_ehd.solid.static_modes import (
+from exudyn_ehd.solid.modes.static import (
     candidate_pressures,
     enough_modes,
     orthogonal_modes,
     sample_pressures,
 )
+from exudyn_ehd.solid.static_equilibrium import symmetric_factor
 from exudyn_ehd.status import InputError, require_number, require_vector
 
 # Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.

@@ -81,7 +81,7 @@ EFFECTS = {
             "joint.model.flexible",
             "joint.tangent.bore",
             "joint.bore.equilibrium",
-            "solid.static_modes",
+            "solid.modes.static",
         ),
         {
             "bush": ehd.ModalBush(

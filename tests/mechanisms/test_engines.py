@@ -91,12 +91,59 @@ CELLS = {
 
 
 CONSERVING = ehd.ElrodAdams(cavity_pressure=-1e5)
+SPEED, CRANK_RADIUS, ROD_LENGTH = 100.0 * math.pi, 0.04, 0.13
+TURN = 2.0 * math.pi / SPEED
+
+
+def body(mbs, mass, inertia, **options):
+    inertia = eut.RigidBodyInertia(mass=mass, inertiaTensor=np.diag(inertia))
+    return mbs.CreateRigidBody(inertia=inertia, **options)
+
+
+def rod_and_piston(mbs, ground, big_end, place, **options):
+    """A connecting rod from a crank pin to a piston, which slides along z, moving with the crank."""
+    velocity, middle = np.cross([SPEED, 0, 0], big_end), 0.3 * (place - big_end)
+    swing = np.array([velocity[1] / ROD_LENGTH, 0, 0])
+    rod = body(
+        mbs, 0.6, [2.2e-3, 2.2e-3, 2e-4], referencePosition=big_end + middle,
+        initialVelocity=velocity + np.cross(swing, middle), initialAngularVelocity=swing, **options,
+    )  # fmt: skip
+    rise = velocity + np.cross(swing, place - big_end)
+    piston = body(mbs, 0.45, [3e-4] * 3, referencePosition=place, initialVelocity=rise, **options)
+    mbs.CreatePrismaticJoint(itemNumbers=[ground, piston], position=place, axis=[0, 0, 1])
+    return rod, piston
+
+
+def fire(mbs, piston, bar, before):
+    """Gas on a piston of 80 mm, highest ``before`` rad behind the start, every second turn, up in a tenth of one."""
+
+    def gas(mbs, t, load):
+        past = math.remainder(SPEED * t - before, 4.0 * math.pi)
+        pressure = bar * 1e5 * math.exp(-((past / 0.45) ** 2)) + 1e5
+        return [0, 0, -min(1.0, t / (0.1 * TURN)) * pressure * math.pi * 0.04**2]
+
+    mbs.CreateForce(itemNumber=piston, loadVector=[0, 0, -1.0], loadVectorUserFunction=gas)
+
+
+def drive(mbs, crank, steps, rho):
+    """Keep a crank at its speed for one turn."""
+
+    def torque(mbs, t, load):
+        rate = mbs.GetObjectOutputBody(crank, exu.OutputVariableType.AngularVelocity, [0, 0, 0])[0]
+        return [200.0 * (SPEED - rate), 0, 0]
+
+    mbs.CreateTorque(itemNumber=crank, loadVector=[1.0, 0, 0], loadVectorUserFunction=torque)
+    mbs.Assemble()
+    settings = ehd.ConfigureSolver(exu.SimulationSettings())
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = TURN, steps
+    settings.timeIntegration.generalizedAlpha.spectralRadius = rho
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    assert ehd.SolveDynamic(mbs, settings)
 
 
 def gudgeon_pin(bar, law, effects, steps, rho, closure=CONSERVING):
     """History of the gudgeon pin of an engine at 3000 rpm, one turn from bottom dead centre, and its warnings."""
-    speed, crank_radius, rod_length = 100.0 * math.pi, 0.04, 0.13
-    turn = 2.0 * math.pi / speed
     oil = dataclasses.replace(ehd.oil("SAE 5W-30", temperature=373.15), pressure_law=law)
     bearing = ehd.JournalBearing(
         journal_radius=0.01, length=0.022, radial_clearance=10e-6, lubricant=oil,
@@ -104,44 +151,16 @@ def gudgeon_pin(bar, law, effects, steps, rho, closure=CONSERVING):
     )  # fmt: skip
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.CreateGround()
-
-    def body(mass, inertia, **options):
-        return mbs.CreateRigidBody(inertia=eut.RigidBodyInertia(mass=mass, inertiaTensor=np.diag(inertia)), **options)
-
-    crank = body(3.0, [0.02] * 3, initialAngularVelocity=[speed, 0, 0])
+    crank = body(mbs, 3.0, [0.02] * 3, initialAngularVelocity=[SPEED, 0, 0])
     mbs.CreateRevoluteJoint(itemNumbers=[ground, crank], position=[0, 0, 0], axis=[1, 0, 0])
-    big_end, place = np.array([0, 0, -crank_radius]), np.array([0, 0, rod_length - crank_radius])
-    velocity, middle = np.cross([speed, 0, 0], big_end), np.array([0, 0, 0.3 * rod_length])
-    swing = np.array([velocity[1] / rod_length, 0, 0])
-    rod = body(
-        0.6, [2.2e-3, 2.2e-3, 2e-4], referencePosition=big_end + middle,
-        initialVelocity=velocity + np.cross(swing, middle), initialAngularVelocity=swing,
-    )  # fmt: skip
-    piston = body(0.45, [3e-4] * 3, referencePosition=place)
-    mbs.CreatePrismaticJoint(itemNumbers=[ground, piston], position=place, axis=[0, 0, 1])
+    big_end, place = np.array([0, 0, -CRANK_RADIUS]), np.array([0, 0, ROD_LENGTH - CRANK_RADIUS])
+    rod, piston = rod_and_piston(mbs, ground, big_end, place)
     mbs.CreateGenericJoint(itemNumbers=[rod, crank], position=big_end, constrainedAxes=[1, 1, 1, 0, 1, 1])
     joint = ehd.CreateLubricatedJoint(mbs, "gudgeon pin", [rod, piston], place, [1, 0, 0], bearing)
-
-    def gas(mbs, t, load):
-        past = math.remainder(speed * t - 0.35 - math.pi, 4.0 * math.pi)
-        pressure = bar * 1e5 * math.exp(-((past / 0.45) ** 2)) + 1e5
-        return [0, 0, -min(1.0, t / (0.1 * turn)) * pressure * math.pi * 0.04**2]
-
-    def drive(mbs, t, load):
-        rate = mbs.GetObjectOutputBody(crank, exu.OutputVariableType.AngularVelocity, [0, 0, 0])[0]
-        return [200.0 * (speed - rate), 0, 0]
-
-    mbs.CreateForce(itemNumber=piston, loadVector=[0, 0, -1.0], loadVectorUserFunction=gas)
-    mbs.CreateTorque(itemNumber=crank, loadVector=[1.0, 0, 0], loadVectorUserFunction=drive)
-    mbs.Assemble()
-    settings = ehd.ConfigureSolver(exu.SimulationSettings())
-    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = turn, steps
-    settings.timeIntegration.generalizedAlpha.spectralRadius = rho
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
+    fire(mbs, piston, bar, 0.35 + math.pi)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        assert ehd.SolveDynamic(mbs, settings)
+        drive(mbs, crank, steps, rho)
     return joint.history, [w.category for w in caught]
 
 
@@ -196,9 +215,7 @@ TWO_CYLINDERS = {
 
 
 def two_cylinders(steps, rho):
-    """Joints of an engine of two cylinders at 3000 rpm, all in mixed friction, after one turn; 60 bar of gas."""
-    speed, crank_radius, rod_length = 100.0 * math.pi, 0.04, 0.13
-    turn = 2.0 * math.pi / speed
+    """Histories of an engine of two cylinders at 3000 rpm, all joints in mixed friction, after one turn; 60 bar."""
     common = {
         "lubricant": ehd.oil("SAE 5W-30", temperature=373.15),
         "film": ehd.FiniteLength(n_theta=64, n_z=8),
@@ -206,26 +223,21 @@ def two_cylinders(steps, rho):
         **ROUGH,
     }
 
-    def hole(angle, diameter, pressure, *, rotating=False):
-        return {"supply": (ehd.Hole(angle=angle, diameter=diameter, pressure=pressure, rotating=rotating),)}
-
-    def sized(radius, length, clearance, **options):
-        return ehd.JournalBearing(journal_radius=radius, length=length, radial_clearance=clearance, **common, **options)
+    def sized(radius, length, clearance, *supply):
+        return ehd.JournalBearing(
+            journal_radius=radius, length=length, radial_clearance=clearance, supply=supply, **common
+        )
 
     bearings = {
-        "main": sized(0.025, 0.022, 25e-6, **hole(0.5 * math.pi, 6e-3, 4e5)),
-        "big": sized(0.0225, 0.020, 22e-6, **hole(-0.5 * math.pi, 5e-3, 3.5e5, rotating=True)),
+        "main": sized(0.025, 0.022, 25e-6, ehd.Hole(angle=0.5 * math.pi, diameter=6e-3, pressure=4e5)),
+        "big": sized(
+            0.0225, 0.020, 22e-6, ehd.Hole(angle=-0.5 * math.pi, diameter=5e-3, pressure=3.5e5, rotating=True)
+        ),
         "pin": sized(0.010, 0.022, 10e-6),
     }
     mbs = exu.SystemContainer().AddSystem()
-    ground, weight = mbs.CreateGround(), {"gravity": [0, 0, -9.81]}
-
-    def body(mass, inertia, **options):
-        inertia = eut.RigidBodyInertia(mass=mass, inertiaTensor=np.diag(inertia))
-        return mbs.CreateRigidBody(inertia=inertia, **options, **weight)
-
-    crank = body(8.0, [0.02, 0.05, 0.05], initialAngularVelocity=[speed, 0, 0])
-    joints = {}
+    ground, weight, joints = mbs.CreateGround(), {"gravity": [0, 0, -9.81]}, {}
+    crank = body(mbs, 8.0, [0.02, 0.05, 0.05], initialAngularVelocity=[SPEED, 0, 0], **weight)
 
     def joint(name, bodies, place, *, held):
         axial = ehd.Held() if held else ehd.Free()
@@ -235,52 +247,27 @@ def two_cylinders(steps, rho):
     for i, x in enumerate((-0.1, 0.0, 0.1)):
         joint(f"main {i + 1}", [ground, crank], [x, 0, 0], held=i == 1)
     for i, x in enumerate((-0.05, 0.05)):
-        big_end = np.array([x, -crank_radius * math.sin(math.pi * i), crank_radius * math.cos(math.pi * i)])
-        place = np.array([x, 0, big_end[2] + rod_length])
-        velocity, middle = np.cross([speed, 0, 0], big_end), 0.3 * (place - big_end)
-        swing = np.array([velocity[1] / rod_length, 0, 0])
-        rod = body(
-            0.6, [2.2e-3, 2.2e-3, 2e-4], referencePosition=big_end + middle,
-            initialVelocity=velocity + np.cross(swing, middle), initialAngularVelocity=swing,
-        )  # fmt: skip
-        piston = body(
-            0.45, [3e-4] * 3, referencePosition=place, initialVelocity=velocity + np.cross(swing, place - big_end)
-        )
-        mbs.CreatePrismaticJoint(itemNumbers=[ground, piston], position=place, axis=[0, 0, 1])
+        big_end = np.array([x, -CRANK_RADIUS * math.sin(math.pi * i), CRANK_RADIUS * math.cos(math.pi * i)])
+        place = np.array([x, 0, big_end[2] + ROD_LENGTH])
+        rod, piston = rod_and_piston(mbs, ground, big_end, place, **weight)
         joint(f"big {i + 1}", [rod, crank], big_end, held=True)
         joint(f"pin {i + 1}", [rod, piston], place, held=False)
-
-        def gas(mbs, t, load, i=i):
-            past = (speed * t - 0.35 - math.pi * i) % (4.0 * math.pi)
-            past -= 4.0 * math.pi if past > 2.0 * math.pi else 0.0
-            pressure = 60e5 * math.exp(-((past / 0.45) ** 2)) + 1e5
-            return [0, 0, -min(1.0, t / (0.1 * turn)) * pressure * math.pi * 0.04**2]
-
-        mbs.CreateForce(itemNumber=piston, loadVector=[0, 0, -1.0], loadVectorUserFunction=gas)
-
-    def drive(mbs, t, load):
-        rate = mbs.GetObjectOutputBody(crank, exu.OutputVariableType.AngularVelocity, [0, 0, 0])[0]
-        return [200.0 * (speed - rate), 0, 0]
-
-    mbs.CreateTorque(itemNumber=crank, loadVector=[1.0, 0, 0], loadVectorUserFunction=drive)
-    mbs.Assemble()
-    settings = ehd.ConfigureSolver(exu.SimulationSettings())
-    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = turn, steps
-    settings.timeIntegration.generalizedAlpha.spectralRadius = rho
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write = False
-    assert ehd.SolveDynamic(mbs, settings)
-    return {name: joint.history for name, joint in joints.items()}, 0.1 * turn
+        fire(mbs, piston, 60.0, 0.35 + math.pi * i)
+    drive(mbs, crank, steps, rho)
+    return {name: joint.history for name, joint in joints.items()}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("steps", "tolerance"), [(180, 0.10), (360, 0.02)])
 def test_two_cylinders(steps, tolerance):
-    """Seven films in steps of two degrees and of one; none is thrown through its wall, hardly a step is halved."""
-    histories, begin = two_cylinders(steps, 0.9)
+    """Seven films in steps of two degrees and of one; none is thrown through its wall, hardly a step is halved.
+
+    The gas comes up within 18 steps of two degrees: these miss the first peak by 7 %, those of one degree by 1 %.
+    """
+    histories = two_cylinders(steps, 0.9)
     for name, (lowest_film, peak) in TWO_CYLINDERS.items():
         history = histories[name]
-        late = history.time > begin
+        late = history.time > 0.1 * TURN
         assert history.time.size < 1.05 * steps
         assert 1e6 * history.minimum_gap[late].min() == pytest.approx(lowest_film, rel=tolerance), name
         assert 1e-6 * history.peak_pressure[late].max() == pytest.approx(peak, rel=tolerance), name

@@ -21,7 +21,7 @@ from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Gravity
-from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.status import InputError
 
 # Period over 2 pi of a mode on its numerical mass, s.

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.solid.modes.static import BoreModes
 
 
 class BoreFilmElement(FilmElement):

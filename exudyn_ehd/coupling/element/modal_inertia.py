@@ -14,7 +14,7 @@ kept. Its Euler-Lagrange equations, with p = P q and accelerations in the frame'
     delta q_i:  P_i . a + Theta_i . alpha - Omega . K_i Omega + (M q_tt)_i,
 
 need three integrals of the modes: P = int rho Phi, Theta = int rho X x Phi and K = int rho (X . Phi 1 - Phi X^T), see
-`BoreModes.moments`. With modes for body forces (`exudyn_ehd.solid.dynamic_modes`) the bore deflects under accelerations
+`BoreModes.moments`. With modes for body forces (`exudyn_ehd.solid.modes.dynamic`) the bore deflects under accelerations
 as the mesh does, else within 5 to 20 %.
 """
 
@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.contract import Side
 from exudyn_ehd.coupling.items.object_mass import warn_if_indefinite
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import bind, detached
-from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.solid.modes.static import BoreModes
 
 _CURRENT = exu.ConfigurationType.Current
 

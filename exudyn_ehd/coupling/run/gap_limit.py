@@ -26,12 +26,11 @@ import numpy as np
 from exudyn_ehd.coupling.contract import JointModel, Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
+from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 
 _CURRENT = exu.ConfigurationType.Current
 # Share of a film's gap that a step of Newton's method may close.
 SHARE = 0.5
-# Gap below which a journal stands on its contact, share of the clearance.
-SMALLEST_GAP_SHARE = 1e-3
 
 
 class Film(Protocol):

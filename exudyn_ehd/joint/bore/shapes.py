@@ -28,7 +28,7 @@ from exudyn_ehd.film.sensitivity.mirror_symmetry import (
 )
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface
-from exudyn_ehd.solid.static_modes import BoreModes
+from exudyn_ehd.solid.modes.static import BoreModes
 
 # Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
 # problems.

@@ -15,8 +15,8 @@ from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.static_equilibrium import held_stiffness
-from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.status import InputError
 
 

@@ -21,7 +21,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.coupling.kinematics.sides import detached
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes
 
 STATIC = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False)
 DYNAMIC = dataclasses.replace(STATIC, dynamics=True)

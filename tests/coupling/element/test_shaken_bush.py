@@ -13,7 +13,7 @@ import scenes
 from elastic_scene import CYLINDER, HOUSING, JOURNAL, STEEL, bearing, with_bush
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes
 
 DYNAMIC = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.1, dynamics=True)
 STEPS, END = 120, 6e-4

@@ -10,7 +10,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.solid.loads import pressure_loads
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes
 
 R, L, NU = 0.03, 0.066, 0.3
 DATA = Path(__file__).parents[2] / "solid" / "data" / "annulus_plane_strain_fourier_compliance.csv"

@@ -33,7 +33,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import EHDError
 from tests.benchmarks.accuracy.errors.study import Progress

@@ -7,11 +7,11 @@ import io
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid import static_modes
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.solid.static_modes import bore_modes
+from exudyn_ehd.solid.modes import static
+from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 
@@ -144,8 +144,8 @@ def test_modes_are_kept_on_disk_by_content(monkeypatch, tmp_path):
     (path,) = tmp_path.iterdir()
     raw = path.read_bytes()
     built = []
-    exact = static_modes.compute_modes
-    monkeypatch.setattr(static_modes, "compute_modes", lambda *a: built.append(a) or exact(*a))
+    exact = static.compute_modes
+    monkeypatch.setattr(static, "compute_modes", lambda *a: built.append(a) or exact(*a))
     again = bore_modes(bush)
     assert not built and again.error == first.error
     assert np.array_equal(again.displacements, first.displacements) and np.array_equal(again.stiffness, first.stiffness)
@@ -171,7 +171,7 @@ def test_modes_are_kept_on_disk_by_content(monkeypatch, tmp_path):
     # the right digest over modes that don't belong together
     payload = io.BytesIO()
     np.savez(payload, displacements=first.displacements[1:], stiffness=first.stiffness, error=np.array(first.error))
-    key = hashlib.sha256(static_modes._content(bush, bush.build_mesh())).digest()
+    key = hashlib.sha256(static._content(bush, bush.build_mesh())).digest()
     path.write_bytes(hashlib.sha256(key + payload.getvalue()).digest() + payload.getvalue())
     with pytest.warns(UserWarning, match="no file of this package's version"):
         assert np.array_equal(bore_modes(bush).displacements, first.displacements)

@@ -24,7 +24,7 @@ carries it. With ``dynamics`` the modes Phi get the mesh's consistent mass M,
     Phi^T M Phi q_tt + Phi^T K Phi q = Q,
 
 and on a housing that moves what its acceleration and rotation do to them; modes for that come from
-`exudyn_ehd.solid.dynamic_modes`.
+`exudyn_ehd.solid.modes.dynamic`.
 
 Static modes give the first inertial correction of the bore's compliance exactly, that of the square of the frequency,
 but not the vibrations: in a thick bush the lowest ones shear the wall, which no static mode does (frequencies up to 1.9
@@ -45,11 +45,11 @@ import numpy as np
 from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
 
-from exudyn_ehd.solid import dynamic_modes
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.dynamic_modes import body_force_modes, vibration_modes
 from exudyn_ehd.solid.loads import Pressure, pressure_loads
 from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.modes import dynamic
+from exudyn_ehd.solid.modes.dynamic import body_force_modes, vibration_modes
 from exudyn_ehd.solid.static_equilibrium import held_stiffness
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import Shapes, cached_arrays
@@ -176,7 +176,7 @@ def bore_modes(bush: ModalBush) -> BoreModes:
     )
     if not bush.dynamics:
         return static
-    content = _content(bush, mesh) + repr((bush.material.density, *dynamic_modes.VIBRATION_SETTINGS)).encode()
+    content = _content(bush, mesh) + repr((bush.material.density, *dynamic.VIBRATION_SETTINGS)).encode()
     data = cached_arrays(
         "bush_vibrations",
         content,
@@ -200,7 +200,7 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
     assert mass is not None
     data = cached_arrays(
         "bush_body_forces",
-        content + repr(dynamic_modes.BODY_FORCE_SETTINGS).encode(),
+        content + repr(dynamic.BODY_FORCE_SETTINGS).encode(),
         {"displacements": ("k", len(mesh.nodes), 3), "stiffness": ("k",), "mass": ("k", "m")},
         lambda: body_force_modes(bush.solid(mesh), modes.displacements, modes.stiffness, bush.tilted),
     )

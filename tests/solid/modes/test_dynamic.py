@@ -13,8 +13,8 @@ from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.hex20 import GAUSS27, shape_functions
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.static_equilibrium import held_stiffness
-from exudyn_ehd.solid.static_modes import bore_modes
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, reference_gradients
 from exudyn_ehd.status import InputError
 from tests.solid_vibrations import eigenfrequencies
@@ -231,7 +231,7 @@ def test_disk_keeps_modes_for_body_forces_apart(monkeypatch, tmp_path):
     again = bore_modes(BUSH)
     assert len(list(tmp_path.iterdir())) == 3
     assert np.array_equal(again.displacements, first.displacements) and np.array_equal(again.mass, first.mass)
-    monkeypatch.setattr("exudyn_ehd.solid.dynamic_modes.BODY_FORCE_SETTINGS", ("other",))
+    monkeypatch.setattr("exudyn_ehd.solid.modes.dynamic.BODY_FORCE_SETTINGS", ("other",))
     bore_modes(BUSH)
     assert len(list(tmp_path.iterdir())) == 4
     heavy = bore_modes(dataclasses.replace(BUSH, material=dataclasses.replace(STEEL, density=2 * 7800.0)))
