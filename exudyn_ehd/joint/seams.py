@@ -75,6 +75,9 @@ class ThermalEffect(Protocol):
         Returns the viscosity over the reference that the whole film shares.
         """
 
+    def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
+        """Viscosity at a temperature, K, over the reference."""
+
     def advance(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature at the end of a solved film's step, K."""
 

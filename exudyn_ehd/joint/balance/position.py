@@ -9,9 +9,10 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.balance.temperature import ACCELERATED, DEPTH, LARGEST_CHANGE, foreseen, is_settled
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
-from exudyn_ehd.status import FilmError
+from exudyn_ehd.status import FilmError, Status
 
 LARGEST_LOAD_STEPS = 100
 LARGEST_CREEP_STEPS = 300
@@ -20,6 +21,9 @@ PATIENCE = 25
 # Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
 LARGEST_EFFORT = 6000
 STEP_HALVINGS = 8
+# Rounds of a search for position and temperature together, and the change, K, that weighs as much as a clearance.
+HEATED_ROUNDS = 60
+TYPICAL_CHANGE = 30.0
 LOAD_TOLERANCE = 1e-10
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
@@ -50,8 +54,9 @@ class Carried:
 class LoadSearch:
     """Search for the position in which the steady film of a model carries a load.
 
-    Newton's method. Where a temperature follows the position, the tangent at a held temperature misses what the
-    temperature adds; Broyden's update of that part, D, from the forces of successive positions replaces it::
+    Newton's method. Where a temperature follows the position, both are sought together first, `heated`. Where that
+    fails, the temperature settles in every position. The tangent at a held temperature misses what the temperature
+    adds; Broyden's update of that part, D, from the forces of successive positions replaces it::
 
         (dF/dx + D) step = -(F + load),    D += (dF - (mean of dF/dx + D) step) step^T / step^2.
 
@@ -83,7 +88,8 @@ class LoadSearch:
         """
         b = self.model.bearing
         tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
-        start, self.first = self.at(motion), self.model.parts.evaluations.count
+        self.first = self.model.parts.evaluations.count
+        start = self.at(self.heated(motion, tolerance))
         found = self.newton(start, tolerance)
         if self.residual(found) > tolerance:
             self._follows = np.zeros((2, 2))
@@ -101,6 +107,52 @@ class LoadSearch:
                 "around there."
             )
         return found
+
+    def heated(self, motion: np.ndarray, tolerance: float) -> np.ndarray:
+        """Motion (10,) in which a film with the temperature that it gives itself carries the load, which is kept.
+
+        The motion that came in for an isothermal bearing, or where none was found.
+
+        A round solves one film. It takes Newton's step at the film's temperature, with the forces multiplied by what
+        the mean viscosity will change, and the temperature in balance with the film's heat; Anderson's acceleration of
+        both.
+        """
+        thermal, c = self.model.effects.thermal, self.model.bearing.radial_clearance
+        if thermal is None:
+            return motion
+        cold, place = thermal.initial_temperature(self.model.grid.shape), motion.copy()
+        known = cold if self._history is None else self._history.temperature
+        T = np.array(known, dtype=float)
+        scale = np.append(np.full(2, c), np.full(T.size, TYPICAL_CHANGE * math.sqrt(T.size)))
+        past: list[tuple[np.ndarray, np.ndarray]] = []
+        for _ in range(HEATED_ROUNDS):
+            self.count += 1
+            history = History(temperature=T if T.ndim else float(T))
+            reached = self.model.evaluate_steady(place, history)
+            if reached.film is None or reached.status is not Status.CONVERGED:
+                break
+            change, tangent = thermal.steady_temperature(reached.film) - T, reached.steady_tangent()
+            size = max(float(np.abs(change).max()), 1e-300)
+            if is_settled(T, change, cold) and np.abs(reached.wrench[:2] + self.force).max() <= tolerance * self.size:
+                self._history = history
+                return place
+            if not size < math.inf:
+                break
+            change = change * min(1.0, LARGEST_CHANGE / size)
+            thinner = thermal.viscosity_ratio(T + change).mean() / thermal.viscosity_ratio(T).mean()
+            try:
+                step = np.linalg.solve(-thinner * tangent[:2, :2], thinner * reached.wrench[:2] + self.force)
+            except np.linalg.LinAlgError:
+                break
+            step = np.append(step, change) / scale
+            past = [*past, (np.append(place[:2], T) / scale, step)][-min(DEPTH, step.size) - 1 :]
+            past = past if size < ACCELERATED else []
+            if len(past) > 1:
+                step = step - foreseen(past)
+            step = step * scale
+            place[:2] += limited_step(self.model, place, step[:2])
+            T = T + step[2:].reshape(T.shape) * min(1.0, 4.0 * size / max(float(np.abs(step[2:]).max()), size))
+        return motion
 
     def residual(self, place: Carried) -> float:
         """Largest component of film force + load, over the load."""

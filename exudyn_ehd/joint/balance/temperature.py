@@ -118,7 +118,7 @@ def _settle_field(
         change = target - T
         size = float(np.abs(change).max())
         _require_way_out(float(T.max()) if math.isfinite(size) else math.inf)
-        if size <= SETTLED * max(float(np.ptp(target)), float(np.abs(T - cold).max()), 1e-3):
+        if is_settled(T, change, cold):
             return History(temperature=T)
         near = size < ACCELERATED
         patience = 0 if size < 0.9 * smallest else patience + 1
@@ -132,12 +132,25 @@ def _settle_field(
         past = [*past, (T.ravel(), change.ravel())][-DEPTH - 1 :] if near else []
         step = damping * min(1.0, LARGEST_CHANGE / size) * change
         if len(past) > 1:
-            dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
-            share = np.linalg.lstsq(dF, change.ravel(), rcond=1e-12)[0]
-            step = step - ((dX + damping * dF) @ share).reshape(T.shape)
+            step = step - foreseen(past, damping).reshape(T.shape)
             step = step * min(1.0, 4.0 * size / float(np.abs(step).max()))
         T = T + step
     raise _unsettled(size)
+
+
+def foreseen(past: list[tuple[np.ndarray, np.ndarray]], damping: float = 1.0) -> np.ndarray:
+    """What Anderson's acceleration takes off the next step of a fixed-point iteration, ``damping`` times its change.
+
+    ``past``: points (k,) of two rounds and more with the changes (k,) that the iteration gave there, the newest last.
+    """
+    dX, dF = (np.diff(np.array(values), axis=0).T for values in zip(*past))
+    return (dX + damping * dF) @ np.linalg.lstsq(dF, past[-1][1], rcond=1e-12)[0]
+
+
+def is_settled(T: float | np.ndarray, change: float | np.ndarray, cold: float | np.ndarray) -> bool:
+    """Whether a change of a field of temperatures counts as none."""
+    rise = max(float(np.ptp(T + change)), float(np.abs(T - cold).max()), 1e-3)
+    return float(np.abs(change).max()) <= SETTLED * rise
 
 
 def _unsettled(change: float) -> FilmError:

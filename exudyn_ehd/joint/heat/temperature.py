@@ -109,11 +109,12 @@ class LumpedTemperature(_Temperature):
 
     def steady_temperature(self, film: SolvedFilm) -> float:
         """Temperature in balance with the heat of a solved film; inf without a way out for the heat."""
-        heat, flow = self._rates(film)
+        T, (heat, flow) = _number(film), self._rates(film)
         G = self.spec.housing_conductance
         if flow + G <= 0.0:
-            return math.inf if heat > 0.0 else _number(film)
-        return (heat + flow * self.supply + G * self.housing) / (flow + G)
+            return math.inf if heat > 0.0 else T
+        follows = float(self.follows(T, heat, 0.0))
+        return (heat + flow * self.supply + G * self.housing + follows * T) / (flow + G + follows)
 
     def balance(self, film: SolvedFilm, temperature: float) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""

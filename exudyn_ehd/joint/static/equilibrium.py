@@ -49,7 +49,8 @@ class EquilibriumResult:
     residual : float
         Largest component of film force + load, divided by the load.
     iterations : int
-        Positions tried; a film's temperature and a flexible bore settle at each of them.
+        Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
+        bore settles at each of them.
     film : SteadyResult
     response : FilmResponse or None
         What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.

@@ -222,6 +222,18 @@ def _hot(make_bearing, kind):
     return make_bearing(1.0, film=FILM, lubricant=ehd.Lubricant(temperature_law=LAW), thermal=THERMAL[kind])
 
 
+def _counted(monkeypatch):
+    """Number of film solves since, in a list."""
+    solves, evaluate = [0], BearingModel.evaluate
+
+    def counted(self, *args, **options):
+        solves[0] += 1
+        return evaluate(self, *args, **options)
+
+    monkeypatch.setattr(BearingModel, "evaluate", counted)
+    return solves
+
+
 @pytest.mark.parametrize("kind", THERMAL)
 class TestThermal:
     def test_stiffness_holds_the_temperature_and_settled_stiffness_lets_it_follow(self, make_bearing, kind):
@@ -246,22 +258,29 @@ class TestThermal:
             ]
             np.testing.assert_allclose(settled @ (ends[0] - ends[1]), change, atol=0.03 * 30.0)
 
-    def test_few_positions_from_light_to_heavy_loads(self, make_bearing, kind):
-        for size in (100.0, 2e3, 2e4):
-            result = ehd.equilibrium(_hot(make_bearing, kind), speed=600.0, load=(0.6 * size, 0.8 * size))
+    def test_position_and_temperature_together_take_few_film_solves(self, make_bearing, kind, monkeypatch):
+        rng, solves = np.random.default_rng(8), _counted(monkeypatch)
+        for size in (100.0, 2e3, 2e4, *np.exp(rng.uniform(math.log(100.0), math.log(3e4), 9))):
+            turn = rng.uniform(0.0, 2.0 * math.pi)
+            solves[0] = 0
+            result = ehd.equilibrium(
+                _hot(make_bearing, kind), speed=600.0, load=(size * math.cos(turn), size * math.sin(turn))
+            )
             assert result.residual < 1e-10
-            assert result.iterations <= 15
+            assert result.iterations <= solves[0] <= {"one temperature": 22, "field": 28}[kind]
+            again = ehd.steady(
+                result.film.bearing,
+                speed=600.0,
+                eccentricity_ratio=result.eccentricity_ratio,
+                direction=math.atan2(result.position[1], result.position[0]),
+            )
+            np.testing.assert_allclose(again.temperature, result.film.temperature, rtol=0, atol=1e-6)
+            np.testing.assert_allclose(again.force, result.film.force, rtol=1e-7, atol=1e-7 * size)
 
     def test_a_load_beyond_reach_is_refused_after_a_bounded_number_of_film_solves(
         self, make_bearing, kind, monkeypatch
     ):
-        solves, evaluate = [0], BearingModel.evaluate
-
-        def counted(self, *args, **options):
-            solves[0] += 1
-            return evaluate(self, *args, **options)
-
-        monkeypatch.setattr(BearingModel, "evaluate", counted)
+        solves = _counted(monkeypatch)
         with pytest.raises(ehd.FilmError, match=r"no position found|temperature"):
             ehd.equilibrium(_hot(make_bearing, kind), speed=600.0, load=(0.0, -2e6))
         assert solves[0] < 8000
