@@ -147,7 +147,7 @@ class CompressibleLaw(HermiteTable):
         return inside and super().inverse(q, p_out, slope_out, bend_out)
 
     def inverse(self, q: np.ndarray, p_out: np.ndarray, ratio_out: np.ndarray, ratio_q_out: np.ndarray) -> bool:
-        """p(q), r = mu(p)/mu_0 and dr/dq (1/Pa) for fields (n, m); False where q has no p."""
+        """p(q), r = mu(p)/mu_0 and dr/dq (1/Pa) for fields (n, m); False where q has no p and goes on in a line."""
         return bool(viscosity_of_transformed(q, self.kernel_table, p_out, ratio_out, ratio_q_out))
 
 
@@ -163,20 +163,21 @@ def density_ratio(p, a, b):
 
 @njit(cache=True)
 def viscosity_of_transformed(q, law, p_out, ratio_out, ratio_q_out):
-    """p, r = mu / mu_0 = rho dp/dq and dr/dq; False where q has no p."""
+    """p, r = mu / mu_0 = rho dp/dq and dr/dq; False where q has no p: p is nan in too much tension, and goes on in a
+    line with the density of its end at too much pressure."""
     n, m = q.shape
-    for i in range(n):
-        for j in range(m):
-            if not law.lowest < q[i, j] < law.highest:
-                return False
-    if not hermite_inverse(
-        q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale, p_out, ratio_out, ratio_q_out
-    ):
+    if not q.min() > law.lowest:
+        p_out[:] = ratio_out[:] = ratio_q_out[:] = np.nan
         return False
+    inside = hermite_inverse(
+        q, law.exponent, law.q, law.table, law.bucket, law.bucket_scale, p_out, ratio_out, ratio_q_out
+    )
+    end = law.table[-1, 1:].sum()
     for i in range(n):
         for j in range(m):
-            rho, rho_p = density_ratio(p_out[i, j], law.a, law.b)
+            inside = inside and q[i, j] < law.highest
+            rho, rho_p = density_ratio(min(p_out[i, j], end), law.a, law.b)
             s = ratio_out[i, j]
-            ratio_q_out[i, j] = ratio_q_out[i, j] * rho + rho_p * s * s
+            ratio_q_out[i, j] = ratio_q_out[i, j] * rho + (rho_p * s * s if q[i, j] < law.highest else 0.0)
             ratio_out[i, j] = s * rho
-    return True
+    return inside

@@ -255,19 +255,18 @@ class CompressibleFilmSolver(FilmSolver):
         """Scaled pressure and viscosity ratio of the last solution (n, m) with
         their derivatives to the transformed pressure.
 
-        False where that has no pressure.
+        False where that has no pressure; there the law goes on in a line.
         """
         s, out = self.system, (p_out, ratio_out, ratio_P_out, p_P_out)
         if viscosity_at(
             s.pressure, self.pressure_scale, self._floor, self.law.kernel_table, self.known, self.rho, *out
         ):
             return True
-        if not self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
-            return False
+        inside = self.law.inverse(s.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out)
         p_out /= self.pressure_scale
         ratio_P_out *= self.pressure_scale
         np.divide(ratio_out, self.rho, out=p_P_out)
-        return True
+        return inside
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure of the last solution (n, m) and its derivative to the

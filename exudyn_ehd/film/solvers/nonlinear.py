@@ -356,15 +356,14 @@ class NonlinearFilmSolver(FilmSolver):
         """Scaled pressure and viscosity ratio of a compressible film (n, m)
         with their derivatives to the transformed pressure.
 
-        False where that has no pressure.
+        False where that has no pressure; there the law goes on in a line.
         """
         assert self.law is not None
-        if not self.law.inverse(self.system.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out):
-            return False
+        inside = self.law.inverse(self.system.pressure * self.pressure_scale, p_out, ratio_out, ratio_P_out)
         p_out /= self.pressure_scale
         ratio_P_out *= self.pressure_scale
         np.divide(ratio_out, self.rho, out=p_P_out)
-        return True
+        return inside
 
     def pressure_of_solution(self, p_out: np.ndarray, p_P_out: np.ndarray) -> bool:
         """Scaled pressure of a compressible film (n, m) and its derivative to

@@ -89,12 +89,12 @@ class LoadSearch:
         b = self.model.bearing
         tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
         self.first = self.model.parts.evaluations.count
-        start = self.at(self.heated(motion, tolerance))
+        start = self._start(self.heated(motion, tolerance))
         found = self.newton(start, tolerance)
         if self.residual(found) > tolerance:
             self._follows = np.zeros((2, 2))
             held_back = 10.0 * self.size / b.radial_clearance
-            found = self.newton(self.at(motion), tolerance, LARGEST_CREEP_STEPS, held_back)
+            found = self.newton(self._start(motion), tolerance, LARGEST_CREEP_STEPS, held_back)
         if found.film.serial != self.model.parts.evaluations.count:
             found = self.at(found.motion)
         if self.residual(found) > tolerance:
@@ -153,6 +153,15 @@ class LoadSearch:
             place[:2] += limited_step(self.model, place, step[:2])
             T = T + step[2:].reshape(T.shape) * min(1.0, 4.0 * size / max(float(np.abs(step[2:]).max()), size))
         return motion
+
+    def _start(self, motion: np.ndarray) -> Carried:
+        """The steady film at a motion (10,), or that at a smaller eccentricity if there is none."""
+        for _ in range(STEP_HALVINGS):
+            try:
+                return self.at(motion)
+            except FilmError:
+                motion = np.concatenate([0.8 * motion[:2], motion[2:]])
+        return self.at(motion)
 
     def residual(self, place: Carried) -> float:
         """Largest component of film force + load, over the load."""

@@ -52,16 +52,17 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
         P_q = np.empty(shape)
         if film.law is not None and film.law.viscosity is None and shear is None:
             return OilFields(P, P_q) if film.pressure_of_solution(P, P_q) else None
-        if not film.viscosity(P, ratio, ratio_q, P_q):
-            return None
+        beyond = not film.viscosity(P, ratio, ratio_q, P_q)
     elif law is not None:
         beyond = not law.inverse(s.pressure * pressure_scale, P, ratio, ratio_q)
-        if beyond:
-            share = min(1.0, FARTHEST * law.largest_pressure / P.max())
-            P *= share
-            ratio *= share
         P /= pressure_scale
         ratio_q *= pressure_scale
+    if beyond and law is not None:
+        share = min(1.0, FARTHEST * law.largest_pressure / (P.max() * pressure_scale))
+        P *= share
+        ratio *= share
+        if film is not None:
+            P_q *= share
     if shear is None:
         return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing, beyond)
     factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)

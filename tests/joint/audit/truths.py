@@ -159,7 +159,7 @@ def flagged(scene: Scene) -> dict[str, bool]:
 
 
 def read() -> list[dict[str, float | None]]:
-    """Stored truths, one per scene."""
+    """Stored truths, one per scene; empty where the film on the converged grid carries no such load."""
     return [json.loads(line) for line in FILE.read_text().splitlines()] if FILE.exists() else []
 
 
@@ -176,9 +176,12 @@ def main() -> None:
                 print(number, str(error)[:100], flush=True)
         return
     for number in range(len(read()), count):
-        row = json.dumps(truth(draw(number)))
+        try:
+            row = truth(draw(number))
+        except ehd.EHDError:  # more load than the converged film carries anywhere
+            row = {}
         with FILE.open("a") as file:
-            file.write(row + "\n")
+            file.write(json.dumps(row) + "\n")
 
 
 if __name__ == "__main__":

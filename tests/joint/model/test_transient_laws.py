@@ -98,3 +98,46 @@ def test_newton_iterations_stay_those_of_the_plain_film(cavitation):
 def test_hotter_film_lets_the_journal_sink(thermal):
     eccentricity = [float(np.hypot(*run({"thermal": t}, ehd.SwiftStieber())[1][-1])) for t in (None, thermal)]
     assert eccentricity[1] > 1.01 * eccentricity[0]
+
+
+@pytest.mark.parametrize("density", [None, ehd.DowsonHigginson()], ids=["constant", "dense"])
+@pytest.mark.parametrize("law", [ehd.BarusPressure(coefficient=2e-8), ehd.RoelandsPressure(coefficient=2e-8)])
+@pytest.mark.parametrize("closure", [ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)])
+def test_newton_comes_back_from_a_squeeze_that_no_pressure_carries(closure, law, density):
+    """Velocities of approach beyond the law's end have a finite force and slope, which lead to the one of a load."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.025,
+        length=0.05,
+        radial_clearance=25e-6,
+        lubricant=dataclasses.replace(OIL, pressure_law=law, density_law=density),
+        cavitation=closure,
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+    )
+    for direction in (0.3, 2.0, 4.4):
+        model, motion = build_model(bearing), np.zeros(10)
+        towards = np.array([np.cos(direction), np.sin(direction)])
+        motion[:2] = 0.9 * 25e-6 * towards
+        history = model.initial_history(motion)
+
+        def film(speed, model=model, motion=motion, towards=towards, history=history):
+            motion[4:6] = speed * towards
+            evaluation = model.evaluate(motion, history, 1e-4)
+            force = float(towards @ evaluation.wrench[:2])
+            return evaluation.status, force, float(towards @ evaluation.tangent()[:2, 4:6] @ towards)
+
+        status, load, _ = film(2e-5)
+        assert status is ehd.Status.CONVERGED and load < 0.0
+        for fast in (2e-3, 0.05):
+            speed = fast
+            status, force, slope = film(speed)
+            # oil that is stored yields to a slower squeeze
+            yields = closure.conserves_mass and density is not None and fast < 0.01
+            assert status is ehd.Status.NO_PRESSURE or yields
+            assert force < load and slope < 0.0
+            for _ in range(40):
+                speed += (load - force) / slope
+                status, force, slope = film(speed)
+                if abs(force - load) < 1e-9 * abs(load):
+                    break
+            assert status is ehd.Status.CONVERGED
+            assert speed == pytest.approx(2e-5, rel=1e-6)
