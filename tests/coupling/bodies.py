@@ -15,10 +15,10 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 import scenes
-from exudyn.FEM import FEMinterface, ObjectFFRFreducedOrderInterface
+from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import exudyn_ehd as ehd
-from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from tests.finite_elements import fem_of
 
 LENGTH, PLACE = 0.8, 0.3
 LOAD = [0.2, -1.0, 0.0]
@@ -195,18 +195,6 @@ def ring(axial=1, radial=1, circumferential=12):
     ).mesh()
     material = ehd.SaintVenantKirchhoff(youngs_modulus=5e8, poisson_ratio=0.3, density=2000.0)
     return fem_of(mesh, material), mesh
-
-
-def fem_of(mesh, material):
-    """FEMinterface with the mass and stiffness of a mesh."""
-    solid = TotalLagrange(mesh=mesh, material=material)
-    fem = FEMinterface()
-    fem.nodes = {"Position": mesh.nodes}
-    fem.elements = [{"Name": "solid", "Hex20": mesh.elements}]
-    fem.stiffnessMatrix = solid.tangent(np.zeros_like(mesh.nodes)).tocsr()
-    fem.massMatrix = solid.mass.tocsr()
-    fem.VolumeToSurfaceElements()
-    return fem
 
 
 def _averaged(mbs, body, nodes):

@@ -16,11 +16,13 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import exudyn.utilities as eut
 import numpy as np
+from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import exudyn_ehd as ehd
+from tests.finite_elements import fem_of
 
-KINDS = ("rigid", "liner", "modal", "dynamic", "nodal")
-CYCLES = {"rigid": 2.0, "liner": 2.0, "modal": 1.0, "dynamic": 1.0, "nodal": 0.5}
+KINDS = ("rigid", "liner", "modal", "dynamic", "nodal", "tilted", "body")
+CYCLES = {"rigid": 2.0, "liner": 2.0, "modal": 1.0, "dynamic": 1.0, "nodal": 0.5, "tilted": 1.0, "body": 0.5}
 STEPS = 200
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 BRONZE = ehd.SaintVenantKirchhoff(youngs_modulus=1.0e11, poisson_ratio=0.34, density=8800.0)
@@ -35,7 +37,7 @@ class Scene:
     ----------
     bearing : JournalBearing
     drive : str
-        "rotor", "swing" or "crank".
+        "rotor", "swing", "crank", or "tilted": a rotor with a load beside the mid-plane.
     speed : float
         Mean spin, of a crank its own, rad/s.
     load : float
@@ -50,7 +52,7 @@ class Scene:
 
 def _bush(rng, kind, radius, clearance, length):
     material = [STEEL, BRONZE, POLYMER][rng.integers(3)]
-    if kind == "rigid":
+    if kind in ("rigid", "tilted"):
         return None
     if kind == "liner":
         return ehd.ElasticLiner(
@@ -67,6 +69,12 @@ def _bush(rng, kind, radius, clearance, length):
     )
     if nodal:
         return ehd.ANCFBush(mesh=mesh, material=material)
+    if kind == "body":
+        solid = mesh.mesh()
+        fem = fem_of(solid, material)
+        place = {"position": [0, 0, 0], "axis": [0, 0, 1], "radius": radius + clearance, "length": length}
+        ehd.add_bore_modes(fem, **place, fixed_nodes=solid.outer.nodes, tolerance=0.1)
+        return ehd.FEBore(fem=fem)
     return ehd.ModalBush(
         mesh=mesh,
         material=material,
@@ -139,6 +147,8 @@ def draw(seed: int, kind: str) -> Scene:
         speed = float(rng.choice([100.0, 300.0]))
         mean_pressure = float(rng.choice([1e6, 4e6, 12e6]))
         drive = ("rotor", "swing", "crank")[rng.integers(3)]
+        if kind == "tilted" or (kind == "body" and drive == "crank"):
+            drive = "tilted"
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             try:
@@ -167,7 +177,8 @@ class Model:
         self.scene, self.rate = scene, scene.speed
         self.container = exu.SystemContainer()
         self.mbs = self.container.AddSystem()
-        self.joint = self._crank() if scene.drive == "crank" else self._rotor()
+        drives = {"crank": self._crank, "tilted": self._tilted}
+        self.joint = drives.get(scene.drive, self._rotor)()
         self.mbs.Assemble()
 
     def _rotor(self):
@@ -200,19 +211,59 @@ class Model:
             )
         )
 
-        def force(mbs, t, load):
-            ramp = min(1.0, 10.0 * rate * t / (2.0 * math.pi))
-            x, y = 0.5 * math.sin(rate * t), -0.7 * (1.0 - 0.4 * math.cos(rate * t))
-            return [ramp * scene.load * x, ramp * scene.load * y, 0.0]
-
-        mbs.CreateForce(itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=force)
+        mbs.CreateForce(itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=self._turning)
         return ehd.CreateLubricatedJoint(
             mbs,
             name="journal",
-            itemNumbers=[mbs.AddObject(eii.ObjectGround()), body],
+            itemNumbers=[self._housing(), body],
             position=[0, 0, 0],
             axis=[0, 0, 1],
             bearing=scene.bearing,
+        )
+
+    def _turning(self, mbs, t, load):
+        rate = self.rate
+        ramp = min(1.0, 10.0 * rate * t / (2.0 * math.pi))
+        x, y = 0.5 * math.sin(rate * t), -0.7 * (1.0 - 0.4 * math.cos(rate * t))
+        return [ramp * self.scene.load * x, ramp * self.scene.load * y, 0.0]
+
+    def _housing(self):
+        """Ground, or the reduced body of the bore, its frame held."""
+        bush = self.scene.bearing.bush
+        if not isinstance(bush, ehd.FEBore):
+            return self.mbs.AddObject(eii.ObjectGround())
+        parts = ObjectFFRFreducedOrderInterface(bush.fem, "NodeType.RotationRxyz").AddObjectFFRFreducedOrder(self.mbs)
+        markers = [
+            self.mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=self.mbs.CreateGround())),
+            self.mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=parts["nRigidBody"])),
+        ]
+        self.mbs.AddObject(eii.ObjectJointGeneric(markerNumbers=markers, constrainedAxes=[1] * 6))
+        return parts["oFFRFreducedOrder"]
+
+    def _tilted(self):
+        """Rotor in space with its load a tenth of the length beside the mid-plane; a torque keeps its speed."""
+        mbs, scene, speed = self.mbs, self.scene, self.scene.speed
+        b = scene.bearing
+        c, mass, size = b.radial_clearance, 0.05 * scene.load / 9.81, 2.0 * b.journal_radius
+        body = mbs.CreateRigidBody(
+            inertia=eut.RigidBodyInertia(mass=mass, inertiaTensor=np.eye(3) * mass * size**2),
+            initialDisplacement=[0.2 * c, -0.3 * c, 0.0],
+            initialAngularVelocity=[0.0, 0.0, speed],
+        )
+
+        def drive(mbs, t, load):
+            rate = mbs.GetObjectOutputBody(body, exu.OutputVariableType.AngularVelocity, [0, 0, 0])[2]
+            return [0.0, 0.0, 10.0 * mass * size**2 * (speed - rate) * speed]
+
+        mbs.CreateForce(
+            itemNumber=body,
+            localPosition=[0.0, 0.0, 0.1 * b.length],
+            loadVector=[0.0, 0.0, 0.0],
+            loadVectorUserFunction=self._turning,
+        )
+        mbs.CreateTorque(itemNumber=body, loadVector=[0.0, 0.0, 1.0], loadVectorUserFunction=drive)
+        return ehd.CreateLubricatedJoint(
+            mbs, name="journal", itemNumbers=[self._housing(), body], position=[0, 0, 0], axis=[0, 0, 1], bearing=b
         )
 
     def _crank(self):

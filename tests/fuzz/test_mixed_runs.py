@@ -5,7 +5,15 @@ import pytest
 
 from tests.fuzz import mixed_runs
 
-SEEDS = {"rigid": range(10), "liner": range(4), "modal": range(3), "dynamic": range(2), "nodal": range(1)}
+SEEDS = {
+    "rigid": range(10),
+    "liner": range(4),
+    "modal": range(3),
+    "dynamic": range(2),
+    "nodal": range(1),
+    "tilted": range(2),
+    "body": range(1),
+}
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ import functools
 import itertools
 import math
 
-import bodies
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
@@ -14,6 +13,7 @@ from exudyn.FEM import ObjectFFRFreducedOrderInterface
 from exudyn.utilities import RigidBodyInertia
 
 import exudyn_ehd as ehd
+from tests.finite_elements import fem_of
 from tests.sampling import sample
 
 R, L, C, SPEED = 0.02, 0.02, 25e-6, 300.0
@@ -111,7 +111,7 @@ def tube():
     """A steel tube held around its middle, with modes for a bore at either end; made once, solvers turn its modes."""
     size = {"inner_radius": R, "thickness": 0.008, "length": 0.12}
     mesh = ehd.HollowCylinder(**size, axial=6, radial=1, circumferential=12).mesh()
-    fem = bodies.fem_of(mesh, ehd.SaintVenantKirchhoff(youngs_modulus=2.1e10, poisson_ratio=0.3, density=7800.0))
+    fem = fem_of(mesh, ehd.SaintVenantKirchhoff(youngs_modulus=2.1e10, poisson_ratio=0.3, density=7800.0))
     outer = mesh.outer.nodes
     middle = outer[np.abs(mesh.nodes[outer, 2]) < 0.011]
     fem.ComputeHurtyCraigBamptonModes([list(middle)], 4)

@@ -3,7 +3,6 @@ itself moved."""
 
 from __future__ import annotations
 
-import bodies
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
@@ -17,6 +16,7 @@ from scipy.sparse.linalg import spsolve
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.kinematics.sides import detached
 from exudyn_ehd.status import InputError
+from tests.finite_elements import fem_of
 
 C, SPEED, LOAD = 30e-6, 314.0, 15e3
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=3, radial=2, circumferential=20)
@@ -42,7 +42,7 @@ def bush_body(mbs, youngs_modulus=5e10, held=True, rotation=None, tolerance=TOLE
     """The cylinder as reduced body, its outer surface carrying the frame; returns the parts, the FEMinterface and the
     report."""
     mesh = CYLINDER.mesh()
-    fem = bodies.fem_of(mesh, material(youngs_modulus))
+    fem = fem_of(mesh, material(youngs_modulus))
     report = ehd.add_bore_modes(
         fem,
         position=[0, 0, 0],
@@ -195,7 +195,7 @@ def test_film_does_no_work_in_a_common_rigid_motion():
 
 def test_modes_report_and_modes_beyond_those_that_are_there():
     mesh = CYLINDER.mesh()
-    fem = bodies.fem_of(mesh, material(2.1e11))
+    fem = fem_of(mesh, material(2.1e11))
     fem.ComputeHurtyCraigBamptonModes([list(mesh.outer.nodes)], 6)
     old = fem.modeBasis["matrix"].copy()
     report = ehd.add_bore_modes(
@@ -225,7 +225,7 @@ def test_thin_eye_on_a_shank_keeps_what_the_film_sees(measured):
     mesh = ehd.HollowCylinder(
         inner_radius=0.03, thickness=0.006, length=0.03, axial=2, radial=1, circumferential=40
     ).mesh()
-    fem = bodies.fem_of(mesh, material(2.1e11))
+    fem = fem_of(mesh, material(2.1e11))
     held = mesh.outer.nodes[np.abs(mesh.outer.theta) < 0.3]
     ehd.add_bore_modes(
         fem,
