@@ -33,6 +33,7 @@ UNITS = {
     "friction_torque": "N m",
     "contact_torque": "N m",
     "power_loss": "W",
+    "stored_power": "W",
     "leakage": "m3/s",
     "supply_flow": "m3/s",
     "contact_load": "N",

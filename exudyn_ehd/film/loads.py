@@ -26,7 +26,15 @@ shares, ``-+ sigma phi_s / 2 dp/ds`` in both directions, is summed over the link
 so that work and heat match link by link: ``E_x = sum (carrier - gap) (P_i - P_i+1) width``; its torque on the journal
 is 6 mu R^4 / c E_x, its axial force 6 mu R^3 / c E_z.
 
-Symbols: P pressure; cx, cz carriers and cx_h, cz_h their slopes to the link's gap, HF, gap_z the links' gaps.
+Closed gaps. Where surfaces touch, the film has a gap h (a limiter's, an average one) that changes less than the gap g
+between them, ``dh = h' dg``. The pressure presses on the whole area, on the journal along its normal; the film pulls
+either surface by ``-h/2 dp/dx``, and what the slopes leave, ``p (1 - h') dg/dx``, goes from solid to solid as contact
+pressure does, without a torque on the journal about its own axis. That is the same sum with g for the gap,
+``E_x = sum (carrier - g) (P_i - P_i+1) width``, the carrier being that of h. Then what sliding puts in is heat,
+however closely the surfaces touch.
+
+Symbols: P pressure; cx, cz carriers and cx_h, cz_h their slopes to the film's gap on the link, HF, gap_z the links'
+true gaps, slope and face_slope h' at vertices and links.
 """
 
 from __future__ import annotations
@@ -337,14 +345,16 @@ def drag_gap_slopes(P, cx_h, cz_h, slope, face_slope, mesh, face_out, cell_out):
         nxt = i + 1 if i + 1 < n else 0
         linked = 1.0 if link_x[i] != 0.0 else 0.0
         for j in range(m):
-            face_out[i, j] = linked * (cx_h[i, j] - 1.0) * width_z[j] * (P[i, j] - P[nxt, j]) * face_slope[i, j]
+            share = cx_h[i, j] * face_slope[i, j] - 1.0
+            face_out[i, j] = linked * share * width_z[j] * (P[i, j] - P[nxt, j])
         half = 0.5 * width_x[i]
-        last = 0.0
+        carried = last = 0.0
         for j in range(m - 1):
-            link = (half if link_z[j] != 0.0 else 0.0) * (cz_h[i, j] - 1.0) * (P[i, j] - P[i, j + 1])
-            cell_out[i, j] = (last + link) * slope[i, j]
-            last = link
-        cell_out[i, m - 1] = last * slope[i, m - 1]
+            link = (half if link_z[j] != 0.0 else 0.0) * (P[i, j] - P[i, j + 1])
+            carrier = link * cz_h[i, j]
+            cell_out[i, j] = (carried + carrier) * slope[i, j] - (last + link)
+            carried, last = carrier, link
+        cell_out[i, m - 1] = carried * slope[i, m - 1] - last
 
 
 @njit(cache=True)

@@ -99,11 +99,15 @@ class ContactFields:
 
 
 class LimiterFields:
-    """Derivatives of the film's gap to the true gap, at vertices and links, as `GapLimiter.limit` gives them."""
+    """Derivatives of the film's gap to the true gap, at vertices and links, as `GapLimiter.limit` gives them.
+
+    ``gap``, ``rate`` at the vertices and ``link`` are the true ones (n, m).
+    """
 
     def __init__(self, shape: tuple[int, int]) -> None:
         self.slope, self.bend = np.zeros(shape), np.zeros(shape)
         self.face_slope = np.zeros(shape)
+        self.gap, self.link, self.rate = np.zeros((3, *shape))
         self.by_rate, self.by_gap = np.zeros(shape), np.zeros(shape)
 
 

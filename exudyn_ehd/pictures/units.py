@@ -52,6 +52,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "peak_pressure": ("peak pressure", "pressure"),
     "friction_torque": ("friction torque", "torque"),
     "power_loss": ("power loss", "power"),
+    "stored_power": ("stored power", "power"),
     "leakage": ("leakage", "flow"),
     "contact_load": ("contact load", "force"),
     "contact_torque": ("contact torque", "torque"),

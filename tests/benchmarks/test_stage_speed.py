@@ -49,7 +49,7 @@ def _stage_runs(grid):
         "solve": lambda: s.closure.solve(y, s.work),
         "tangent": evaluation.tangent,
         "integrals": lambda: pressure_integrals(film.oil.P, g.weight, p.directions.cos_x, p.directions.sin_x, z, out),
-        "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None),
+        "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None, None),
         "quantities": evaluation.quantities,
     }
 

@@ -35,13 +35,14 @@ _SCALARS = (
     "minimum_gap_z",
     "peak_angle",
     "bore_displacement",
+    "stored_power",
 )
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 _WIDTH = _FIRST_SCALAR + len(_SCALARS)
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-_FORMAT = "exudyn_ehd JointHistory 2"
+_FORMAT = "exudyn_ehd JointHistory 3"
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
     "force": ("force_x", "force_y", "force_z"),
@@ -73,6 +74,7 @@ class Quantity(enum.Enum):
     MINIMUM_GAP_Z = "minimum_gap_z"
     PEAK_ANGLE = "peak_angle"
     BORE_DISPLACEMENT = "bore_displacement"
+    STORED_POWER = "stored_power"
 
 
 _COLUMNS: dict[str, int | slice] = {
@@ -117,6 +119,8 @@ class JointHistory(History, HistoryPictures):
         Place of the minimum film thickness [rad, m] and angle of the peak pressure [rad], 0 to 2 pi.
     bore_displacement : ndarray (n,)
         Largest displacement of a liner or of a flexible bore [m].
+    stored_power : ndarray (n,)
+        Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
     """
@@ -138,6 +142,7 @@ class JointHistory(History, HistoryPictures):
     minimum_gap_z: np.ndarray
     peak_angle: np.ndarray
     bore_displacement: np.ndarray
+    stored_power: np.ndarray
     journal_radius: float
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:

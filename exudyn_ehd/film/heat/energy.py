@@ -120,7 +120,7 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
     Returns
     -------
     leaving, work : float
-        What leaves, and ``sum (P - cavity) inflow``.
+        What leaves, and ``sum (P - cavity) (inflow - area rate)``.
     """
     n, m = q.shape
     kx, kz, fx, fz, H, H_t, area, fixed = film
@@ -130,6 +130,8 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
         prv = i - 1 if i > 0 else n - 1
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m):
+            rate = area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+            work -= (P[i, j] - cavity) * rate
             if not fixed[i, j]:
                 continue
             inflow = 0.0
@@ -141,7 +143,7 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
             if conserves or 0 < j < m - 1 or active[i, end] or fixed[i, end]:
                 inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
                 inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
-                inflow += area[i, j] * _rate(H[i, j], H_t[i, j], fill[i, j], mass_old[i, j], inverse_step, squeeze)
+                inflow += rate
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow
     return leaving, work

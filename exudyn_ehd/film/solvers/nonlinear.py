@@ -158,14 +158,25 @@ class NonlinearFilmSolver(FilmSolver):
         return self.elements.contact_pressure
 
     @property
+    def limited(self) -> bool:
+        """Whether the film sees another gap than the surfaces have."""
+        return self.elements.limiter is not None and not self.elements.apart
+
+    @property
+    def true_gap(self) -> np.ndarray:
+        """Gap of the deformed surfaces (n, m); the solver's own array."""
+        return self.elements.true_gap
+
+    @property
+    def true_link(self) -> np.ndarray:
+        """The same on the links i -> i+1 (n, m)."""
+        e = self.elements
+        return e.rigid[1] + 0.5 * (e.gaps.D + np.roll(e.gaps.D, -1, axis=0))
+
+    @property
     def deflection_by_pressure(self) -> np.ndarray:
         """dD/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
         return np.where(self.work.active, self.elements.gap_slopes.D_P, 0.0)
-
-    @property
-    def gap_by_pressure(self) -> np.ndarray:
-        """d(film gap)/dP at the unknown pressures (n, m) of the last solution; zero elsewhere."""
-        return np.where(self.work.active, self.elements.gap_slopes.H_P, 0.0)
 
     @property
     def contact_by_pressure(self) -> np.ndarray:
@@ -192,8 +203,17 @@ class NonlinearFilmSolver(FilmSolver):
         if self.deflection_inverse == 0.0:
             return 0.0
         e = self.elements
-        rate = (e.gaps.D - e.deflection_old) * self.deflection_inverse
-        return float(np.sum((e.load.p + e.contact_pressure / e.scale) * rate * self.grid.weight))
+        return float(np.sum((e.load.p + e.contact_pressure / e.scale) * self.deflection_rate * self.grid.weight))
+
+    @property
+    def deflection_rate(self) -> np.ndarray:
+        """dD/dt (n, m)."""
+        return (self.elements.gaps.D - self.elements.deflection_old) * self.deflection_inverse
+
+    @property
+    def true_rate(self) -> np.ndarray:
+        """Rate of `true_gap` (n, m)."""
+        return self.elements.rigid[2] + self.deflection_rate
 
     def solve(
         self, vx: float, vz: float, cavity_pressure: float, mass_old: np.ndarray | None = None, step: float = 0.0

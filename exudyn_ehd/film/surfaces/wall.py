@@ -8,9 +8,8 @@ For a gap h below the onset h0, with s = h / h0:
   so that the Reynolds equation keeps a solution while surfaces press on each other.
 
 The wall is a regularisation with one stiffness, not a model of asperities, and it has no friction of its own. Where it
-acts, the film sees another gap than the one on whose slope its pressure rests, and `power_loss`, the power of all
-forces, differs from the heat of the film's flows, which `FilmEnergy` takes: by up to 6 % while the journal keeps its
-place, and without bound while it moves, since what the wall stores and gives back counts in `power_loss`.
+acts, the film sees another gap than the one on whose slope its pressure rests. The rest of the slope is the solids',
+which the journal meets along its normal, without a torque on it: see Closed gaps in `exudyn_ehd.film.loads`.
 """
 
 from __future__ import annotations

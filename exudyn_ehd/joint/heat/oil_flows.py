@@ -15,9 +15,7 @@ from exudyn_ehd.film.heat.energy import (
     film_flows,
     outside_flows,
 )
-from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.joint.heat.power import power_loss
+from exudyn_ehd.joint.heat.power import sliding_power
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 
@@ -87,31 +85,38 @@ class OilFlows(Exchange):
 def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     """Power that film and contacts turn into heat, W, and the flow that leaves, in units of c R^2.
 
-    The heat is `power_loss` less the work on the oil; the flow is that of `Exchange`.
+    What a link carries dissipates its own power: what sliding puts in, and what the flow loses of its pressure. Summed
+    over the links by parts, with the cavity's pressure pc, the inflow S from outside and the content's rate,
+
+        heat = sliding power + sum (p - pc) (S - A dm/dt),
+
+    which holds none of the powers that store and give back: where nothing changes in time it is `power_loss` plus the
+    work on the oil, to rounding. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows
+    and content are masses. The flow that leaves is that of `Exchange`.
     """
-    power = film.scales.pressure * film.parts.flow_scale
-    if film.parts.compressible is not None:
-        work, leaving = _compressible_work(film, film.parts.compressible)
-        return power_loss(film) + power * work, leaving
-    s, y = film.solver, film.solver.system
+    s, oil = film.solver, film.parts.compressible
     cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0
-    conserves = s.closure.conserves_mass
-    stepped = conserves and y.inverse_step > 0.0 and not s.instant
-    leaving, work = exchange_sums(
-        film.oil.P,
-        s.pressure,
-        s.fill if conserves else s.ones,
-        s.work.active,
-        conserves,
-        y.mass_old if stepped else s.H,
-        y.inverse_step if stepped else 0.0,
-        s.squeeze,
-        y.coefficients,
-        cavity,
-    )
-    if s.squeeze and cavity != 0.0:
-        work += cavity * float(np.sum(s.area * y.H_t))
-    return power_loss(film) + power * (work + _end_work(film)), leaving
+    if oil is not None:
+        flows = Exchange(film)
+        pressure = oil.flow_work(film.oil.P) - oil.flow_work(np.asarray(cavity))
+        work, leaving = float(np.sum(pressure * (flows.outside - s.area * flows.rate))), flows.leaving
+    else:
+        y, conserves = s.system, s.closure.conserves_mass
+        stepped = conserves and y.inverse_step > 0.0 and not s.instant
+        leaving, work = exchange_sums(
+            film.oil.P,
+            s.pressure,
+            s.fill if conserves else s.ones,
+            s.work.active,
+            conserves,
+            y.mass_old if stepped else s.H,
+            y.inverse_step if stepped else 0.0,
+            s.squeeze,
+            y.coefficients,
+            cavity,
+        )
+    power = film.scales.pressure * film.parts.flow_scale
+    return sliding_power(film) + power * (work + _end_work(film)), leaving
 
 
 def _end_work(film: SolvedFilm) -> float:
@@ -120,28 +125,3 @@ def _end_work(film: SolvedFilm) -> float:
         return 0.0
     g, section = film.grid, film.oil.P * film.solver.H
     return film.journal.axial_speed / g.reference_length * float(g.width_x @ (section[:, -1] - section[:, 0]))
-
-
-def _compressible_work(film: SolvedFilm, oil: CompressibleFilmSolver | NonlinearFilmSolver) -> tuple[float, float]:
-    """Work on the oil of a compressible film, scaled, and the flow that leaves.
-
-    With the density ratio rho, the flow work ``w = integral of dp / rho`` and a volume flow q per width, the mass
-    balance times w less its value in the cavity, summed by parts, turns the power of the motion
-    ``int mu U^2 / h + q_U . grad p - p dh/dt dA`` into
-
-        heat + d/dt int e h dA - pc dV/dt - sum over what enters of (w - w_c) rho q,    e = rho (w - w_c) - (p - pc),
-
-    e the elastic energy per volume of oil above that of the cavity's, ``d(e h) = e dh + h (w - w_c) d(rho)``. The
-    second part, backward Euler, is left out where the mass balance leaves it out: without a history and its step.
-    """
-    s, P, flows = film.solver, film.oil.P, Exchange(film)
-    cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0
-    w = oil.flow_work(P) - oil.flow_work(np.asarray(cavity))
-    work = float(np.sum(w * flows.outside))
-    if s.squeeze:
-        elastic = oil.rho * w - (P - cavity)
-        work += float(np.sum(s.area * (cavity - elastic) * s.H_t))
-    history = film.history
-    if flows.stepped and history is not None and history.density is not None:
-        work -= float(np.sum(s.area * s.H * w * (oil.rho - history.density))) / film.step
-    return work + _end_work(film), flows.leaving

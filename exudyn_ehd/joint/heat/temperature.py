@@ -20,6 +20,7 @@ from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
+from exudyn_ehd.joint.heat.power import contact_power_loss
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
 # Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
@@ -247,22 +248,29 @@ class FilmTemperature(_Temperature):
         )
 
     def _heat(self, film: SolvedFilm) -> np.ndarray:
-        """Heat at the vertices, W (n, m): shear, pressure flow and contact friction."""
+        """Heat at the vertices, W (n, m): shear, pressure flow and contact friction.
+
+        Their sum is that of `heat_and_leakage` to the grid's error. Scaled to be the same, heat would heat less well:
+        loads that are 0.2 % off on ten rows would be 0.5 % off.
+        """
         p, s, R, w = film.parts, film.solver, film.grid.reference_length, film.journal
         ratio = 1.0 if film.oil.ratio is None else film.oil.ratio
         speed2 = w.omega**2 + (w.axial_speed / R) ** 2
-        friction = film.scales.shear * speed2 * s.area * R**2 * film.share() * ratio / s.H
-        if film.pressing is not None:
-            area = s.area * R**2
-            for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
-                g_theta, g_z, _ = film.slip(transition)
-                friction = friction + coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * area
         flow_power = p.flow_scale * film.scales.pressure
-        heat = friction / flow_power
+        heat = film.scales.shear / flow_power * speed2 * s.area * R**2 * film.share() * ratio / s.H
         # The links' flows of a compressible film are mass flows, which dissipate the drop of the flow work.
         drop = film.oil.P if p.compressible is None else p.compressible.flow_work(film.oil.P)
         film_heat(drop, s.pressure, s.system.kx, s.system.kz, heat)
-        return heat * flow_power
+        heat *= flow_power
+        rubbed = contact_power_loss(film)
+        if film.pressing is not None and rubbed > 0.0:
+            friction = np.zeros(film.grid.shape)
+            for (coefficient, transition), P in zip(film.pressing.friction, film.pressing.P, strict=True):
+                g_theta, g_z, _ = film.slip(transition)
+                friction += coefficient * (g_theta * (R * w.omega) + g_z * w.axial_speed) * P * s.area
+            # contacts that press on an edge: as much as the integrals of the loads say, which count it finely
+            heat += friction * (rubbed / friction.sum())
+        return heat
 
     def _solve(
         self, film: SolvedFilm, step: float, known: np.ndarray | None = None

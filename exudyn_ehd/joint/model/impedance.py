@@ -56,6 +56,7 @@ class ImpedanceEvaluation:
             "friction_torque": friction,
             "friction_torque_bush": -torque,
             "power_loss": -power,
+            "stored_power": 0.0,
             "contact_load": 0.0,
         }
 

@@ -20,11 +20,12 @@ from exudyn_ehd.joint.solved_film import (
     ExtraGap,
     FilmParts,
     JournalMotion,
+    LimiterFields,
     Loads,
     OilFields,
     Scales,
 )
-from exudyn_ehd.joint.tangent.drag import drag_integrals
+from exudyn_ehd.joint.tangent.drag import drag_integrals, pulls_unevenly
 
 _NO_CONTACT = np.zeros(6)
 # Largest pressure behind the end of a law, in its largest ones. Solvers measure what they leave by the first force that
@@ -80,6 +81,7 @@ def film_loads(
     oil: OilFields,
     extra: ExtraGap | None,
     pressing: ContactFields | None,
+    limited: LimiterFields | None,
 ) -> Loads:
     """Loads of the film that ``parts.solver`` holds."""
     s, g, P = parts.solver, parts.grid, oil.P
@@ -91,8 +93,8 @@ def film_loads(
     if parts.liner is not None:
         # The deflection's slope in the Poiseuille shear: p d(beta p)/dz integrates to beta p^2 / 2 at the ends.
         extra_z += math.pi * parts.liner.beta * float(scales.ends[1] ** 2 - scales.ends[0] ** 2)
-    if parts.uneven_drag:
-        drag = drag_integrals(parts, P)
+    if pulls_unevenly(parts, limited):
+        drag = drag_integrals(parts, limited, P)
         extra_theta += drag[0]
         extra_z += drag[1]
     couette, couette_unbroken = _couette(parts, oil.ratio)

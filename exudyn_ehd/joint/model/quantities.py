@@ -8,7 +8,13 @@ import numpy as np
 
 from exudyn_ehd.film import loads
 from exudyn_ehd.film.reynolds.gap import largest_eccentricity
-from exudyn_ehd.joint.heat.power import contact_torque, friction_torque, power_loss
+from exudyn_ehd.joint.heat.power import (
+    contact_power_loss,
+    contact_torque,
+    friction_torque,
+    power_loss,
+    stored_power,
+)
 from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
 
 
@@ -34,7 +40,19 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     gauge 0. The last term is the pressure on the ends' cross section, which the journal's wrench carries.
     Compressible oil takes its elastic energy along: p - pc becomes the integral of dp / (rho / rho_0), the outflow
     the mass flow over rho_0, and the rate of the energy that the film holds is added. What bends an elastic bore is
-    not in it: that is the bush's.
+    not in it: that is the bush's. Nor is the power that solids take up and give back,
+
+        stored_power = int (p + p_c) d(delta)/dt - (p_c + (1 - dh/dg) p) dg/dt dA
+
+    with a liner's deflection delta, the contact pressure p_c, the gap g of the surfaces and the gap h that the film
+    sees where a wall or asperities leave it another. Liner and contact pressure give back what they took. So does the
+    oil's pressure on what touching surfaces have closed of the gap, but at the pressure of that instant: a cycle may
+    leave a difference of either sign.
+
+    Where nothing changes in time, ``stored_power`` is zero, and ``power_loss`` is the heat of `LumpedThermal` and the
+    work on the oil to rounding. In motion the two differ by the grid's error, of second order, since the power is made
+    of forces and the heat of flows, and by what backward Euler adds in a step. The field of `FilmEnergy` sums its heat
+    over control volumes: to the grid's error in all states.
 
     Returns
     -------
@@ -44,10 +62,11 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         length), ``peak_pressure`` (Pa, from parabolas through the largest vertex) at ``peak_angle`` (rad),
         ``friction_torque`` (Nm, on the journal about its own axis, film and contact), ``friction_torque_unbroken``
         (the film's with shear of its unbroken part only), ``friction_torque_bush`` (Nm, on the housing about the
-        bearing axis), ``power_loss`` (W, mechanical power that stays in film and contact), ``leakage`` (m3/s out of
-        both ends), ``leakage_lower`` and ``leakage_upper``, ``contact_load`` (N, carried by contact),
-        ``contact_torque`` (Nm, its friction on the journal about its own axis), ``contact_power_loss`` (W, the part
-        of ``power_loss`` that this friction takes), ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
+        bearing axis), ``power_loss`` (W, mechanical power that stays in film and contact), ``stored_power`` (W, that
+        liner and contact take up; negative: give back), ``leakage`` (m3/s out of both ends), ``leakage_lower`` and
+        ``leakage_upper``, ``contact_load`` (N, carried by contact), ``contact_torque`` (Nm, its friction on the
+        journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
+        ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
         also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and
         ``peak_temperature`` (K), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
@@ -59,7 +78,6 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     poiseuille = 6.0 * film.loads.s_theta
     load = film.pressing.integrals.sum(axis=0) * R**2 if film.pressing is not None else np.zeros(5)
     peak, peak_angle, _ = refined_peak(film)
-    friction = contact_torque(film)
     out = {
         "minimum_gap": film.minimum_gap,
         **eccentricities(p, w.pose),
@@ -71,12 +89,13 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         "friction_torque_unbroken": -torque_scale * (w.omega * film.loads.couette_unbroken - poiseuille),
         "friction_torque_bush": -float(film.loads.wrench[5]),
         "power_loss": power_loss(film),
+        "stored_power": stored_power(film),
         "leakage": p.flow_scale * (lower + upper),
         "leakage_lower": p.flow_scale * lower,
         "leakage_upper": p.flow_scale * upper,
         "contact_load": math.hypot(load[0], load[1]),
-        "contact_torque": friction,
-        "contact_power_loss": 0.0 - friction * w.omega - float(film.loads.contact[2]) * w.axial_speed,
+        "contact_torque": contact_torque(film),
+        "contact_power_loss": contact_power_loss(film),
         "peak_contact_pressure": 0.0 if film.pressing is None else max(float(f.max()) for f in film.pressing.P),
     }
     if p.supply is not None:

@@ -241,7 +241,7 @@ class BearingModel:
             smallest = p.liner.smallest_gap()
             if p.contacts is not None:
                 pressing = p.contacts if smallest < p.contacts.presses_below else None
-        loads = film_loads(p, self.scales, journal, oil, extra, pressing)
+        loads = film_loads(p, self.scales, journal, oil, extra, pressing, limited)
         film = SolvedFilm(
             p,
             self.grid,
@@ -316,10 +316,10 @@ class BearingModel:
         if p.liner is not None:
             return smallest, extra, None, None
         pressing = None if p.contacts is None else self._press(p.contacts, smallest)
-        limiter, limited = self.effects.limiter, None
-        if limiter is not None and smallest < limiter.limits_below:
-            limited = f = p.limiter
-            assert f is not None
+        limiter, f, limited = self.effects.limiter, p.limiter, None
+        if limiter is not None and f is not None and smallest < limiter.limits_below:
+            limited = f
+            f.gap[:], f.link[:], f.rate[:] = s.H, s.HF, s.H_t
             limiter.limit(s.H, s.HF, s.H_t, f.slope, f.bend, f.face_slope)
         return smallest, extra, pressing, limited
 

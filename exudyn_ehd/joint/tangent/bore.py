@@ -32,7 +32,7 @@ from exudyn_ehd.film.sensitivity.bore_stencil import (
 from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import drag_by_gap
+from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, gap_derivatives, shear_needs_adjoint, wrench_tangent
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
@@ -232,7 +232,7 @@ def _direct(film: SolvedFilm, bore: Bore, weights: np.ndarray) -> np.ndarray:
     # force and moment across the axis do not depend on the gap
     factors, rows = weights[2::3, 4:] / film.parts.bearing.radial_clearance, np.empty((2, *g.shape))
     shear_fields(film.oil.P, g.weight, g.width_x[0], g.z, couette_field(film), _end_field(film), factors, rows)
-    if film.parts.uneven_drag:
+    if pulls_unevenly(film.parts, film.limited):
         face, cell = drag_by_gap(film)
         # the gap on a link is the mean of its two columns
         rows += factors[:, 1, None, None] * (0.5 * (face[0] + np.roll(face[0], 1, axis=0)))

@@ -1,27 +1,43 @@
-"""Drag of a pressure gradient on unequally rough surfaces, and its derivatives; see `exudyn_ehd.film.loads`."""
+"""Drag of a pressure gradient on surfaces that share it unevenly, and its derivatives; see `exudyn_ehd.film.loads`.
+
+Of unequal roughness, and where a limiter leaves the film another gap than the surfaces have.
+"""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
 from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
-from exudyn_ehd.film.reynolds.links import LinkFlux
-from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.joint.solved_film import FilmParts, SolvedFilm
+from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
 
 
-def drag_integrals(parts: FilmParts, P: np.ndarray) -> tuple[float, float]:
+class _Links(NamedTuple):
+    """Carriers and true gaps of the links in theta and z, (n, m) each."""
+
+    cx: np.ndarray
+    gap_x: np.ndarray
+    cz: np.ndarray
+    gap_z: np.ndarray
+
+
+def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
+    """Whether a pressure gradient pulls the surfaces of this film by other than half of it on the true gap."""
+    return parts.uneven_drag or limited is not None or (parts.liner is not None and parts.liner.limited)
+
+
+def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> tuple[float, float]:
     """E_x and E_z of the film that ``parts.solver`` holds, with its pressure P (n, m)."""
-    f = _flux(parts.solver)
-    return drag_sums(P, f.cx, f.gap_x, f.cz, f.gap_z, parts.grid.mesh)
+    return drag_sums(P, *_links(parts, limited), parts.grid.mesh)
 
 
 def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
     """Add the weights of the unknown pressures in E_x and E_z to ``rows`` (2, count)."""
-    f, w = _flux(film.solver), film.solver.work
-    drag_rhs(w.order, w.count, w.active, f.cx, f.gap_x, f.cz, f.gap_z, film.grid.mesh, rows)
+    w = film.solver.work
+    drag_rhs(w.order, w.count, w.active, *_links(film.parts, film.limited), film.grid.mesh, rows)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -31,12 +47,11 @@ def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
 
     On a liner: to the gap of the undeformed surfaces, whose contact follows.
     """
+    face, cell = _slopes(film)
     if film.parts.liner is None:
-        face, cell = _slopes(film, *_gap_slopes(film))
         return face[None], np.stack((np.zeros_like(cell), cell))
-    c = film.parts.liner.gap_slopes
-    face, cell = _slopes(film, film.solver.ones, c.link)
-    return face[None], np.stack((_ends(face) * c.D_r, cell * c.H_r))
+    deflection = film.parts.liner.gap_slopes.D_r
+    return face[None], np.stack((_ends(face) * deflection, cell * (1.0 + deflection)))
 
 
 def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
@@ -48,35 +63,56 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
         contract_pose(cell[1:], p.directions.cos_x, p.directions.sin_x, g.z, gradient[1:, :4])
         contract_pose(cell[:1], p.directions.cos_x, p.directions.sin_x, g.z, gradient[:1, :4])
         return
-    f = _flux(film.solver)
-    drag_pose_gradient(film.oil.P, f.cx_h, f.cz_h, *_gap_slopes(film), g.mesh, g.directions, gradient)
+    drag_pose_gradient(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, g.directions, gradient)
 
 
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
-    face, cell = _slopes(film, liner.ones, liner.gap_slopes.link)
-    return np.stack((_ends(face) * liner.deflection_by_pressure, cell * liner.gap_by_pressure))
+    face, cell = _slopes(film)
+    return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
+
+
+def _links(parts: FilmParts, limited: LimiterFields | None) -> _Links:
+    s, f = parts.solver, parts.solver.flux
+    cx, cz = (s.HF, _mean_along_z(s.H)) if f is None else (f.cx, f.cz)
+    if limited is not None:
+        return _Links(cx, limited.link, cz, _mean_along_z(limited.gap))
+    if parts.liner is not None:
+        return _Links(cx, parts.liner.true_link, cz, _mean_along_z(parts.liner.true_gap))
+    assert f is not None
+    return _Links(cx, f.gap_x, cz, f.gap_z)
+
+
+def _mean_along_z(gap: np.ndarray) -> np.ndarray:
+    """Gap of the links j -> j+1 (n, m); the last column has no link."""
+    out = gap.copy()
+    out[:, :-1] += gap[:, 1:]
+    out *= 0.5
+    return out
+
+
+def _carrier_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """d(carrier)/d(film gap) of the links in theta and z."""
+    f, ones = film.solver.flux, film.solver.ones
+    return (ones, ones) if f is None else (f.cx_h, f.cz_h)
 
 
 def _gap_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
-    """d(film gap)/d(true gap) at the vertices and on the links i -> i+1 of a rigid bore."""
-    ones, limited = film.solver.ones, film.limited
+    """d(film gap)/d(true gap) at the vertices and on the links i -> i+1."""
+    ones, limited, liner = film.solver.ones, film.limited, film.parts.liner
+    if liner is not None:
+        return liner.gap_slopes.rate_t, liner.gap_slopes.link
     return (ones, ones) if limited is None else (limited.slope, limited.face_slope)
 
 
-def _slopes(film: SolvedFilm, slope: np.ndarray, face_slope: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Gradients of E_x on the links i -> i+1 and of E_z at the vertices (n, m), times the gaps' slopes there."""
-    f, g = _flux(film.solver), film.grid
+def _slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
+    """Gradients to the true gap, of E_x on the links i -> i+1 and of E_z at the vertices (n, m)."""
+    g = film.grid
     face, cell = np.empty(g.shape), np.empty(g.shape)
-    drag_gap_slopes(film.oil.P, f.cx_h, f.cz_h, slope, face_slope, g.mesh, face, cell)
+    drag_gap_slopes(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, face, cell)
     return face, cell
 
 
 def _ends(face: np.ndarray) -> np.ndarray:
     """Half of what stands on the links i -> i+1 (n, m) at either of their ends."""
     return 0.5 * (face + np.roll(face, 1, axis=0))
-
-
-def _flux(solver: FilmSolver) -> LinkFlux:
-    assert solver.flux is not None
-    return solver.flux

@@ -22,7 +22,7 @@ from exudyn_ehd.film.surfaces.contact_wrench import (
     couette_gradient_ratio,
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection
+from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 
@@ -88,7 +88,7 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
     _add_couette_direct(film, dc)
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
-    if film.parts.uneven_drag:
+    if pulls_unevenly(film.parts, film.limited):
         add_drag_by_pose(film, extra)
     return gradient[:4], dc, extra
 
@@ -162,7 +162,7 @@ def shear_needs_adjoint(film: SolvedFilm) -> bool:
 
 def has_extra_rows(film: SolvedFilm) -> bool:
     """Whether `adjoint_rows` has two rows for the slopes of gap terms and for uneven drag."""
-    return film.extra is not None or film.parts.uneven_drag
+    return film.extra is not None or pulls_unevenly(film.parts, film.limited)
 
 
 def shape_rows(film: SolvedFilm) -> int:
@@ -202,11 +202,12 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         extra[:] = 0.0
         if film.extra is not None:
             slope_adjoint_rhs(w.order, w.count, g.weight, w.active, film.extra.slope_x, film.extra.slope_z, extra)
-        if p.uneven_drag:
+        uneven = pulls_unevenly(p, film.limited)
+        if uneven:
             add_drag_rows(film, extra)
         if P_q is not None:
             weigh_rows(w.order, w.count, P_q, extra)
-        if p.uneven_drag and p.liner is not None:
+        if uneven and p.liner is not None:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = p.liner.contact_by_pressure

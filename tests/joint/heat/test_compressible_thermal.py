@@ -135,8 +135,7 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
 
     Second order in the grid, first where the rupture line is not resolved.
 
-    High end pressures, so that the elastic energy counts: without it 4 % would be left on any grid. On the coarser
-    one 1 % is left (Gümbel 1.2 %), as much as with incompressible oil.
+    High end pressures, so that the elastic energy counts: without it 4 % would be left on any grid.
     """
     left = []
     for n_theta, n_z in ((48, 8), (96, 16)):
@@ -144,8 +143,8 @@ def test_lumped_heat_is_the_dissipated_power(cavitation):
         model = make(LUMPED, SOFT, BARUS, cavitation=cavitation, film=film, end_pressures=(2e7, 1e7))
         made = model.evaluate(MOTION).film
         left.append(abs(heat_and_leakage(made)[0] / dissipation(made) - 1.0))
-    assert left[0] < 0.013
-    assert left[1] < 0.5 * left[0]
+    assert left[0] < 0.0065
+    assert left[1] < 0.6 * left[0]
 
 
 @pytest.mark.parametrize("law", [ehd.DowsonHigginson(), SOFT], ids=["oil", "soft"])

@@ -80,7 +80,7 @@ def test_integrals_are_those_of_the_shear_flow_factor(share):
     film = model.evaluate(at(0.5, axial=0.5)).film
     g, P, t = model.grid, film.oil.P, model.solver.H * C / SIGMA
     H = nominal_gap(t, 0.0)
-    found = drag.drag_integrals(film.parts, P)
+    found = drag.drag_integrals(film.parts, film.limited, P)
     carried = (2.0 * share - 1.0) * SIGMA / C * shear_flow_factor(H, 1 / 9)
     slope = (np.roll(P, -1, 0) - np.roll(P, 1, 0)) / (2.0 * g.width_x[0])
     assert found[0] == pytest.approx(-np.sum(carried * slope * g.weight), rel=0.02)
@@ -131,7 +131,7 @@ def test_a_rough_journal_is_pulled_along():
     found = {}
     for share in (0.0, 1.0):
         film = model_of(share).evaluate(at(0.5)).film
-        found[share] = drag.drag_integrals(film.parts, film.oil.P)[0]
+        found[share] = drag.drag_integrals(film.parts, film.limited, film.oil.P)[0]
     assert found[0.0] < 0.0 < found[1.0]
 
 
