@@ -153,7 +153,5 @@ def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
         settled = films[0].model.evaluate_steady(films[0].motion, films[0].memory)
         return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None
     together = FilmsOnOneBody(films)
-    found, balanced, _ = bore_equilibrium(
-        together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(together.bore.size)
-    )
-    return found.bore.coordinates.copy() if balanced else None
+    found = bore_equilibrium(together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(together.bore.size))[0]
+    return None if found is None else found.bore.coordinates.copy()

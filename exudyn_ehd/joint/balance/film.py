@@ -8,9 +8,13 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
 from exudyn_ehd.joint.balance.temperature import settled_history
+from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import FilmError, Status
+
+# Minimum film thickness below which a film closes, share of the clearance.
+CLOSED = 1e-3
 
 
 def lacks_oil(bearing: JournalBearing) -> bool:
@@ -50,15 +54,29 @@ def evaluate_at(
     evaluation = model.evaluate_steady(motion, history_at(model, motion, where, near))
     if evaluation.film is None or evaluation.status is not Status.CONVERGED:
         remedy = advice(evaluation.status, model.bearing)
-        if model.flexible and evaluation.status is not Status.NO_PRESSURE:
-            remedy = (
-                f"no shape of the {type(model.bearing.bush).__name__}'s bore was found in balance with a film, neither "
-                "by Newton's method nor on the way of a viscous bore from its undeformed shape; thicken what is thin "
-                "in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the film's grid."
-            )
+        if isinstance(evaluation, ElasticEvaluation) and evaluation.status is not Status.NO_PRESSURE:
+            remedy = _without_a_shape(evaluation)
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
             f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
             f"{remedy}"
         )
     return evaluation, evaluation.film
+
+
+def _without_a_shape(evaluation: ElasticEvaluation) -> str:
+    """Why no shape of a flexible bore has a film, and what to do."""
+    bearing, last = evaluation.model.bearing, evaluation.closing
+    missing = f"no shape of the {type(bearing.bush).__name__}'s bore was found in balance with a film"
+    if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
+        return (
+            f"{missing}, neither by Newton's method nor on the way of a viscous bore from its undeformed shape; "
+            "thicken what is thin in it, name a contact=RegularisedWall(...) if the surfaces touch, or refine the "
+            "film's grid."
+        )
+    return (
+        f"{missing}. On the way there, at {last.part:.3g} of eccentricity and tilt, the film closes at theta = "
+        f"{last.theta:.3g} rad, z = {last.z:.4g} m (minimum film thickness {last.gap:.2g} m): the surfaces touch; at "
+        "an end of the bearing, where no pressure opens the gap, they do so first. Name contact=RegularisedWall(...) "
+        "or asperity=GreenwoodTripp(...), refine the film's grid, or move the journal back."
+    )

@@ -24,12 +24,15 @@ from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.status import Status
 
-SMALLEST_PART = 1e-3
+# Of the way to the prescribed place: step that is too short to go on, and by how much one that was reached lengthens.
+SMALLEST_PART, LONGER = 1e-4, 1.5
 # Steps of Newton's method and what they may leave of the residual, over the load; of a viscous bore's step likewise.
 LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60, 1e-11, 10, 1e-5
 # Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
 # trials after which no way is begun or gone on.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
+# Trials after which the whole way ends.
+LARGEST_WAY = 3000
 
 
 class Elasticity:
@@ -88,30 +91,30 @@ def bore_equilibrium(
     motion: np.ndarray,
     film: tuple[History | None, float, float],
     start: np.ndarray,
-) -> tuple[Result, bool, int]:
+) -> tuple[Result | None, int, tuple[float, np.ndarray]]:
     """Evaluate with the bore in equilibrium.
 
-    The eccentricity is approached in parts where the rigid surfaces would touch.
+    The place is approached in parts where the rigid surfaces would touch, each from where the last two lead: a thin
+    film leaves the bore no room to stay behind.
 
     ``film``: history, step and spin as for `BearingModel.evaluate`; ``start``: coordinates (k,) to begin with, if
-    they leave a gap, before the undeformed bore. Returns the evaluation, whether it is an equilibrium, and the number
-    of Newton trials.
+    they leave a gap, before the undeformed bore. Returns the evaluation or None, the number of Newton trials, and the
+    largest part of the place with an equilibrium on the way, with its coordinates (k,).
     """
     newton = Newton(model, motion, film)
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
-    reached, part, q = 0.0, 1.0, np.zeros_like(start)
-    while found is None and part > SMALLEST_PART:
+    reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
+    while found is None and part > SMALLEST_PART and newton.trials < LARGEST_WAY:
         target = min(1.0, reached + part)
-        near = newton.settle(q, target)
+        near = newton.settle(q + (target - reached) * rate, target)
         if near is None:
             part *= 0.5
         elif target == 1.0:
             found = near
         else:
-            reached, q = target, near.bore.coordinates.copy()
-    if found is None:
-        return model.evaluate(motion, *film), False, newton.trials
-    return found, True, newton.trials
+            rate = (near.bore.coordinates - q) / (target - reached)
+            reached, q, part = target, near.bore.coordinates.copy(), LONGER * part
+    return found, newton.trials, (reached, q)
 
 
 class Newton(Generic[Result]):

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,6 +42,18 @@ from exudyn_ehd.status import Status
 END_PANELS = 120, 12
 
 
+class ClosingFilm(NamedTuple):
+    """Where a film closes: on the way to a place, at a part of its eccentricity and tilt.
+
+    ``gap``: minimum film thickness there, m, at the angle ``theta``, rad, and at ``z``, m.
+    """
+
+    part: float
+    gap: float
+    theta: float
+    z: float
+
+
 @dataclasses.dataclass(eq=False)
 class ElasticEvaluation(Evaluation):
     """One film evaluation on a flexible bore.
@@ -50,11 +63,14 @@ class ElasticEvaluation(Evaluation):
     bore : BoreState
     settling_steps : int
         Newton trials of `ElasticBearingModel.evaluate_steady`.
+    closing : ClosingFilm or None
+        The last film that it found on the way to a place without one.
     """
 
     model: ElasticBearingModel = dataclasses.field(repr=False)
     bore: BoreState = dataclasses.field(repr=False)
     settling_steps: int = 0
+    closing: ClosingFilm | None = None
 
     @property
     def bore_load(self) -> np.ndarray:
@@ -274,7 +290,19 @@ class ElasticBearingModel(BearingModel):
         Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
         """
         start = self._coordinates.copy()
-        evaluation, found, steps = bore_equilibrium(self, motion, (history, step, spin), start)
-        if not found and evaluation.status is Status.CONVERGED:
-            return dataclasses.replace(evaluation, status=Status.NOT_CONVERGED, film=None, settling_steps=steps)
-        return dataclasses.replace(evaluation, settling_steps=steps)
+        found, steps, (part, q) = bore_equilibrium(self, motion, (history, step, spin), start)
+        if found is not None:
+            return dataclasses.replace(found, settling_steps=steps)
+        closing = self._closing(motion, (history, step, spin), part, q) if part > 0.0 else None
+        evaluation = self.evaluate(motion, history, step, spin)
+        status = Status.NOT_CONVERGED if evaluation.status is Status.CONVERGED else evaluation.status
+        return dataclasses.replace(evaluation, status=status, film=None, settling_steps=steps, closing=closing)
+
+    def _closing(
+        self, motion: np.ndarray, film: tuple[History | None, float, float], part: float, q: np.ndarray
+    ) -> ClosingFilm:
+        near = np.concatenate((motion[:MOTION_SIZE], q, np.zeros(q.size)))
+        near[:4] *= part
+        gap = self.evaluate(near, *film).minimum_gap
+        i, j = np.unravel_index(int(self.solver.H.argmin()), self.grid.shape)
+        return ClosingFilm(part, gap, float(self.grid.x[i]), float(self.grid.z[j]) * self.grid.reference_length)

@@ -96,3 +96,43 @@ def test_a_bore_without_an_equilibrium_is_named():
     motion[:2] *= 40.0 * C / np.hypot(*motion[:2])
     with pytest.raises(ehd.FilmError, match=r"steady: .* no shape of the ModalBush's bore was found"):
         evaluate_at(model, motion, "steady")
+
+
+def soft_bushes(seed, count, contact=None):
+    """Models and motions of journals pressed into soft bushes deeper than the clearance."""
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        c, modulus = C * rng.uniform(0.5, 3.0), math.exp(rng.uniform(math.log(1e7), math.log(1e9)))
+        cylinder = ehd.HollowCylinder(
+            inner_radius=R + c, thickness=rng.uniform(4e-3, 1.2e-2), length=L, axial=2, radial=1, circumferential=16
+        )
+        soft = ehd.SaintVenantKirchhoff(youngs_modulus=modulus, poisson_ratio=0.35, density=1200.0)
+        b = ehd.JournalBearing(
+            journal_radius=R,
+            length=L,
+            radial_clearance=c,
+            lubricant=ehd.Lubricant(viscosity=0.05),
+            bush=ehd.ModalBush(mesh=cylinder.mesh(), material=soft, tolerance=0.2),
+            contact=contact,
+            film=ehd.FiniteLength(n_theta=96, n_z=12),
+        )
+        e, direction = c * rng.uniform(1.05, 4.0), rng.uniform(-math.pi, math.pi)
+        place = [e * math.cos(direction), e * math.sin(direction), 0, 0]
+        yield build_model(b), np.array([*place, 0, 0, 0, 0, math.exp(rng.uniform(math.log(5.0), math.log(300.0))), 0])
+
+
+def test_films_on_soft_bores_are_found_unless_they_close_at_an_end():
+    """A film that closes before the journal is there is named; with a contact there is one."""
+    wall, closed = ehd.RegularisedWall(onset=5e-7, pressure=1e8), []
+    for (model, motion), (with_wall, _) in zip(soft_bushes(5, 4), soft_bushes(5, 4, wall), strict=True):
+        evaluation = model.evaluate_steady(motion)
+        closed.append(evaluation.status is not ehd.Status.CONVERGED)
+        if not closed[-1]:
+            held = model.elasticity.force(evaluation.bore.coordinates)
+            np.testing.assert_allclose(evaluation.bore_load, held, atol=1e-8 * np.abs(held).max())
+            continue
+        assert evaluation.closing.part < 1.0 and abs(evaluation.closing.z) == 0.5 * L
+        with pytest.raises(ehd.FilmError, match=r"the film closes at theta = .*the surfaces touch.*contact="):
+            evaluate_at(model, motion, "steady")
+        assert with_wall.evaluate_steady(motion).status is ehd.Status.CONVERGED
+    assert closed == [False, True, True, False]
