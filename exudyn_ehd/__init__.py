@@ -4,7 +4,7 @@ Module map
 ----------
 bearing    what a scene writes: `JournalBearing` and its options
 film       the oil film: grid, gap, Reynolds equation, cavitation closures, solvers, loads, heat
-solid      the flexible bush: 20-node hexahedra in absolute nodal coordinates, and its reduction to modes
+solid      the flexible bush: quadratic elements in absolute nodal coordinates, and its reduction to modes
 joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
 coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinematics, histories, sensors
@@ -115,7 +115,7 @@ _LAZY = {
     "recommend": "studies.recommend",
     "mesh_from_arrays": "solid.mesh_import",
     "mesh_from_fem": "solid.mesh_import",
-    "mesh_from_file": "solid.mesh_import",
+    "mesh_from_file": "solid.mesh_files",
     "OnCylinder": "solid.mesh_import",
     "OnPlane": "solid.mesh_import",
     "EquilibriumPoint": "studies.parameters",

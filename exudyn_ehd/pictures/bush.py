@@ -13,7 +13,7 @@ from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from exudyn_ehd.pictures.bearing3d import look_at, quads_of
 from exudyn_ehd.pictures.style import style_ticks, styled
-from exudyn_ehd.solid.hex20 import face_shapes
+from exudyn_ehd.solid.elements.faces import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
 
@@ -106,9 +106,10 @@ def _box(mesh: BushMesh, frames: Sequence[Frame], view: View) -> np.ndarray:
 def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colours) -> None:
     order = list(view.axes)
     positions = (mesh.nodes + view.magnification * frame.displacements)[:, order]
-    polygons, values = _facets(positions[mesh.boundary], frame.values[mesh.boundary], view.facets)
+    kind, faces = face_of(mesh.boundary), positions[mesh.boundary]
+    polygons, values = _facets(kind, faces, frame.values[mesh.boundary], view.facets)
     # closed polylines through the corners and mid-edge nodes
-    outlines = positions[mesh.boundary][:, [0, 4, 1, 5, 2, 6, 3, 7, 0]]
+    outlines = faces[:, kind.outline]
     elevation, azimuth = np.radians([view.elevation, view.azimuth])
     camera = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
     sign = np.linalg.det(np.eye(3)[order])
@@ -122,24 +123,25 @@ def _draw(axes, mesh: BushMesh, frame: Frame, view: View, norm: Normalize, colou
     axes.add_collection3d(
         Poly3DCollection(polygons[nearness], facecolors=face_colours, edgecolors=face_colours, linewidths=0.3, zorder=1)
     )
-    front = sign * _normals(positions[mesh.boundary][:, :4]) @ camera > 0
-    visible = front & _unhidden(positions[mesh.boundary][:, :4], camera)
-    axes.add_collection3d(Line3DCollection(outlines[visible].reshape(-1, 9, 3), colors="k", linewidths=0.25, zorder=2))
+    corners = faces[:, : kind.corners]
+    visible = (sign * _normals(corners) @ camera > 0) & _unhidden(corners, camera)
+    axes.add_collection3d(Line3DCollection(outlines[visible], colors="k", linewidths=0.25, zorder=2))
 
 
-def _facets(corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Flat quadrilaterals (m, 4, 3) and their mean values (m,) of 8-node faces (f, 8, 3)."""
+def _facets(kind: Face, corners: np.ndarray, nodal: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Flat quadrilaterals (m, 4, 3) and their mean values (m,) of faces (f, a, 3)."""
     ticks = np.linspace(-1, 1, count + 1)
     r, s = np.meshgrid(ticks, ticks, indexing="ij")
-    shapes, _ = face_shapes(np.stack([r.ravel(), s.ravel()], axis=1))
+    shapes, _ = kind.shapes(kind.from_square(np.stack([r.ravel(), s.ravel()], axis=1)))
     points = np.einsum("pa,fai->fpi", shapes, corners)
     fields = np.einsum("pa,fa->fp", shapes, nodal)
     grids = (-1, count + 1, count + 1)
     return quads_of(points.reshape(*grids, 3)), quads_of(fields.reshape(*grids, 1)).mean(axis=1).ravel()
 
 
-def _normals(quads: np.ndarray) -> np.ndarray:
-    return np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])
+def _normals(polygons: np.ndarray) -> np.ndarray:
+    """Normals of quadrilaterals (m, 4, 3) or triangles (m, 3, 3)."""
+    return np.cross(polygons[:, 2] - polygons[:, 0], polygons[:, -1] - polygons[:, 1])
 
 
 def _unhidden(quads: np.ndarray, camera: np.ndarray) -> np.ndarray:

@@ -29,8 +29,8 @@ def export_films(
     """Write films, and the bush where there is one.
 
     The film is a surface of quadrilaterals on the bore, moved by its displacement, with the fields pressure, gap,
-    unbroken and, where there are any, fill, temperature and bore displacement. The bush is its mesh of 20-node
-    hexahedra, moved by the displacement of its nodes, with displacement and von Mises stress.
+    unbroken and, where there are any, fill, temperature and bore displacement. The bush is its mesh, moved
+    by the displacement of its nodes, with displacement and von Mises stress.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def bush_mesh(
     """Points (k, 3), cells and point fields of the bush; ``recovery`` is the `StressRecovery` of its mesh."""
     u = film.bush_displacement
     assert u is not None
-    # the nodes' order of the Abaqus element C3D20 is VTK's, too
-    cells = [("hexahedron20", recovery.mesh.elements)]
+    # the nodes' order of Abaqus is VTK's, too
+    cells = [(recovery.mesh.element.meshio, recovery.mesh.elements)]
     fields = {"displacement [m]": u, "von Mises stress [Pa]": recovery.von_mises_at_nodes(u)}
     return recovery.mesh.nodes + magnification * u, cells, fields
 

@@ -1,12 +1,13 @@
-"""The flexible bearing: 20-node hexahedra in absolute nodal coordinates. Knows numpy, scipy and numba; no film.
+"""The flexible bearing: quadratic elements in absolute nodal coordinates. Knows numpy, scipy and numba; no film.
 
 Module map
 ----------
 bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
 mesh                hollow cylinders; surfaces and lines of meshes
-mesh_import         users' meshes, from memory and from files
-hex20               the element: nodes, shape functions, faces, quadratures
-hex20_kernels       compiled loops over elements: force and tangent
+mesh_import         users' meshes, from memory
+mesh_files          users' meshes, from files
+abaqus_input        parts, instances and node sets of an Abaqus input file
+elements            20-node hexahedra and 10-node tetrahedra: shape functions, faces, quadratures, compiled loops
 total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
 static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held

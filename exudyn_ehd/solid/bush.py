@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from exudyn_ehd.solid.hex20 import IRONS14, Quadrature
+from exudyn_ehd.solid.elements.element import Quadrature
+from exudyn_ehd.solid.elements.hex20 import HEX20
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, own_rule
 from exudyn_ehd.status import InputError, require_number, require_numbers, require_type
 
 # Of the error of a modal bush; below, the waves of its search do not suffice.
@@ -39,18 +40,18 @@ class _Solid:
 
     mesh: HollowCylinder | BushMesh
     material: SaintVenantKirchhoff
-    quadrature: Quadrature = IRONS14
+    quadrature: Quadrature | None = None
 
     def __post_init__(self) -> None:
         kind = type(self).__name__
         if not isinstance(self.mesh, HollowCylinder | BushMesh):
             raise InputError(
                 f"{kind}.mesh must be a HollowCylinder or a BushMesh, got {type(self.mesh).__name__}; import your "
-                "own mesh with mesh_from_fem or mesh_from_arrays."
+                "own mesh with mesh_from_file, mesh_from_fem or mesh_from_arrays."
             )
         require_type(f"{kind}.material", self.material, SaintVenantKirchhoff)
-        if not isinstance(self.quadrature, Quadrature):
-            raise InputError(f"{kind}.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
+        element = HEX20 if isinstance(self.mesh, HollowCylinder) else self.mesh.element
+        object.__setattr__(self, "quadrature", own_rule(kind, element, self.quadrature))
         for field in fields(self):
             value = getattr(self, field.name)
             if isinstance(field.default, bool) and not isinstance(value, bool):
@@ -63,7 +64,7 @@ class _Solid:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ANCFBush(_Solid):
-    """A bush of 20-node hexahedra in absolute nodal coordinates.
+    """A bush of 20-node hexahedra or 10-node tetrahedra in absolute nodal coordinates.
 
     Any strain and rotation in a joint; `steady` and `equilibrium` take its stiffness at rest.
 
@@ -73,8 +74,9 @@ class ANCFBush(_Solid):
         A structured cylinder, or a mesh of `mesh_from_file`, `mesh_from_arrays` or `mesh_from_fem`.
     material : SaintVenantKirchhoff or NeoHooke
         `NeoHooke` for soft bushes, beyond strains of a few per cent.
-    quadrature : Quadrature
-        `IRONS14` by default; `GAUSS27` for the reference, `GAUSS8` for speed.
+    quadrature : Quadrature, optional
+        Of hexahedra (`exudyn_ehd.solid.elements.hex20`) `IRONS14` by default, `GAUSS27` for the reference, `GAUSS8` for
+        speed; of tetrahedra (`exudyn_ehd.solid.elements.tet10`) `HAMMER4` by default, `WALKINGTON14` for the reference.
     damping : Rayleigh, optional
     parallel : bool
         Loops over elements on numba's threads.
@@ -118,8 +120,8 @@ class ModalBush(_Solid):
         0.5 to 1.6 %, since next to its ends the bore deflects within an interval.
     tilted : bool
         False leaves out the modes that are odd in z: for journals that stay parallel.
-    quadrature : Quadrature
-        Of the stiffness.
+    quadrature : Quadrature, optional
+        Of the stiffness, as in `ANCFBush`.
     dynamics : bool
         Give the modes their mass in a run and add modes of the lowest vibrations (up to 40, half of them without tilt);
         `steady` and `equilibrium` don't know the mass. It matters when the load changes nearly as fast as the bore

@@ -11,7 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, spmatrix
 
-from exudyn_ehd.solid.hex20 import boundary_faces, face_shapes
+from exudyn_ehd.solid.elements.faces import face_of
+from exudyn_ehd.solid.elements.kinds import boundary_faces
 from exudyn_ehd.solid.mesh import invert_faces, near_faces
 from exudyn_ehd.status import InputError
 
@@ -71,9 +72,9 @@ class BoreFaces:
         theta, z = np.asarray(theta, dtype=float).ravel(), np.asarray(z, dtype=float).ravel()
         corner = self.positions[self.faces]
         point, face = np.nonzero(near_faces(corner, theta, z))
-        middle = 0.0 if self.faces.shape[1] == 8 else 1.0 / 3.0
-        natural = invert_faces(self._shapes, corner[face], theta[point], z[point], middle)
-        outside = self._outside(natural)
+        kind = face_of(self.faces)
+        natural = invert_faces(kind, corner[face], theta[point], z[point])
+        outside = kind.outside(natural)
         order = np.lexsort((outside, point))
         first = order[np.unique(point[order], return_index=True)[1]]
         lost = np.setdiff1d(np.arange(theta.size), point)
@@ -84,31 +85,11 @@ class BoreFaces:
                 f"bore, whose nodes span z = {self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes "
                 "in the bore are not supported: check position, axis, length and radius_tolerance."
             )
-        values, _ = self._shapes(natural[first])
+        values, _ = kind.shapes(natural[first])
         rows = np.repeat(point[first], self.faces.shape[1])
         return csr_matrix(
             (values.ravel(), (rows, self.faces[face[first]].ravel())), shape=(theta.size, len(self.positions))
         )
-
-    def _shapes(self, natural: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Values (n, a) and gradients (n, a, 2)."""
-        if self.faces.shape[1] == 8:
-            return face_shapes(natural)
-        r, s = natural.T
-        L = np.stack([1.0 - r - s, r, s], axis=1)
-        dL = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-        if self.faces.shape[1] == 3:
-            return L, np.broadcast_to(dL, (len(r), 3, 2))
-        pairs = ((0, 1), (1, 2), (2, 0))
-        value = np.column_stack([L * (2.0 * L - 1.0), *(4.0 * L[:, i] * L[:, j] for i, j in pairs)])
-        ends = (4.0 * L - 1.0)[:, :, None] * dL
-        edges = [4.0 * (L[:, i, None] * dL[j] + L[:, j, None] * dL[i]) for i, j in pairs]
-        return value, np.concatenate([ends, np.stack(edges, axis=1)], axis=1)
-
-    def _outside(self, natural: np.ndarray) -> np.ndarray:
-        if self.faces.shape[1] == 8:
-            return np.abs(natural).max(axis=1) - 1.0
-        return np.maximum(-natural.min(axis=1), natural.sum(axis=1) - 1.0)
 
 
 def surface_faces(fem: BodyMesh) -> np.ndarray:

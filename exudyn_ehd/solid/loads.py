@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.solid.hex20 import face_gauss, face_shapes
 from exudyn_ehd.solid.mesh import BushMesh, Line, Surface
 from exudyn_ehd.solid.total_lagrange import TotalLagrange
 from exudyn_ehd.status import InputError, require_number, require_vector
@@ -25,8 +24,6 @@ _EDGE_SHAPES = np.stack(
     [_EDGE_POINTS * (_EDGE_POINTS - 1) / 2, _EDGE_POINTS * (_EDGE_POINTS + 1) / 2, 1 - _EDGE_POINTS**2], axis=1
 )
 _EDGE_SLOPES = np.stack([_EDGE_POINTS - 0.5, _EDGE_POINTS + 0.5, -2 * _EDGE_POINTS], axis=1)
-_FACE_POINTS, _FACE_WEIGHTS = face_gauss(3)
-_FACE_SHAPES, _FACE_SLOPES = face_shapes(_FACE_POINTS)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -88,9 +85,9 @@ class SurfaceLoad:
 
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
         """Return int N_a t dA as nodal forces, shape (n, 3) [N]."""
-        normal = _area_vectors(mesh.nodes[self.surface.faces])
+        normal = _area_vectors(self.surface, mesh.nodes)
         factor = _at_points(self.distribution, self.surface)
-        share = np.einsum("fq,fq,qa->fa", np.linalg.norm(normal, axis=2), factor, _FACE_SHAPES)
+        share = np.einsum("fq,fq,qa->fa", np.linalg.norm(normal, axis=2), factor, self.surface.kind.rule[1])
         forces = np.zeros((len(mesh.nodes), 3))
         np.add.at(forces, self.surface.faces, share[..., None] * np.asarray(self.traction, dtype=float))
         return forces
@@ -113,10 +110,10 @@ class _SurfacePressure:
 
     def forces(self, positions: np.ndarray) -> np.ndarray:
         """Return -int N_a p n da at positions (n, 3) [m] and history = 1, shape (n, 3) [N]."""
-        normal = _area_vectors(positions[self.surface.faces])
+        normal = _area_vectors(self.surface, positions)
         pressure = self.pressure * _at_points(self.distribution, self.surface)
         forces = np.zeros_like(positions)
-        np.add.at(forces, self.surface.faces, -np.einsum("fq,qa,fqi->fai", pressure, _FACE_SHAPES, normal))
+        np.add.at(forces, self.surface.faces, -np.einsum("fq,qa,fqi->fai", pressure, self.surface.kind.rule[1], normal))
         return forces
 
 
@@ -149,18 +146,20 @@ class FollowerPressure(_SurfacePressure):
     """
 
     def stiffness(self, positions: np.ndarray) -> np.ndarray:
-        """Return -d(forces)/d(positions) of every face, shape (f, 24, 24) [N/m], coordinates node by node.
+        """Return -d(forces)/d(positions) of every face, shape (f, 3 a, 3 a) [N/m], coordinates node by node.
 
         With n da = x_,r × x_,s dr ds, the variation of f_a = -int N_a p x_,r × x_,s gives
         -df_a/dx_b = int N_a p (N_b,s [x_,r]× - N_b,r [x_,s]×); not symmetric, since the edges of a patch carry no load.
         """
         corners = positions[self.surface.faces]
-        slope = np.einsum("qar,fai->fqri", _FACE_SLOPES, corners)
-        pressure = _FACE_WEIGHTS * self.pressure * _at_points(self.distribution, self.surface)
+        weights, shapes, slopes = self.surface.kind.rule
+        slope = np.einsum("qar,fai->fqri", slopes, corners)
+        pressure = weights * self.pressure * _at_points(self.distribution, self.surface)
         along_r, along_s = _cross_matrix(slope[:, :, 0]), _cross_matrix(slope[:, :, 1])
-        block = np.einsum("fq,qa,qb,fqij->faibj", pressure, _FACE_SHAPES, _FACE_SLOPES[..., 1], along_r)
-        block -= np.einsum("fq,qa,qb,fqij->faibj", pressure, _FACE_SHAPES, _FACE_SLOPES[..., 0], along_s)
-        return block.reshape(len(corners), 24, 24)
+        block = np.einsum("fq,qa,qb,fqij->faibj", pressure, shapes, slopes[..., 1], along_r)
+        block -= np.einsum("fq,qa,qb,fqij->faibj", pressure, shapes, slopes[..., 0], along_s)
+        size = 3 * shapes.shape[1]
+        return block.reshape(len(corners), size, size)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -208,15 +207,15 @@ def pressure_loads(bore: Surface, nodes: int, pressures: Sequence[Pressure], poi
         Number of nodes of the mesh.
     pressures : sequence of Pressure
     points : int
-        Gauss points per face and direction.
+        Gauss points per face and direction; on triangles as in `Face.gauss`.
 
     Returns
     -------
     ndarray, shape (3 nodes, k)
         [N]
     """
-    natural, weight = face_gauss(points)
-    value, slope = face_shapes(natural)
+    natural, weight = bore.kind.gauss(points)
+    value, slope = bore.kind.shapes(natural)
     corner = bore.positions[bore.local_faces]
     x = np.einsum("qa,fai->fqi", value, corner)
     tangent = np.einsum("qar,fai->fqri", slope, corner)
@@ -231,16 +230,17 @@ def pressure_loads(bore: Surface, nodes: int, pressures: Sequence[Pressure], poi
     return loads.reshape(3 * nodes, -1)
 
 
-def _area_vectors(corners: np.ndarray) -> np.ndarray:
-    """x_,r × x_,s times quadrature weight, (f, q, 3), of faces (f, 8, 3)."""
-    slope = np.einsum("qar,fai->fqri", _FACE_SLOPES, corners)
-    return _FACE_WEIGHTS[:, None] * np.cross(slope[:, :, 0], slope[:, :, 1])
+def _area_vectors(surface: Surface, positions: np.ndarray) -> np.ndarray:
+    """x_,r × x_,s times quadrature weight, (f, q, 3), at positions (n, 3) of the mesh's nodes."""
+    weights, _, slopes = surface.kind.rule
+    slope = np.einsum("qar,fai->fqri", slopes, positions[surface.faces])
+    return weights[:, None] * np.cross(slope[:, :, 0], slope[:, :, 1])
 
 
 def _at_points(distribution: np.ndarray | None, surface: Surface) -> np.ndarray:
     if distribution is None:
-        return np.ones((len(surface.faces), len(_FACE_WEIGHTS)))
-    return np.asarray(distribution, dtype=float)[surface.local_faces] @ _FACE_SHAPES.T
+        return np.ones((len(surface.faces), len(surface.kind.rule[0])))
+    return np.asarray(distribution, dtype=float)[surface.local_faces] @ surface.kind.rule[1].T
 
 
 def _cross_matrix(vector: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Meshes of a bearing bush: hollow cylinders of 20-node hexahedra, their surfaces and lines.
+"""Meshes of a bearing bush: hollow cylinders of 20-node hexahedra, surfaces and lines of any mesh.
 
 Bush frame: origin on the bearing axis, z = axis; theta counts from x about z. A structured mesh spans
 z = -length/2 to length/2.
@@ -6,14 +6,16 @@ z = -length/2 to length/2.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.hex20 import EDGES, NODES, boundary_faces, face_shapes
+from exudyn_ehd.solid.elements.element import Element
+from exudyn_ehd.solid.elements.faces import Face, face_of
+from exudyn_ehd.solid.elements.hex20 import NODES
+from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
 
@@ -35,7 +37,7 @@ class Line:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Surface:
-    """A patch of 8-node element faces.
+    """A patch of element faces with a nodes each.
 
     Parameters
     ----------
@@ -43,9 +45,9 @@ class Surface:
         Reference positions of the nodes [m], bush frame.
     nodes : ndarray of int, shape (k,)
         Mesh nodes of the surface, each once, ascending.
-    faces : ndarray of int, shape (f, 8)
-        Mesh nodes of each face, outward normal x_,r × x_,s, order of `hex20.FACE_NODES`.
-    local_faces : ndarray of int, shape (f, 8)
+    faces : ndarray of int, shape (f, a)
+        Mesh nodes of each face, outward normal x_,r × x_,s, order of `exudyn_ehd.solid.elements.faces`.
+    local_faces : ndarray of int, shape (f, a)
         The same faces as indices into ``nodes``.
     """
 
@@ -53,6 +55,11 @@ class Surface:
     nodes: np.ndarray
     faces: np.ndarray
     local_faces: np.ndarray
+
+    @cached_property
+    def kind(self) -> Face:
+        """What the faces are."""
+        return face_of(self.faces)
 
     @cached_property
     def theta(self) -> np.ndarray:
@@ -76,7 +83,7 @@ class Surface:
         -------
         face : ndarray of int, shape (n,)
         natural : ndarray, shape (n, 2)
-            (r, s) in [-1, 1], found by Newton's method on theta(r, s) and z(r, s).
+            (r, s), found by Newton's method on theta(r, s) and z(r, s).
 
         Raises
         ------
@@ -90,11 +97,11 @@ class Surface:
         # a point off the surface is tried on any face, and refused there
         close[~close.any(axis=1), 0] = True
         point, face = np.nonzero(close)
-        natural = invert_faces(face_shapes, corner[face], theta[point], z[point])
-        inside = np.abs(natural).max(axis=1)
+        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
+        inside = self.kind.outside(natural)
         best = np.full(len(theta), np.inf)
         np.minimum.at(best, point, inside)
-        if np.any(best > 1 + 1e-6):
+        if np.any(best > 1e-6):
             bad = int(np.argmax(best))
             raise InputError(
                 f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
@@ -109,8 +116,8 @@ class Surface:
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """Return S, shape (n, k), so that S @ nodal values are the values at the points (theta, z) of the surface."""
         face, natural = self.locate(theta, z)
-        weights, _ = face_shapes(natural)
-        rows = np.repeat(np.arange(len(face)), 8)
+        weights, _ = self.kind.shapes(natural)
+        rows = np.repeat(np.arange(len(face)), weights.shape[1])
         return csr_matrix((weights.ravel(), (rows, self.local_faces[face].ravel())), shape=(len(face), len(self.nodes)))
 
     def radial_interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
@@ -151,29 +158,20 @@ def near_faces(corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarr
     return np.asarray(close & (z[:, None] >= low - margin) & (z[:, None] <= high + margin))
 
 
-def invert_faces(
-    shapes: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]],
-    corner: np.ndarray,
-    theta: np.ndarray,
-    z: np.ndarray,
-    start: float = 0.0,
-) -> np.ndarray:
+def invert_faces(kind: Face, corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
     """Natural coordinates (n, 2) of points (n,) on a face each, by Newton's method on theta(r, s) and z(r, s).
 
     Parameters
     ----------
-    shapes : function
-        Shape functions (n, a) and gradients (n, a, 2) at natural coordinates (n, 2).
+    kind : Face
     corner : ndarray, shape (n, a, 3)
         Nodes of every point's face [m].
     theta, z : ndarray, shape (n,)
         [rad], [m]
-    start : float
-        Both natural coordinates of a face's middle.
     """
-    natural = np.full((len(corner), 2), start)
+    natural = np.full((len(corner), 2), kind.middle)
     for _ in range(20):
-        value, gradient = shapes(natural)
+        value, gradient = kind.shapes(natural)
         x = np.einsum("na,nai->ni", value, corner)
         slope = np.einsum("nar,nai->nir", gradient, corner)
         error = np.stack([wrapped(np.arctan2(x[:, 1], x[:, 0]) - theta), x[:, 2] - z], axis=1)
@@ -192,14 +190,14 @@ def wrapped(angle: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BushMesh:
-    """A mesh of 20-node hexahedra with the surfaces that a bearing needs.
+    """A mesh of 20-node hexahedra or of 10-node tetrahedra, with the surfaces that a bearing needs.
 
     Parameters
     ----------
     nodes : ndarray, shape (n, 3)
         Reference positions [m], bush frame.
-    elements : ndarray of int, shape (m, 20)
-        Connectivity in the order of `hex20.NODES`.
+    elements : ndarray of int, shape (m, a)
+        Connectivity, a = 20 in the order of the Abaqus element C3D20, a = 10 in that of C3D10.
     bore, outer, end_low, end_high : Surface
         Inner cylinder, outer surface, and the end faces at the smallest and largest z.
     """
@@ -211,9 +209,14 @@ class BushMesh:
     end_low: Surface
     end_high: Surface
 
+    @property
+    def element(self) -> Element:
+        """What the elements are."""
+        return element_of(self.elements)
+
     @cached_property
     def boundary(self) -> np.ndarray:
-        """All faces that belong to one element only, shape (f, 8), mesh nodes."""
+        """All faces that belong to one element only, shape (f, a), mesh nodes."""
         return boundary_faces(self.elements)
 
     def surface(self, nodes: np.ndarray) -> Surface:
@@ -222,7 +225,7 @@ class BushMesh:
 
     def line(self, nodes: np.ndarray) -> Line:
         """Return the element edges all of whose nodes are in ``nodes`` (mesh node numbers)."""
-        edges = np.unique(self.elements[:, EDGES].reshape(-1, 3), axis=0)
+        edges = np.unique(self.elements[:, self.element.edges].reshape(-1, 3), axis=0)
         swapped = edges[:, 0] > edges[:, 1]
         edges[swapped] = edges[swapped][:, [1, 0, 2]]
         edges = np.unique(edges, axis=0)
@@ -255,12 +258,12 @@ class BushMesh:
 
 
 def surface_of(nodes: np.ndarray, boundary: np.ndarray, member: np.ndarray) -> Surface:
-    """Patch of the faces ``boundary`` (f, 8) all of whose nodes are flagged by ``member`` (n,)."""
+    """Patch of the faces ``boundary`` (f, a) all of whose nodes are flagged by ``member`` (n,)."""
     return patch(nodes, boundary[member[boundary].all(axis=1)])
 
 
 def patch(nodes: np.ndarray, faces: np.ndarray) -> Surface:
-    """Patch of faces (f, 8) on nodes (n, 3)."""
+    """Patch of faces (f, a) on nodes (n, 3)."""
     used = np.unique(faces)
     return Surface(positions=nodes[used], nodes=used, faces=faces, local_faces=np.searchsorted(used, faces))
 

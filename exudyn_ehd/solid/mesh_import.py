@@ -1,28 +1,22 @@
-"""Users' meshes of a bush: from arrays, from Exudyn's ``FEMinterface``, and from files.
-
-Abaqus input files are read here, any other format through meshio.
-"""
+"""Users' meshes of a bush: from arrays and from Exudyn's ``FEMinterface``."""
 
 from __future__ import annotations
 
-import pathlib
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol, TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.solid.hex20 import GAUSS27, boundary_faces, shape_gradients
+from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
 from exudyn_ehd.solid.mesh import BushMesh, frame_of, patch, surface_of
 from exudyn_ehd.status import InputError, require_number, require_numbers, require_vector
 
-_WHERE = "mesh_from_file"
-_HEXAHEDRA = ("C3D20", "C3D20R", "C3D20H", "C3D20RH")
-
 
 class FEMData(Protocol):
-    """What is read of Exudyn's ``FEMinterface``: nodes['Position'] (n, 3) and elements, a list with 'Hex20' (m, 20)."""
+    """What is read of Exudyn's ``FEMinterface``: nodes['Position'] (n, 3) and elements, a list of 'Hex20' (m, 20)
+    or 'Tet10' (m, 10)."""
 
     nodes: dict
     elements: list
@@ -92,24 +86,24 @@ def mesh_from_fem(
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
-    """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra.
+    """Return the bush mesh of a ``FEMinterface`` that holds 20-node hexahedra or 10-node tetrahedra.
 
     Parameters
     ----------
     fem : FEMinterface
-        Exudyn's, with Hex20 elements (Abaqus C3D20 order) only.
+        Exudyn's, with Hex20 elements (Abaqus C3D20 order) or Tet10 elements (C3D10) only.
     bore_radius, held, origin, axis
         As in `mesh_from_arrays`, which also says what comes back and what is refused.
     """
-    sets = [np.asarray(block["Hex20"], dtype=int) for block in fem.elements if len(block.get("Hex20", ())) > 0]
-    other = sorted({key for block in fem.elements for key in block if key not in ("Name", "Hex20") and len(block[key])})
-    if not sets or other:
+    kinds = sorted({key for block in fem.elements for key in block if key != "Name" and len(block[key])})
+    if len(kinds) != 1 or kinds[0] not in [element.fem for element in ELEMENTS]:
         raise InputError(
-            f"mesh_from_fem fem.elements must hold Hex20 elements only, got {['Hex20'] * bool(sets) + other}; mesh the "
-            "bush with C3D20 elements and put other parts into a FEMinterface of their own."
+            f"mesh_from_fem fem.elements must hold Hex20 or Tet10 elements, of one kind, got {kinds}; mesh the bush "
+            "with C3D20 or C3D10 elements and put other parts into a FEMinterface of their own."
         )
+    sets = [np.asarray(block[kinds[0]], dtype=int) for block in fem.elements if len(block.get(kinds[0], ()))]
     nodes, elements = fem.nodes["Position"], np.concatenate(sets)
-    return mesh_from_arrays(nodes, elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+    return bush_mesh(nodes, elements, None, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 
 
 def mesh_from_arrays(
@@ -121,14 +115,14 @@ def mesh_from_arrays(
     origin: tuple = (0.0, 0.0, 0.0),
     axis: tuple = (0.0, 0.0, 1.0),
 ) -> BushMesh:
-    """Return a bush mesh from a user's own nodes and C3D20 connectivity; the bore is found by its radius.
+    """Return a bush mesh from a user's own nodes and connectivity; the bore is found by its radius.
 
     Parameters
     ----------
     nodes : ndarray, shape (n, 3)
         Positions [m] in the user's frame.
-    elements : ndarray of int, shape (m, 20)
-        Abaqus C3D20 node order, zero-based.
+    elements : ndarray of int, shape (m, 20) or (m, 10)
+        Hexahedra in the node order of Abaqus C3D20 or tetrahedra in that of C3D10 (VTK's, not Gmsh's), zero-based.
     bore_radius : float
         Radius [m] of the bore; its corner nodes must lie within 1 % of the radius.
     held : nodes, `OnCylinder`, `OnPlane` or function, optional
@@ -155,21 +149,35 @@ def mesh_from_arrays(
     InputError
         No bore at this radius, no held face, inverted elements, or array shapes that don't fit.
     """
+    return bush_mesh(nodes, elements, None, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
+
+
+def bush_mesh(
+    nodes: np.ndarray,
+    elements: np.ndarray,
+    numbers: np.ndarray | None,
+    *,
+    bore_radius: float,
+    held: Held | None,
+    origin: tuple,
+    axis: tuple,
+) -> BushMesh:
+    """What `mesh_from_arrays` does; ``numbers`` (m,) are the elements' own in messages, by default their rows."""
     radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
     nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
-    if nodes.ndim != 2 or nodes.shape[1] != 3 or elements.ndim != 2 or elements.shape[1] != 20:
+    if nodes.ndim != 2 or nodes.shape[1] != 3 or elements.ndim != 2 or elements.shape[1] not in (20, 10):
         raise InputError(
-            f"mesh_from_arrays nodes and elements must have shapes (n, 3) and (m, 20), got {nodes.shape} and "
-            f"{elements.shape}; only 20-node hexahedra are supported."
+            f"mesh_from_arrays nodes and elements must have shapes (n, 3) and (m, 20) or (m, 10), got {nodes.shape} "
+            f"and {elements.shape}; only 20-node hexahedra and 10-node tetrahedra are supported, one kind in a mesh."
         )
     centre = require_vector("mesh_from_arrays origin", origin, 3, "m")
     nodes = (nodes - centre) @ _frame(require_vector("mesh_from_arrays axis", axis, 3)).T
     for number in (elements.min(initial=len(nodes)), elements.max(initial=-1)):
         counts = "subtract 1 from numbers that count from 1, as Abaqus does."
         require_number("mesh_from_arrays elements", number, at_least=0, at_most=len(nodes) - 1, hint=counts)
-    used, elements = np.unique(elements, return_inverse=True)
-    nodes, elements = nodes[used], elements.reshape(-1, 20)
-    _check_volume(nodes, elements)
+    used, own = np.unique(elements, return_inverse=True)
+    nodes, elements = nodes[used], own.reshape(elements.shape)
+    _check_volume(nodes, elements, numbers)
     boundary = boundary_faces(elements)
     r, z = np.hypot(nodes[:, 0], nodes[:, 1]), nodes[:, 2]
     flat = 1e-4 * np.ptp(z)
@@ -185,7 +193,7 @@ def mesh_from_arrays(
         warnings.warn(
             f"mesh_from_arrays: {reaching} nodes of the bore belong to held faces (a chamfer, a groove or a hole) and "
             "are clamped; name the held faces, e.g. held=OnCylinder(radius=...) for the outer cylinder alone.",
-            stacklevel=2,
+            stacklevel=3,
         )
     return BushMesh(
         nodes=nodes,
@@ -200,7 +208,7 @@ def mesh_from_arrays(
 def _held_faces(
     nodes: np.ndarray, boundary: np.ndarray, used: np.ndarray, held: Held | None, elsewhere: tuple[np.ndarray, ...]
 ) -> np.ndarray:
-    """Faces (f, 8) that the housing holds; ``used`` are the user's numbers of the nodes, ``elsewhere`` flags (n,) of
+    """Faces (f, a) that the housing holds; ``used`` are the user's numbers of the nodes, ``elsewhere`` flags (n,) of
     the ends and, last, of the bore."""
     whole = [member[boundary].all(axis=1) for member in elsewhere]
     if held is None:
@@ -220,7 +228,7 @@ def _held_faces(
         r = np.hypot(nodes[:, 0], nodes[:, 1])
         raise InputError(
             f"mesh_from_arrays held: {int(member.sum())} nodes are chosen, and no boundary face besides the bore has "
-            f"all of its 8 nodes among them; the nodes have radii {r.min():g} to {r.max():g} m and z from "
+            f"all of its nodes among them; the nodes have radii {r.min():g} to {r.max():g} m and z from "
             f"{nodes[:, 2].min():g} to {nodes[:, 2].max():g} m in the bush frame. Check units, radius and tolerance."
         )
     return faces
@@ -235,170 +243,15 @@ def _frame(axis: np.ndarray) -> np.ndarray:
     return frame_of(z, np.eye(3)[0 if abs(z[0]) < 1 - 1e-9 else 1]).T
 
 
-def _check_volume(nodes: np.ndarray, elements: np.ndarray) -> None:
-    jacobian = np.einsum("qar,eai->eqir", shape_gradients(GAUSS27.points), nodes[elements])
+def _check_volume(nodes: np.ndarray, elements: np.ndarray, numbers: np.ndarray | None) -> None:
+    element = element_of(elements)
+    jacobian = np.einsum("qar,eai->eqir", element.shapes(element.exact.points)[1], nodes[elements])
     volume = np.linalg.det(jacobian).min(axis=1)
     if volume.min() <= 0:
         bad = np.flatnonzero(volume <= 0)
+        first = bad[0] if numbers is None else numbers[bad[0]]
         raise InputError(
             f"mesh_from_arrays elements must have a positive volume everywhere, got {len(bad)} inverted or degenerate "
-            f"ones, the first is element {bad[0]}; check the node order (Abaqus C3D20) and the mesh quality."
+            f"ones, the first is element {first}; check the node order (Abaqus {element.abaqus[0]}) and the mesh's "
+            "quality."
         )
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FileMesh:
-    """What a file holds.
-
-    Attributes
-    ----------
-    nodes : ndarray (n, 3)
-        In the file's unit.
-    elements : ndarray of int (m, 20)
-        20-node hexahedra, rows of ``nodes``.
-    sets : dict
-        Rows of ``nodes`` by the names of node sets.
-    """
-
-    nodes: np.ndarray
-    elements: np.ndarray
-    sets: dict[str, np.ndarray]
-
-
-def mesh_from_file(
-    path: str | pathlib.Path,
-    *,
-    bore_radius: float,
-    held: str | Held | None = None,
-    scale: float = 1.0,
-    origin: tuple = (0.0, 0.0, 0.0),
-    axis: tuple = (0.0, 0.0, 1.0),
-) -> BushMesh:
-    """Return the bush mesh of a file with 20-node hexahedra.
-
-    Parameters
-    ----------
-    path : path
-        An Abaqus input file (``.inp``: ``*Node``, ``*Element`` of type C3D20 or C3D20R, ``*Nset``; one part, without
-        transformed instances), or any format with quadratic hexahedra that meshio reads
-        (``pip install 'exudyn-ehd[mesh]'``).
-    held : str, or as in `mesh_from_arrays`
-        A string names a node set of the file.
-    scale : float
-        Metres per unit of the file: 1e-3 for millimetres.
-    bore_radius, origin, axis
-        As in `mesh_from_arrays`, in metres after scaling; it also says what comes back.
-
-    Raises
-    ------
-    InputError
-        No such file or set, elements of other types, or what `mesh_from_arrays` refuses.
-    """
-    path = pathlib.Path(path)
-    if not path.is_file():
-        raise InputError(f"{_WHERE}.path: there is no file {str(path)!r}.")
-    scale = require_number(f"{_WHERE}.scale", scale, "m", above=0.0)
-    mesh = read_abaqus(path) if path.suffix.lower() == ".inp" else _read_with_meshio(path)
-    if isinstance(held, str):
-        # Abaqus does not tell upper from lower case
-        known = {name.lower(): nodes for name, nodes in mesh.sets.items()}
-        if held.lower() not in known:
-            raise InputError(
-                f"{_WHERE}.held: {path.name} has no node set {held!r}, it has {sorted(mesh.sets) or 'none'}; name one "
-                "of these, or give nodes, OnCylinder(...), OnPlane(...) or a function of the positions."
-            )
-        held = known[held.lower()]
-    return mesh_from_arrays(
-        scale * mesh.nodes, mesh.elements, bore_radius=bore_radius, held=held, origin=origin, axis=axis
-    )
-
-
-def read_abaqus(path: pathlib.Path) -> FileMesh:
-    """Nodes, 20-node hexahedra and node sets of an Abaqus input file; other keywords are passed over."""
-    nodes: dict[int, list[float]] = {}
-    elements: list[list[int]] = []
-    sets: dict[str, list[int]] = {}
-    others = set()
-    for keyword, options, lines in _blocks(path):
-        if keyword == "NODE":
-            for row in lines:
-                nodes[int(row[0])] = [float(x) for x in row[1:4]]
-                if "NSET" in options:
-                    sets.setdefault(options["NSET"], []).append(int(row[0]))
-        elif keyword == "ELEMENT" and options.get("TYPE", "").upper() in _HEXAHEDRA:
-            numbers = [int(x) for row in lines for x in row]
-            if len(numbers) % 21:
-                raise InputError(
-                    f"{_WHERE}: an *Element block of {path.name} has no 20 nodes for each of its elements."
-                )
-            elements += [numbers[i + 1 : i + 21] for i in range(0, len(numbers), 21)]
-        elif keyword == "ELEMENT":
-            others.add(options.get("TYPE", "?").upper())
-        elif keyword == "NSET":
-            chosen = sets.setdefault(options.get("NSET", ""), [])
-            for row in lines:
-                if "GENERATE" in options:
-                    first, last, step = (*map(int, row), 1)[:3]
-                    chosen += range(first, last + 1, step)
-                else:
-                    for name in row:
-                        # sets may hold other sets by name
-                        chosen += [int(name)] if name.lstrip("+-").isdigit() else sets.get(name, [])
-    if not elements:
-        raise InputError(_no_hexahedra(path, others))
-    row_of = {number: row for row, number in enumerate(nodes)}
-    missing = {number for element in elements for number in element} - row_of.keys()
-    if missing:
-        raise InputError(f"{_WHERE}: elements of {path.name} use node {min(missing)}, which the file does not define.")
-    return FileMesh(
-        nodes=np.array(list(nodes.values())),
-        elements=np.array([[row_of[number] for number in element] for element in elements]),
-        sets={name: np.array([row_of[n] for n in own if n in row_of], dtype=int) for name, own in sets.items()},
-    )
-
-
-def _blocks(path: pathlib.Path) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
-    """Keyword, options and data rows of every block of an Abaqus input file; options' names in capitals."""
-    head, rows = "", []
-    for line in [*path.read_text(errors="replace").splitlines(), "*END"]:
-        line = line.strip()
-        if not line or line.startswith("**"):
-            continue
-        if head.endswith(","):
-            # options go on
-            head += line
-            continue
-        if not line.startswith("*"):
-            rows.append([field.strip() for field in line.split(",") if field.strip()])
-            continue
-        if head:
-            first, *rest = (part.strip() for part in head[1:].split(","))
-            pairs = (part.partition("=") for part in rest)
-            yield first.upper(), {name.strip().upper(): value.strip() for name, _, value in pairs}, rows
-        head, rows = line, []
-
-
-def _read_with_meshio(path: pathlib.Path) -> FileMesh:
-    try:
-        import meshio
-    except ImportError:
-        raise InputError(
-            f"{_WHERE}: meshio reads {path.suffix or 'such'} files and is not installed; pip install "
-            "'exudyn-ehd[mesh]', or give an Abaqus input file (.inp)."
-        ) from None
-    try:
-        data = meshio.read(path)
-    except (Exception, SystemExit) as error:
-        raise InputError(f"{_WHERE}: meshio can't read {path.name}: {error}.") from None
-    blocks = [block.data for block in data.cells if block.type == "hexahedron20"]
-    if not blocks:
-        raise InputError(_no_hexahedra(path, {block.type for block in data.cells}))
-    sets = {name: np.asarray(nodes, dtype=int) for name, nodes in data.point_sets.items()}
-    return FileMesh(nodes=np.asarray(data.points, dtype=float), elements=np.concatenate(blocks), sets=sets)
-
-
-def _no_hexahedra(path: pathlib.Path, others: set[str]) -> str:
-    return (
-        f"{_WHERE}: {path.name} must hold 20-node hexahedra (C3D20, hexahedron20), got {sorted(others) or 'none'}; "
-        "mesh the bush with them. Tetrahedra serve for reduced bodies, bush=FEBore(fem=...)."
-    )

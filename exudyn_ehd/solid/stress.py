@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from exudyn_ehd.solid.hex20 import GAUSS8, NODES, shape_functions, shape_gradients
+from exudyn_ehd.solid.elements.element import Element
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import InputError
@@ -45,7 +45,7 @@ class StressRecovery:
     def cauchy_at(self, points: MaterialPoints, u: np.ndarray) -> np.ndarray:
         """Return sigma = F S F^T / det F, shape (n, 3, 3) [Pa], at material points; u has a row per mesh node [m]."""
         nodes = self.mesh.elements[points.element]
-        natural = shape_gradients(points.natural)
+        natural = self.mesh.element.shapes(points.natural)[1]
         jacobian = np.einsum("nar,nai->nir", natural, self.mesh.nodes[nodes])
         gradient = np.einsum("nar,nri->nai", natural, np.linalg.inv(jacobian))
         return _cauchy(np.einsum("nai,naj->nij", np.asarray(u)[nodes], gradient), self.material)
@@ -59,11 +59,11 @@ class StressRecovery:
 
         Sampled at the 2 x 2 x 2 Gauss points, where the derivatives of the quadratic element are one order more
         accurate than elsewhere, extrapolated trilinearly to the nodes, and averaged over the elements that share a
-        node.
+        node; of tetrahedra at four points, linearly.
         """
-        elements, gradient, extrapolation = self._sampling
+        elements, gradient = self.mesh.elements, self._gradients
         samples = _cauchy(np.einsum("eai,eqaj->eqij", np.asarray(u)[elements], gradient), self.material)
-        at_nodes = np.einsum("aq,eqij->eaij", extrapolation, samples)
+        at_nodes = np.einsum("aq,eqij->eaij", self.mesh.element.extrapolation, samples)
         total = np.zeros((len(self.mesh.nodes), 3, 3))
         np.add.at(total, elements, at_nodes)
         count = np.bincount(elements.ravel(), minlength=len(total))
@@ -88,17 +88,13 @@ class StressRecovery:
         element = np.empty(len(positions), dtype=int)
         natural = np.empty((len(positions), 3))
         for i, position in enumerate(positions):
-            element[i], natural[i] = _invert(corners, near[i], position)
+            element[i], natural[i] = _invert(self.mesh.element, corners, near[i], position)
         return MaterialPoints(element=element, natural=natural)
 
     @cached_property
-    def _sampling(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        elements = self.mesh.elements
-        natural = shape_gradients(GAUSS8.points)
-        jacobian = np.einsum("qar,eai->eqir", natural, self.mesh.nodes[elements])
-        gradient = np.einsum("qar,eqri->eqai", natural, np.linalg.inv(jacobian))
-        trilinear = np.prod(1 + 3 * GAUSS8.points[None, :, :] * NODES[:, None, :], axis=2) / 8
-        return elements, gradient, trilinear
+    def _gradients(self) -> np.ndarray:
+        element = self.mesh.element
+        return element.reference_gradients(self.mesh.nodes[self.mesh.elements], element.sampling)[0]
 
 
 def von_mises(stress: np.ndarray) -> np.ndarray:
@@ -113,17 +109,20 @@ def _cauchy(H: np.ndarray, material: SaintVenantKirchhoff) -> np.ndarray:
     return material.first_piola(H) @ F.swapaxes(-1, -2) / np.linalg.det(F)[..., None, None]
 
 
-def _invert(corners: np.ndarray, candidates: np.ndarray, position: np.ndarray) -> tuple[int, np.ndarray]:
+def _invert(
+    element: Element, corners: np.ndarray, candidates: np.ndarray, position: np.ndarray
+) -> tuple[int, np.ndarray]:
     """Element and natural coordinates of a position, by Newton's method in the candidate elements at once."""
-    natural = np.zeros((len(candidates), 3))
+    natural = np.tile(element.nodes.mean(axis=0), (len(candidates), 1))
     for _ in range(20):
-        error = np.einsum("ea,eai->ei", shape_functions(natural), corners[candidates]) - position
-        jacobian = np.einsum("ear,eai->eir", shape_gradients(natural), corners[candidates])
+        value, gradient = element.shapes(natural)
+        error = np.einsum("ea,eai->ei", value, corners[candidates]) - position
+        jacobian = np.einsum("ear,eai->eir", gradient, corners[candidates])
         step = np.linalg.solve(jacobian, error[..., None])[..., 0]
         natural = np.clip(natural - step, -1.6, 1.6)
-    outside = np.abs(natural).max(axis=1)
+    outside = element.outside(natural)
     best = int(np.argmin(outside))
-    if outside[best] > 1 + 1e-6:
+    if outside[best] > 1e-6:
         raise InputError(
             f"StressRecovery.locate positions must lie inside the solid, got {position.tolist()} m in the reference "
             "configuration; a point on the cylinder between two nodes may lie a little outside the quadratic faces: "

@@ -1,7 +1,7 @@
 """The flexible bush as a total Lagrangian solid: force, tangent, mass, energy.
 
 Positions are absolute (the absolute nodal coordinate formulation): x = X + u with the displacement u in one fixed
-frame, interpolated by the 20-node hexahedron. Internal virtual work in first Piola-Kirchhoff form,
+frame, interpolated by the mesh's elements. Internal virtual work in first Piola-Kirchhoff form,
 
     delta W = int P : d(delta u)/dX dV0,   F = I + du/dX,   E = (F^T F - I)/2,
 
@@ -17,8 +17,8 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid import hex20_kernels as kernels
-from exudyn_ehd.solid.hex20 import GAUSS27, IRONS14, Quadrature, shape_functions, shape_gradients
+from exudyn_ehd.solid.elements import kernels
+from exudyn_ehd.solid.elements.element import Element, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError, require_number, require_numbers
 
@@ -112,8 +112,8 @@ class TotalLagrange:
     ----------
     mesh : BushMesh
     material : SaintVenantKirchhoff or NeoHooke
-    quadrature : Quadrature
-        `GAUSS27`, `IRONS14` (default) or `GAUSS8`. The mass always takes 27 points.
+    quadrature : Quadrature, optional
+        As in `ANCFBush`. The mass always takes 27 points, of tetrahedra 14.
     viscosity_time : float
         beta [s] of the Kelvin-Voigt law S = C : (E + beta dE/dt). In the small it is the stiffness-proportional part
         of Rayleigh damping, D = beta K; unlike that, it does no work in a rigid motion. `NeoHooke` gets its part beta
@@ -124,27 +124,31 @@ class TotalLagrange:
 
     mesh: BushMesh
     material: SaintVenantKirchhoff
-    quadrature: Quadrature = IRONS14
+    quadrature: Quadrature | None = None
     viscosity_time: float = 0.0
     parallel: bool = False
 
     def __post_init__(self) -> None:
-        if not isinstance(self.quadrature, Quadrature):
-            raise InputError(f"TotalLagrange.quadrature must be IRONS14, GAUSS27 or GAUSS8, got {self.quadrature!r}.")
+        object.__setattr__(self, "quadrature", own_rule("TotalLagrange", self.mesh.element, self.quadrature))
         require_number("TotalLagrange.viscosity_time", self.viscosity_time, "s", at_least=0.0)
 
     @cached_property
     def _geometry(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Elements sorted by colour, colour limits, G (m, nq, 3, 20) and w (m, nq)."""
+        """Elements sorted by colour, colour limits, G (m, nq, 3, n) and w (m, nq)."""
+        assert self.quadrature is not None
         order, limits = _colouring(self.mesh.elements)
         elements = np.ascontiguousarray(self.mesh.elements[order])
-        gradient, weight = reference_gradients(self.mesh.nodes[elements], self.quadrature)
+        gradient, weight = self.mesh.element.reference_gradients(self.mesh.nodes[elements], self.quadrature)
         if weight.min() <= 0:
             raise InputError(
-                "TotalLagrange.mesh must have elements of positive volume, got a non-positive Jacobian at a quadrature "
-                "point; check the node order and the mid-edge nodes of the mesh."
+                "TotalLagrange.mesh must have elements of positive volume, got a non-positive Jacobian in element "
+                f"{order[weight.min(axis=1).argmin()]}; check the node order and the mid-edge nodes of the mesh."
             )
         return elements, limits, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
+
+    @cached_property
+    def _size(self) -> tuple[int, ...]:
+        return (0,) * self.mesh.element.size
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -157,9 +161,9 @@ class TotalLagrange:
         u, v, law = self._state(u, v)
         f = np.empty_like(u)
         if self.parallel:
-            kernels.force_parallel(G, w, elements, colours, u, v, law, f)
+            kernels.force_parallel(G, w, elements, colours, self._size, u, v, law, f)
         else:
-            kernels.force_serial(G, w, elements, u, v, law, f)
+            kernels.force_serial(G, w, elements, self._size, u, v, law, f)
         return f
 
     def tangent(
@@ -182,10 +186,11 @@ class TotalLagrange:
         pattern = self.pattern
         data = np.empty(pattern.size)
         factors = (position_factor, position_factor + self.viscosity_time * velocity_factor)
+        state = (self._size, u, v, law, *factors, pattern.stride, pattern.slot, data)
         if self.parallel:
-            kernels.tangent_parallel(G, w, elements, colours, u, v, law, *factors, pattern.stride, pattern.slot, data)
+            kernels.tangent_parallel(G, w, elements, colours, *state)
         else:
-            kernels.tangent_serial(G, w, elements, u, v, law, *factors, pattern.stride, pattern.slot, data)
+            kernels.tangent_serial(G, w, elements, *state)
         return data
 
     def energy(self, u: np.ndarray) -> float:
@@ -197,7 +202,7 @@ class TotalLagrange:
     def inversion(self, u: np.ndarray) -> str:
         """Which element the displacements u (n, 3) turn inside out, and what to do about it; empty if none."""
         elements, _, G, _ = self._geometry
-        ratio, row = kernels.smallest_volume_ratio(G, elements, np.ascontiguousarray(u, dtype=float))
+        ratio, row = kernels.smallest_volume_ratio(G, elements, self._size, np.ascontiguousarray(u, dtype=float))
         if not ratio <= 0.0:
             return ""
         element = int(_colouring(self.mesh.elements)[0][row])
@@ -211,11 +216,11 @@ class TotalLagrange:
     @cached_property
     def scalar_mass(self) -> csr_matrix:
         """Consistent mass int rho N_a N_b dV0 of one direction, shape (n, n) [kg]; the same for x, y and z."""
-        elements = self.mesh.elements
-        N = shape_functions(GAUSS27.points)
-        _, w = reference_gradients(self.mesh.nodes[elements], GAUSS27)
+        elements, element = self.mesh.elements, self.mesh.element
+        N = element.shapes(element.exact.points)[0]
+        _, w = element.reference_gradients(self.mesh.nodes[elements], element.exact)
         blocks = self.material.density * np.einsum("eq,qa,qb->eab", w, N, N)
-        rows, columns = np.repeat(elements, 20, axis=1).ravel(), np.tile(elements, (1, 20)).ravel()
+        rows, columns = np.repeat(elements, element.size, axis=1).ravel(), np.tile(elements, (1, element.size)).ravel()
         n = len(self.mesh.nodes)
         return csr_matrix((blocks.ravel(), (rows, columns)), shape=(n, n))
 
@@ -248,7 +253,7 @@ class Pattern:
         CSR structure, shapes (3 n + 1,) and (nnz,).
     stride : ndarray of int64, shape (n,)
         Entries in each of the three rows of a node.
-    slot : ndarray of int32, shape (m, 20, 20)
+    slot : ndarray of int32, shape (m, a, a)
         Entry (3 I, 3 J) of every node pair of every element.
     """
 
@@ -259,7 +264,7 @@ class Pattern:
 
     @classmethod
     def of(cls, elements: np.ndarray, n: int) -> Pattern:
-        """Return the pattern of a connectivity (m, 20) over n nodes."""
+        """Return the pattern of a connectivity (m, a) over n nodes."""
         key = elements[:, :, None].astype(np.int64) * n + elements[:, None, :]
         pairs, place = np.unique(key, return_inverse=True)
         row, column = pairs // n, pairs % n
@@ -295,22 +300,35 @@ class Pattern:
         return np.asarray(matrix[np.ravel(rows), np.ravel(columns)]).ravel().astype(np.int64) - 1
 
 
-def reference_gradients(corners: np.ndarray, quadrature: Quadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Return dN_a/dX, shape (m, nq, 20, 3) [1/m], and volume weights, shape (m, nq) [m^3], of nodes (m, 20, 3)."""
-    natural = shape_gradients(quadrature.points)
-    jacobian = np.einsum("qar,eai->eqir", natural, corners)
-    gradient = np.einsum("qar,eqri->eqai", natural, np.linalg.inv(jacobian))
-    return gradient, quadrature.weights * np.linalg.det(jacobian)
+def own_rule(where: str, element: Element, rule: Quadrature | None) -> Quadrature:
+    """The quadrature of a stiffness, by default the element's usual one.
+
+    Raises
+    ------
+    InputError
+        If it is none, or one of another element.
+    """
+    if rule is None:
+        return element.default
+    if not isinstance(rule, Quadrature) or not element.accepts(rule):
+        raise InputError(
+            f"{where}.quadrature of a mesh of {element.name} must be {', '.join(element.rules)} or None, got {rule!r}."
+        )
+    return rule
 
 
 def _colouring(elements: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Greedy colouring: element order sorted by colour, and the limits of the colours in it."""
-    used = np.zeros(int(elements.max()) + 1, dtype=np.int64)
+    # bits of the colours at each node; Python's integers have any number of them
+    used = [0] * (int(elements.max()) + 1)
     colour = np.empty(len(elements), dtype=np.int64)
-    for e, nodes in enumerate(elements):
-        taken = int(np.bitwise_or.reduce(used[nodes]))
+    for e, nodes in enumerate(elements.tolist()):
+        taken = 0
+        for node in nodes:
+            taken |= used[node]
         free = ((~taken) & (taken + 1)).bit_length() - 1
         colour[e] = free
-        used[nodes] |= 1 << free
+        for node in nodes:
+            used[node] |= 1 << free
     order = np.argsort(colour, kind="stable")
     return order, np.concatenate([[0], np.cumsum(np.bincount(colour))])

@@ -6,11 +6,14 @@ import pytest
 from exudyn_ehd.pictures.bush import Frame, View, contour_figure
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.status import InputError
+from tests.solid_tetrahedra import tet_mesh
 
-MESH = HollowCylinder(inner_radius=0.2, thickness=0.05, length=0.2, axial=1, radial=1, circumferential=8).mesh()
+CYLINDER = HollowCylinder(inner_radius=0.2, thickness=0.05, length=0.2, axial=1, radial=1, circumferential=8)
+MESH = CYLINDER.mesh()
 
 
-def test_figure_has_one_panel_per_frame_and_a_labelled_bar(tmp_path):
+@pytest.mark.parametrize("MESH", [MESH, tet_mesh(CYLINDER)], ids=["hexahedra", "tetrahedra"])
+def test_figure_has_one_panel_per_frame_and_a_labelled_bar(tmp_path, MESH):
     frames = [
         Frame(title=f"t = {t} s", displacements=0.1 * t * MESH.nodes, values=t * MESH.nodes[:, 0]) for t in (1, 2, 3)
     ]

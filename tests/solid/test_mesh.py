@@ -5,10 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from exudyn_ehd.solid.hex20 import EDGES, GAUSS27
+from exudyn_ehd.solid.elements.hex20 import EDGES, GAUSS27, HEX20
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.mesh_import import OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
-from exudyn_ehd.solid.total_lagrange import reference_gradients
 from exudyn_ehd.status import InputError
 
 CYLINDER = HollowCylinder(inner_radius=0.225, thickness=0.05, length=0.2, axial=4, radial=2, circumferential=40)
@@ -37,7 +36,7 @@ def test_volume_converges_to_the_cylinder_at_fourth_order():
         mesh = HollowCylinder(
             inner_radius=0.225, thickness=0.05, length=0.2, axial=1, radial=1, circumferential=around
         ).mesh()
-        errors.append(abs(reference_gradients(mesh.nodes[mesh.elements], GAUSS27)[1].sum() / exact - 1))
+        errors.append(abs(HEX20.reference_gradients(mesh.nodes[mesh.elements], GAUSS27)[1].sum() / exact - 1))
     # a parabola through three points of a circle errs in area at fourth order
     assert np.log2(errors[0] / errors[1]) == pytest.approx(4, abs=0.1)
     assert np.log2(errors[1] / errors[2]) == pytest.approx(4, abs=0.1)
@@ -156,7 +155,7 @@ def test_import_reads_the_layout_of_exudyn_s_fem_interface():
     fem = SimpleNamespace(nodes={"Position": MESH.nodes}, elements=[{"Name": "bush", "Hex20": MESH.elements}])
     assert np.array_equal(mesh_from_fem(fem, bore_radius=0.225).elements, MESH.elements)
     fem.elements.append({"Name": "lug", "Tet10": np.zeros((1, 10), dtype=int)})
-    with pytest.raises(InputError, match=r"Hex20 elements only, got \['Hex20', 'Tet10'\]"):
+    with pytest.raises(InputError, match=r"must hold Hex20 or Tet10 elements, of one kind, got \['Hex20', 'Tet10'\]"):
         mesh_from_fem(fem, bore_radius=0.225)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from exudyn_ehd.solid.hex20 import EDGES, GAUSS8, GAUSS27, IRONS14, NODES, shape_functions, shape_gradients
+from exudyn_ehd.solid.elements.hex20 import EDGES, GAUSS8, GAUSS27, IRONS14, NODES, shapes
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
@@ -43,7 +43,7 @@ def readable_force(solid, u):
     force = np.zeros_like(u)
     for nodes in solid.mesh.elements:
         for point, weight in zip(solid.quadrature.points, solid.quadrature.weights, strict=True):
-            natural = shape_gradients(point)[0]
+            natural = shapes(point)[1][0]
             jacobian = solid.mesh.nodes[nodes].T @ natural
             G = natural @ np.linalg.inv(jacobian)
             F = np.eye(3) + u[nodes].T @ G
@@ -214,7 +214,7 @@ def test_damped_tangent_is_exact_in_the_rate():
 
 def test_shape_functions_carry_the_isoparametric_map():
     nodes = SMALL.nodes[SMALL.elements[0]]
-    assert np.allclose(shape_functions(np.zeros(3)) @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
+    assert np.allclose(shapes(np.zeros(3))[0] @ nodes, (nodes[8:].sum(axis=0) - nodes[:8].sum(axis=0)) / 4)
 
 
 @pytest.mark.parametrize(

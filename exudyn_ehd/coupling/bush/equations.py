@@ -224,8 +224,9 @@ class BushEquations:
     def _follower_places(self) -> list[np.ndarray]:
         result = []
         for pressure in self._followers:
-            dofs = (3 * pressure.surface.faces[:, :, None] + np.arange(3)).reshape(-1, 24)
-            rows, columns = np.repeat(dofs, 24, axis=1), np.tile(dofs, (1, 24))
+            size = 3 * pressure.surface.faces.shape[1]
+            dofs = (3 * pressure.surface.faces[:, :, None] + np.arange(3)).reshape(-1, size)
+            rows, columns = np.repeat(dofs, size, axis=1), np.tile(dofs, (1, size))
             result.append(self.solid.pattern.places(rows, columns))
         return result
 

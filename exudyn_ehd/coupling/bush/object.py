@@ -20,8 +20,8 @@ from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.resolve import resolve
-from exudyn_ehd.coupling.record.display import FACE_TRIANGLES
 from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.loads import Load
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.solid.stress import StressRecovery
@@ -401,7 +401,7 @@ def _add_object(
 
 
 def _triangles(mesh: BushMesh, numbers: np.ndarray) -> np.ndarray:
-    """Triangles of the boundary in the object's own node numbers, shape (m, 3): six for every 8-node face."""
+    """Triangles of the boundary in the object's own node numbers, shape (m, 3)."""
     own = np.cumsum(numbers >= 0) - 1
     faces = mesh.boundary[(numbers[mesh.boundary] >= 0).all(axis=1)]
-    return own[faces[:, FACE_TRIANGLES].reshape(-1, 3)]
+    return own[faces[:, face_of(faces).triangles].reshape(-1, 3)]

@@ -17,13 +17,12 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
 from exudyn_ehd.coupling.record.element import Element
+from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.status import Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
 EDGE = [0.0, 0.0, 0.0, 1.0]
 BUSH = [0.72, 0.74, 0.78, 0.35]
-# Triangles of an 8-node face.
-FACE_TRIANGLES = np.array([(0, 4, 7), (4, 1, 5), (5, 2, 6), (6, 3, 7), (4, 5, 7), (5, 6, 7)])
 
 
 class FilmDisplay:
@@ -91,7 +90,7 @@ class FilmDisplay:
         if self.bush is not None:
             mesh = model.bore.modes.mesh
             moved = (mesh.nodes + self.bush) @ frame[:, :3].T + frame[:, 3]
-            triangles = mesh.boundary[:, FACE_TRIANGLES].reshape(-1, 3)
+            triangles = mesh.boundary[:, face_of(mesh.boundary).triangles].reshape(-1, 3)
             data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=BUSH))
         return data
 

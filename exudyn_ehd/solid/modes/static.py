@@ -216,6 +216,7 @@ def _with_body_forces(bush: ModalBush, modes: BoreModes, content: bytes) -> Bore
 def _content(bush: ModalBush, mesh: BushMesh) -> bytes:
     """Everything that determines the modes."""
     material, quadrature = bush.material, bush.quadrature
+    assert quadrature is not None
     described = (FORMAT, material.youngs_modulus, material.poisson_ratio, bush.tolerance, bush.tilted)
     search = (LARGEST_WAVE, LARGEST_AXIAL, DEPENDENT)
     samples = (SAMPLE_ECCENTRICITIES, SAMPLE_DIRECTIONS, SAMPLE_TILTS, SAMPLE_DECAY, AXIAL_FROM)

@@ -13,7 +13,9 @@ from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 from rods import ARM, RING
 
 import exudyn_ehd as ehd
+from tests.solid_tetrahedra import tet_mesh
 
+TETS = tet_mesh(dataclasses.replace(RING, circumferential=12))
 NODAL = ehd.ANCFBush(mesh=RING, material=STEEL)
 MODAL = ehd.ModalBush(mesh=RING, material=STEEL, tolerance=0.2, tilted=False)
 BUSHES = {
@@ -22,6 +24,8 @@ BUSHES = {
     "modal": MODAL,
     "dynamic": dataclasses.replace(MODAL, dynamics=True),
     "nodal": NODAL,
+    "modal tetrahedra": dataclasses.replace(MODAL, mesh=TETS, quadrature=None),
+    "nodal tetrahedra": dataclasses.replace(NODAL, mesh=TETS, quadrature=None),
 }
 JOURNAL = InertiaCylinder(7800, 0.3, 0.03, 2)
 BUSH_MASS = float(NODAL.solid(NODAL.build_mesh()).scalar_mass.sum())

@@ -10,12 +10,12 @@ from scipy.optimize import brentq
 from scipy.special import j1, jvp, y1, yvp
 
 from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.hex20 import GAUSS27, shape_functions
+from exudyn_ehd.solid.elements.hex20 import GAUSS27, HEX20, shapes
 from exudyn_ehd.solid.loads import pressure_loads
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.solid.static_equilibrium import held_stiffness
-from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange, reference_gradients
+from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff, TotalLagrange
 from exudyn_ehd.status import InputError
 from tests.solid_vibrations import eigenfrequencies
 
@@ -73,8 +73,8 @@ def test_mass_is_that_of_the_mesh(modes):
     """Phi^T M Phi by a quadrature of its own: the kinetic energy of random rates, 27 points per element."""
     rate = np.random.default_rng(1).normal(size=modes.count)
     v = np.tensordot(rate, modes.displacements, 1)[modes.mesh.elements]
-    _, weight = reference_gradients(modes.mesh.nodes[modes.mesh.elements], GAUSS27)
-    at_points = np.einsum("qa,eai->eqi", shape_functions(GAUSS27.points), v)
+    _, weight = HEX20.reference_gradients(modes.mesh.nodes[modes.mesh.elements], GAUSS27)
+    at_points = np.einsum("qa,eai->eqi", shapes(GAUSS27.points)[0], v)
     energy = 0.5 * 7800.0 * np.einsum("eq,eqi,eqi->", weight, at_points, at_points)
     assert 0.5 * rate @ modes.mass @ rate == pytest.approx(energy, rel=1e-10)
 
@@ -150,8 +150,8 @@ def test_disk_keeps_mass_by_density(monkeypatch, tmp_path):
 def inertia_load(mesh, a, alpha, omega):
     """Nodal forces (3 n,) of -rho (a + alpha x X + omega x (omega x X)), 27 points per element."""
     X = mesh.nodes[mesh.elements]
-    _, weight = reference_gradients(X, GAUSS27)
-    N = shape_functions(GAUSS27.points)
+    _, weight = HEX20.reference_gradients(X, GAUSS27)
+    N = shapes(GAUSS27.points)[0]
     x = np.einsum("qa,eai->eqi", N, X)
     force = -STEEL.density * (a + np.cross(alpha, x) + np.cross(omega, np.cross(omega, x)))
     out = np.zeros_like(mesh.nodes)

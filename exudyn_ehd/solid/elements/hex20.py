@@ -19,9 +19,9 @@ rule           force  tangent  displacement error
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from exudyn_ehd.solid.elements.element import Element, Quadrature
 
 NODES = np.array(
     [
@@ -56,31 +56,6 @@ FACES = np.array(
 )
 """Faces xi = -1, +1, eta = -1, +1, zeta = -1, +1 as 8-node quadrilaterals whose normal x_,r × x_,s points outward."""
 
-FACE_NODES = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1), (0, -1), (1, 0), (0, 1), (-1, 0)], dtype=float)
-"""Natural coordinates (r, s) of the nodes of an 8-node face, shape (8, 2)."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Quadrature:
-    """Integration rule on the cube [-1, 1]^3.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 3)
-        Natural coordinates.
-    weights : ndarray, shape (n,)
-        Weights; their sum is 8, the volume of the cube.
-    degree : int
-        Highest total degree of polynomials integrated exactly.
-    """
-
-    points: np.ndarray
-    weights: np.ndarray
-    degree: int
-
-    def __repr__(self) -> str:
-        return f"Quadrature({len(self.weights)} points, degree {self.degree})"
-
 
 def gauss_cube(n: int) -> Quadrature:
     """Return the tensor product of the n-point Gauss-Legendre rule, exact for degree 2 n - 1 in each direction."""
@@ -110,8 +85,8 @@ GAUSS8 = gauss_cube(2)
 """Reduced integration: cheapest and softest. Needs two rows of elements along or across the wall."""
 
 
-def shape_functions(points: np.ndarray) -> np.ndarray:
-    """Return N_a at natural coordinates.
+def shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return N_a and their gradients at natural coordinates.
 
     Parameters
     ----------
@@ -119,19 +94,12 @@ def shape_functions(points: np.ndarray) -> np.ndarray:
 
     Returns
     -------
-    ndarray, shape (n, 20)
+    value : ndarray, shape (n, 20)
         Corners: N = 1/8 (1 + x)(1 + y)(1 + z)(x + y + z - 2) with x = xi xi_a and so on; mid-edge nodes:
         N = 1/4 (1 - xi^2)(1 + y)(1 + z) for an edge along xi, and its permutations.
+    gradient : ndarray, shape (n, 20, 3)
     """
-    return _shapes(np.atleast_2d(points))[0]
-
-
-def shape_gradients(points: np.ndarray) -> np.ndarray:
-    """Return dN_a / d(xi, eta, zeta), shape (n, 20, 3), at natural coordinates of shape (n, 3)."""
-    return _shapes(np.atleast_2d(points))[1]
-
-
-def _shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    points = np.atleast_2d(points)
     count = len(points)
     value = np.empty((count, 20))
     gradient = np.empty((count, 20, 3))
@@ -155,48 +123,19 @@ def _shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return value, gradient
 
 
-def face_shapes(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the shape functions of the 8-node face and their gradients.
-
-    Parameters
-    ----------
-    points : ndarray, shape (n, 2)
-        Natural coordinates (r, s) on the face.
-
-    Returns
-    -------
-    value : ndarray, shape (n, 8)
-    gradient : ndarray, shape (n, 8, 2)
-    """
-    points = np.atleast_2d(points)
-    r, s = points.T
-    value = np.empty((len(points), 8))
-    gradient = np.empty((len(points), 8, 2))
-    for a, (ra, sa) in enumerate(FACE_NODES):
-        if a < 4:
-            value[:, a] = (1 + r * ra) * (1 + s * sa) * (r * ra + s * sa - 1) / 4
-            gradient[:, a, 0] = ra * (1 + s * sa) * (2 * r * ra + s * sa) / 4
-            gradient[:, a, 1] = sa * (1 + r * ra) * (r * ra + 2 * s * sa) / 4
-        elif ra == 0:
-            value[:, a] = (1 - r**2) * (1 + s * sa) / 2
-            gradient[:, a, 0] = -r * (1 + s * sa)
-            gradient[:, a, 1] = sa * (1 - r**2) / 2
-        else:
-            value[:, a] = (1 - s**2) * (1 + r * ra) / 2
-            gradient[:, a, 0] = ra * (1 - s**2) / 2
-            gradient[:, a, 1] = -s * (1 + r * ra)
-    return value, gradient
-
-
-def face_gauss(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points (n*n, 2) and weights (n*n,) of the n x n Gauss rule on a face."""
-    x, w = np.polynomial.legendre.leggauss(n)
-    points = np.stack(np.meshgrid(x, x, indexing="ij"), axis=-1).reshape(-1, 2)
-    return points, np.einsum("i,j->ij", w, w).ravel()
-
-
-def boundary_faces(elements: np.ndarray) -> np.ndarray:
-    """Faces (f, 8) of 20-node hexahedra that belong to one element only."""
-    faces = elements[:, FACES].reshape(-1, 8)
-    _, index, count = np.unique(np.sort(faces[:, :4], axis=1), axis=0, return_index=True, return_counts=True)
-    return faces[np.sort(index[count == 1])]
+HEX20 = Element(
+    name="20-node hexahedra",
+    abaqus=("C3D20", "C3D20R", "C3D20H", "C3D20RH"),
+    meshio="hexahedron20",
+    fem="Hex20",
+    nodes=NODES,
+    edges=EDGES,
+    faces=FACES,
+    shapes=shapes,
+    rules={"IRONS14": IRONS14, "GAUSS27": GAUSS27, "GAUSS8": GAUSS8},
+    exact=GAUSS27,
+    sampling=GAUSS8,
+    # trilinear
+    extrapolation=np.prod(1 + 3 * GAUSS8.points[None, :, :] * NODES[:, None, :], axis=2) / 8,
+)
+"""The element."""

@@ -1,5 +1,7 @@
 """Compiled loops of the total Lagrangian element: force and tangent.
 
+Every element has n nodes; n is the length of the tuple ``size``, and so known when a kernel is compiled for it.
+
 Legend: u, v nodal displacement and velocity; G gradients dN_a/dX of the shape functions at the quadrature points; w
 volume weights (weight times det dX/dxi); F deformation gradient; E Green-Lagrange strain; S second, P = F S first
 Piola-Kirchhoff stress; lam, mu Lamé's constants; g = F G; C = F F^T; h = F^-T G; J = det F.
@@ -33,12 +35,13 @@ class Law(NamedTuple):
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _gradient(nodal, Gq, F_out):
-    """F_out[i, j] = sum_a nodal[i, a] Gq[j, a]; nodal (3, 20), Gq (3, 20), F_out (3, 3)."""
+def _gradient(nodal, Gq, size, F_out):
+    """F_out[i, j] = sum_a nodal[i, a] Gq[j, a]; nodal (3, n), Gq (3, n), F_out (3, 3)."""
+    n = len(size)
     for i in range(3):
         for j in range(3):
             total = 0.0
-            for a in range(20):
+            for a in range(n):
                 total += nodal[i, a] * Gq[j, a]
             F_out[i, j] = total
 
@@ -92,26 +95,28 @@ def _second_piola(H, Ht, law, S_out):
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _element_force(G, w, nodes, u, v, law, work, f_out):
-    """Add f_a = sum_q w P G_a of one element to f_out (n, 3); G (nq, 3, 20), work (60 + 60 + 60 + 45,)."""
-    ue = work[:60].reshape(3, 20)
-    ve = work[60:120].reshape(3, 20)
-    fe = work[120:180].reshape(3, 20)
-    H = work[180:189].reshape(3, 3)
-    Ht = work[189:198].reshape(3, 3)
-    S = work[198:207].reshape(3, 3)
-    P = work[207:216].reshape(3, 3)
-    T = work[216:225].reshape(3, 3)
-    for a in range(20):
+def _element_force(G, w, nodes, size, u, v, law, work, f_out):
+    """Add f_a = sum_q w P G_a of one element to f_out; G (nq, 3, n), work (9 n + 45,)."""
+    n = len(size)
+    ue = work[: 3 * n].reshape(3, n)
+    ve = work[3 * n : 6 * n].reshape(3, n)
+    fe = work[6 * n : 9 * n].reshape(3, n)
+    rest = work[9 * n :]
+    H = rest[:9].reshape(3, 3)
+    Ht = rest[9:18].reshape(3, 3)
+    S = rest[18:27].reshape(3, 3)
+    P = rest[27:36].reshape(3, 3)
+    T = rest[36:45].reshape(3, 3)
+    for a in range(n):
         for i in range(3):
             ue[i, a] = u[nodes[a], i]
             fe[i, a] = 0.0
             if law.beta != 0.0:
                 ve[i, a] = v[nodes[a], i]
     for q in range(len(w)):
-        _gradient(ue, G[q], H)
+        _gradient(ue, G[q], size, H)
         if law.beta != 0.0:
-            _gradient(ve, G[q], Ht)
+            _gradient(ve, G[q], size, Ht)
         _second_piola(H, Ht, law, S)
         for i in range(3):
             for j in range(3):
@@ -124,16 +129,16 @@ def _element_force(G, w, nodes, u, v, law, work, f_out):
                     P[i, j] += w[q] * (law.mu * shear + log * T[i, j])
         for i in range(3):
             p0, p1, p2 = P[i, 0], P[i, 1], P[i, 2]
-            for a in range(20):
+            for a in range(n):
                 fe[i, a] += p0 * G[q, 0, a] + p1 * G[q, 1, a] + p2 * G[q, 2, a]
-    for a in range(20):
+    for a in range(n):
         for i in range(3):
             f_out[nodes[a], i] += fe[i, a]
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _element_tangent(G, w, nodes, u, v, law, geometric, material, work, K):
-    """Six blocks 00, 11, 22, 01, 02, 12 of the element tangent into K (6, 20, 20).
+def _element_tangent(G, w, nodes, size, u, v, law, geometric, material, work, K):
+    """Six blocks 00, 11, 22, 01, 02, 12 of the element tangent into K (6, n, n).
 
     St. Venant-Kirchhoff, from the variation of f_a = w F S G_a:
 
@@ -142,14 +147,16 @@ def _element_tangent(G, w, nodes, u, v, law, geometric, material, work, K):
     Neo-Hooke: ``w geometric [mu (G_a G_b) I + lam h_a h_b^T + (mu - lam ln J) h_b h_a^T]``, and of the viscosity the
     formula above. The other three blocks are transposes, since K is symmetric.
     """
-    ue = work[:60].reshape(3, 20)
-    ve = work[60:120].reshape(3, 20)
-    g = work[120:180].reshape(3, 20)
-    H = work[180:189].reshape(3, 3)
-    Ht = work[189:198].reshape(3, 3)
-    S = work[198:207].reshape(3, 3)
-    T = work[207:216].reshape(3, 3)
-    for a in range(20):
+    n = len(size)
+    ue = work[: 3 * n].reshape(3, n)
+    ve = work[3 * n : 6 * n].reshape(3, n)
+    g = work[6 * n : 9 * n].reshape(3, n)
+    rest = work[9 * n :]
+    H = rest[:9].reshape(3, 3)
+    Ht = rest[9:18].reshape(3, 3)
+    S = rest[18:27].reshape(3, 3)
+    T = rest[27:36].reshape(3, 3)
+    for a in range(n):
         for i in range(3):
             ue[i, a] = u[nodes[a], i]
             if law.beta != 0.0:
@@ -157,38 +164,39 @@ def _element_tangent(G, w, nodes, u, v, law, geometric, material, work, K):
     K[:] = 0.0
     viscous = material - geometric if law.neo_hooke else material
     for q in range(len(w)):
-        _gradient(ue, G[q], H)
+        _gradient(ue, G[q], size, H)
         if law.beta != 0.0:
-            _gradient(ve, G[q], Ht)
+            _gradient(ve, G[q], size, Ht)
         if law.neo_hooke:
             log = law.lam * _inverse_transposed(H, T)
             for i in range(3):
-                for a in range(20):
+                for a in range(n):
                     g[i, a] = T[i, 0] * G[q, 0, a] + T[i, 1] * G[q, 1, a] + T[i, 2] * G[q, 2, a]
                 for j in range(3):
                     S[i, j] = law.mu if i == j else 0.0
             T[:] = 0.0
             wg = w[q] * geometric
-            _add_blocks(G[q], g, S, T, wg, wg * law.lam, wg * (law.mu - log), K)
+            _add_blocks(G[q], g, S, T, wg, wg * law.lam, wg * (law.mu - log), size, K)
             if law.beta == 0.0 and viscous == 0.0:
                 continue
         _second_piola(H, Ht, law, S)
         for i in range(3):
             H[i, i] += 1.0
-            for a in range(20):
+            for a in range(n):
                 g[i, a] = H[i, 0] * G[q, 0, a] + H[i, 1] * G[q, 1, a] + H[i, 2] * G[q, 2, a]
         for i in range(3):
             for j in range(3):
                 T[i, j] = H[i, 0] * H[j, 0] + H[i, 1] * H[j, 1] + H[i, 2] * H[j, 2]
         wv = w[q] * viscous
-        _add_blocks(G[q], g, S, T, w[q] * geometric, wv * law.lam, wv * law.mu, K)
+        _add_blocks(G[q], g, S, T, w[q] * geometric, wv * law.lam, wv * law.mu, size, K)
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _add_blocks(G, g, S, C, wg, wl, wm, K):
-    """Add ``wg (G_a S G_b) I + wl g_a g_b^T + wm (g_b g_a^T + (G_a G_b) C)`` to K (6, 20, 20)."""
+def _add_blocks(G, g, S, C, wg, wl, wm, size, K):
+    """Add ``wg (G_a S G_b) I + wl g_a g_b^T + wm (g_b g_a^T + (G_a G_b) C)`` to K (6, n, n)."""
+    n = len(size)
     C00, C11, C22, C01, C02, C12 = C[0, 0], C[1, 1], C[2, 2], C[0, 1], C[0, 2], C[1, 2]
-    for a in range(20):
+    for a in range(n):
         G0, G1, G2 = G[0, a], G[1, a], G[2, a]
         s0 = wg * (S[0, 0] * G0 + S[0, 1] * G1 + S[0, 2] * G2)
         s1 = wg * (S[0, 1] * G0 + S[1, 1] * G1 + S[1, 2] * G2)
@@ -197,7 +205,7 @@ def _add_blocks(G, g, S, C, wg, wl, wm, K):
         l0, l1, l2 = wl * g[0, a], wl * g[1, a], wl * g[2, a]
         t0, t1 = wm * g[0, a], wm * g[1, a]
         t2 = wm * g[2, a]
-        for b in range(20):
+        for b in range(n):
             s = s0 * G[0, b] + s1 * G[1, b] + s2 * G[2, b]
             d = m0 * G[0, b] + m1 * G[1, b] + m2 * G[2, b]
             K[0, a, b] += s + d * C00 + (l0 + t0) * g[0, b]
@@ -209,16 +217,17 @@ def _add_blocks(G, g, S, C, wg, wl, wm, K):
 
 
 @njit(cache=True)
-def smallest_volume_ratio(G, elements, u):
+def smallest_volume_ratio(G, elements, size, u):
     """Smallest det F at the quadrature points, and the row of ``elements`` where it is."""
+    n = len(size)
     least, where = np.inf, 0
-    nodal, H = np.empty((3, 20)), np.empty((3, 3))
+    nodal, H = np.empty((3, n)), np.empty((3, 3))
     for e in range(len(elements)):
-        for a in range(20):
+        for a in range(n):
             for i in range(3):
                 nodal[i, a] = u[elements[e, a], i]
         for q in range(G.shape[1]):
-            _gradient(nodal, G[e, q], H)
+            _gradient(nodal, G[e, q], size, H)
             ratio = 1.0 + _volume_change(H)
             if not ratio >= least:
                 least, where = ratio, e
@@ -226,11 +235,12 @@ def smallest_volume_ratio(G, elements, u):
 
 
 @njit(cache=True, inline="always")
-def _scatter(K, nodes, stride, slot, data_out):
+def _scatter(K, nodes, size, stride, slot, data_out):
     """Add an element's blocks to CSR values; slot[a, b] is entry (3 I, 3 J), the next row of node I is stride[I] on."""
-    for a in range(20):
+    n = len(size)
+    for a in range(n):
         row = stride[nodes[a]]
-        for b in range(20):
+        for b in range(n):
             p = slot[a, b]
             data_out[p] += K[0, a, b]
             data_out[p + 1] += K[3, a, b]
@@ -246,63 +256,65 @@ def _scatter(K, nodes, stride, slot, data_out):
 
 
 @njit(cache=True, fastmath=FAST)
-def force_serial(G, w, elements, u, v, law, f_out):
+def force_serial(G, w, elements, size, u, v, law, f_out):
     """Internal force of all elements.
 
     Parameters
     ----------
-    G : (m, nq, 3, 20) [1/m]; w : (m, nq) [m^3]; elements : (m, 20); u, v : (n, 3) [m], [m/s]
+    G : (m, nq, 3, n) [1/m]; w : (m, nq) [m^3]; elements : (m, n)
+    size : tuple of n entries
+    u, v : (nodes, 3) [m], [m/s]
     law : Law
-    f_out : (n, 3) [N], overwritten
+    f_out : (nodes, 3) [N], overwritten
     """
     f_out[:] = 0.0
-    work = np.empty(225)
+    work = np.empty(9 * len(size) + 45)
     for e in range(len(elements)):
-        _element_force(G[e], w[e], elements[e], u, v, law, work, f_out)
+        _element_force(G[e], w[e], elements[e], size, u, v, law, work, f_out)
 
 
 @njit(cache=True, fastmath=FAST, parallel=True)
-def force_parallel(G, w, elements, colours, u, v, law, f_out):
+def force_parallel(G, w, elements, colours, size, u, v, law, f_out):
     """`force_serial` on several threads; elements colours[c] to colours[c + 1] share no node."""
     f_out[:] = 0.0
     for c in range(len(colours) - 1):
         first, count = colours[c], colours[c + 1] - colours[c]
         chunks = min(count, 8)
         for chunk in prange(chunks):
-            work = np.empty(225)
+            work = np.empty(9 * len(size) + 45)
             for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
-                _element_force(G[e], w[e], elements[e], u, v, law, work, f_out)
+                _element_force(G[e], w[e], elements[e], size, u, v, law, work, f_out)
 
 
 @njit(cache=True, fastmath=FAST)
-def tangent_serial(G, w, elements, u, v, law, geometric, material, stride, slot, data_out):
+def tangent_serial(G, w, elements, size, u, v, law, geometric, material, stride, slot, data_out):
     """Tangent of all elements as values of a fixed CSR pattern.
 
     Parameters
     ----------
-    G, w, elements, u, v, law : as in `force_serial`
+    G, w, elements, size, u, v, law : as in `force_serial`
     geometric, material : factors of the two parts of the tangent
-    stride : (n,) entries per matrix row of each node; slot : (m, 20, 20) entry (3 I, 3 J) of each node pair
+    stride : (nodes,) entries per matrix row of each node; slot : (m, n, n) entry (3 I, 3 J) of each node pair
     data_out : (nnz,) [N/m], overwritten
     """
     data_out[:] = 0.0
-    work = np.empty(216)
-    K = np.empty((6, 20, 20))
+    work = np.empty(9 * len(size) + 36)
+    K = np.empty((6, len(size), len(size)))
     for e in range(len(elements)):
-        _element_tangent(G[e], w[e], elements[e], u, v, law, geometric, material, work, K)
-        _scatter(K, elements[e], stride, slot[e], data_out)
+        _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
+        _scatter(K, elements[e], size, stride, slot[e], data_out)
 
 
 @njit(cache=True, fastmath=FAST, parallel=True)
-def tangent_parallel(G, w, elements, colours, u, v, law, geometric, material, stride, slot, data_out):
+def tangent_parallel(G, w, elements, colours, size, u, v, law, geometric, material, stride, slot, data_out):
     """`tangent_serial` on several threads; elements colours[c] to colours[c + 1] share no node."""
     data_out[:] = 0.0
     for c in range(len(colours) - 1):
         first, count = colours[c], colours[c + 1] - colours[c]
         chunks = min(count, 8)
         for chunk in prange(chunks):
-            work = np.empty(216)
-            K = np.empty((6, 20, 20))
+            work = np.empty(9 * len(size) + 36)
+            K = np.empty((6, len(size), len(size)))
             for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
-                _element_tangent(G[e], w[e], elements[e], u, v, law, geometric, material, work, K)
-                _scatter(K, elements[e], stride, slot[e], data_out)
+                _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
+                _scatter(K, elements[e], size, stride, slot[e], data_out)

@@ -1,0 +1,11 @@
+"""The elements of a bush and what is common to them; kernels take them as arrays.
+
+Module map
+----------
+element   `Element`, what a kind is described by; `Quadrature`
+faces     kinds of element faces: shape functions, quadratures, outlines
+hex20     the 20-node hexahedron
+tet10     the 10-node tetrahedron
+kinds     which element a connectivity has; its boundary
+kernels   compiled loops over elements: force and tangent
+"""

@@ -1,0 +1,55 @@
+"""Hollow cylinders of 10-node tetrahedra, and Abaqus input files of them."""
+
+from itertools import permutations
+
+import numpy as np
+
+import exudyn_ehd as ehd
+from exudyn_ehd.solid.elements.tet10 import EDGES
+
+# Corners of a hexahedron by their bits (radial, around, along).
+CORNERS = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+
+
+def six_tetrahedra():
+    """Corner numbers (6, 4) of the tetrahedra about a hexahedron's diagonal 0-6, right-handed."""
+    result = []
+    for order in permutations(range(3)):
+        path = [(0, 0, 0)]
+        for axis in order:
+            path.append(tuple(b + (i == axis) for i, b in enumerate(path[-1])))
+        corners = [CORNERS.index(bits) for bits in path]
+        if np.linalg.det(np.diff(np.array(path), axis=0)) < 0:
+            corners[1], corners[2] = corners[2], corners[1]
+        result.append(corners)
+    return np.array(result)
+
+
+def tetrahedra(cylinder):
+    """Nodes (n, 3) and elements (m, 10): every hexahedron of a cylinder split into six; all mid nodes on cylinders."""
+    mesh = cylinder.mesh()
+    corners = mesh.elements[:, :8][:, six_tetrahedra()].reshape(-1, 4)
+    used, corners = np.unique(corners, return_inverse=True)
+    corners, nodes = corners.reshape(-1, 4), mesh.nodes[used]
+    pairs, place = np.unique(np.sort(corners[:, EDGES[:, :2]].reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    r, z = np.hypot(nodes[:, 0], nodes[:, 1])[pairs].mean(axis=1), nodes[pairs, 2].mean(axis=1)
+    chord = nodes[pairs, :2].mean(axis=1)
+    chord *= (r / np.linalg.norm(chord, axis=1))[:, None]
+    elements = np.concatenate([corners, len(nodes) + place.reshape(-1, 6)], axis=1)
+    return np.concatenate([nodes, np.column_stack([chord, z])]), elements
+
+
+def tet_mesh(cylinder):
+    """The same as a bush mesh."""
+    nodes, elements = tetrahedra(cylinder)
+    return ehd.mesh_from_arrays(nodes, elements, bore_radius=cylinder.inner_radius)
+
+
+def node_lines(nodes):
+    """Data lines of *Node, numbers from 1."""
+    return [f"{i + 1}, {', '.join(f'{c:.16g}' for c in x)}" for i, x in enumerate(nodes)]
+
+
+def element_lines(elements, first=1):
+    """Data lines of *Element."""
+    return [", ".join(map(str, [first + i, *(element + 1)])) for i, element in enumerate(elements)]
