@@ -13,7 +13,7 @@ MATTERS, NOTHING = 0.1, 0.025
 def score(numbers):
     """By effect: verdicts on changes above 10 % and below 2.5 %, True where the audit says that it matters."""
     said = collections.defaultdict(lambda: ([], []))
-    for number in numbers:
+    for number in filter(SCENES.__getitem__, numbers):
         verdicts = truths.flagged(truths.draw(number))
         for effect, change in SCENES[number].items():
             if change is not None and not NOTHING <= change <= MATTERS:
