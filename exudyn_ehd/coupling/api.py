@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, cast, overload
 
@@ -29,7 +30,7 @@ from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
-from exudyn_ehd.status import InputError, Status, require_bool, require_type, require_vector
+from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
 if TYPE_CHECKING:
     from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -170,6 +171,26 @@ class LubricatedJoint(JointResults):
         `MemoryWarning`.
         """
         self.element.steps.forget()
+
+    def stop_at(self, *, force: float = math.inf, pressure: float = math.inf) -> None:
+        """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
+
+        Without it runs end where the film is none: peak pressures beyond 90 GPa, rigid surfaces pressed through each
+        other by more than the clearance, forces that alternate at many times what they move and carry. Steps beyond 3
+        GPa, or 1 GPa on the projected area, give an `OverloadWarning`.
+
+        Parameters
+        ----------
+        force : float
+            Largest force of film and contact, N.
+        pressure : float
+            Largest peak pressure of the film, Pa.
+        """
+        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
+            if value != math.inf:
+                require_number(f"LubricatedJoint.stop_at: {name}", value, unit, above=0.0)
+        failures = self.element.failures
+        failures.largest_force, failures.largest_pressure = force, pressure
 
     def restore_state(self, state: JointState) -> None:
         """Let the next run go on with the memory of a state, and with its record if it starts at its time.

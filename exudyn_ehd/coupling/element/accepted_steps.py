@@ -287,9 +287,11 @@ class AcceptedSteps:
         if self._ringing is not None:
             assert trial.evaluation is not None
             x, y = trial.evaluation.wrench[:2].tolist()
-            if self._ringing.take(start, x, y):
-                watch, self._ringing = self._ringing, None
-                ringing.warn(failures.name, watch, starts_well=self.in_own_run)
+            rang = self._ringing.rings
+            if self._ringing.take(start, x, y) and not rang:
+                ringing.warn(failures.name, self._ringing, starts_well=self.in_own_run)
+            if self._ringing.throws:
+                raise failures.thrown(start, trial, *self._ringing.worst)
         if self._chatter is not None and self._chatter.sees_chatter(start, trial.motion):
             raise failures.chatter(start, trial, step=step, miss=self._chatter.error)
 

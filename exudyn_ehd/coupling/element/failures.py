@@ -32,11 +32,17 @@ class Failures:
     name : str
         Of the joint.
     bearing : JournalBearing
+
+    Attributes
+    ----------
+    largest_force, largest_pressure : float
+        Beyond which an accepted step ends the run, N and Pa; infinite unless the user says so.
     """
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
         self.bore = BoreGap(bearing)
+        self.largest_force = self.largest_pressure = math.inf
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
@@ -78,7 +84,31 @@ class Failures:
         """The state of an accepted step is none of a bearing; None if it is one."""
         if row[PEAK_PRESSURE] > ABSURD * HIGHEST_PEAK:
             return FilmError(self.overloaded(time, row, trial.motion))
-        return self._pressed_through(time, trial)
+        return self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
+
+    def thrown(self, time: float, trial: Trial, force: float, mean: float) -> FilmError:
+        """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
+        return self._at(
+            time,
+            f"the film's force is out of all proportion to the inertia and loads at hand: up to {force:.4g} N, thrown "
+            f"from side to side from step to step, and {mean:.4g} N there in the mean of three steps, which is what "
+            f"moves the bodies and carries their loads; {self._place(trial.motion)}forces and "
+            "pressures of the last steps are the time integration's: use ehd.ConfigureSolver(simulationSettings), or a "
+            "spectral radius of 0.6 or less, ehd.SolveDynamic in place of mbs.SolveDynamic, and more steps until none "
+            "is halved.",
+        )
+
+    def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
+        """The film of an accepted step exceeds what the user allows; None if it does not."""
+        force, peak = float(np.linalg.norm(row[FORCE])), float(row[PEAK_PRESSURE])
+        if not (force > self.largest_force or peak > self.largest_pressure):
+            return None
+        return self._at(
+            time,
+            f"the accepted step has a film beyond the limits of joint.stop_at(force={self.largest_force:g}, "
+            f"pressure={self.largest_pressure:g}): force {force:.4g} N, peak pressure {peak:.4g} Pa; "
+            f"{self._place(trial.motion)}check masses, loads and units, take more steps, or a larger limit.",
+        )
 
     def too_hot(self, time: float, trial: Trial, temperature: float | np.ndarray) -> FilmError:
         """The film's heat has no way out."""

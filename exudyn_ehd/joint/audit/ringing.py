@@ -11,6 +11,12 @@ That alone is no fault: whatever starts suddenly leaves an alternation that gene
 A run that rings is thrown again and again: by steps that were halved, by Newton's method that accepts forces next to
 the solution, by impacts within a single step. So *bursts* are counted: zigzags stronger than the five steps before,
 and alternations that do not fade, once in so many steps.
+
+What a force does to the masses around it, and what it carries of their loads, is its mean over the steps: under
+Newmark's formulas, and those of generalized alpha, places follow ``F_k - d_k / 2``, the mean of (1, 2, 1) / 4 in equal
+steps, to which an alternation adds nothing. The rest is between the film and accelerations that nothing follows. A
+force that is many times that mean *throws* the masses to and fro within the steps: any oscillation of three and more
+steps per period, and a single impact, leave a fourth of it or more.
 """
 
 from __future__ import annotations
@@ -34,6 +40,9 @@ NEGLIGIBLE = 100.0
 STRONGER, KEPT, LASTING, APART = 1.5, 0.75, 20, 5
 # Bursts within so many steps are counted together; a run rings from so many on.
 WINDOW, LIMIT = 100, 4
+# A force is out of all proportion if it is so many times its mean, presses by so many Pa on the projected area, and
+# fades no faster than to this share of the largest one; a run that rings ends at so many of them within the window.
+PROPORTION, HEAVY, STRONG_SHARE, MOST_THROWS = 10.0, 1e6, 0.3, 20
 
 
 class RingingWatch:
@@ -50,21 +59,27 @@ class RingingWatch:
         Most bursts within `WINDOW` steps.
     first, last : float
         Times of the first and the last burst, s; nan without one.
+    rings : bool
+        Whether `LIMIT` or more bursts have lain in the window.
+    worst : (float, float)
+        The largest force out of all proportion, and its mean, N.
     """
 
     def __init__(self, area: float) -> None:
-        self.smallest = NEGLIGIBLE * area
+        self.smallest, self.heavy = NEGLIGIBLE * area, HEAVY * area
         self.begin_anew()
 
     def begin_anew(self) -> None:
         """Forget all steps."""
-        self.most = 0
+        self.most, self.rings = 0, False
         self.first = self.last = math.nan
         # time and force of the last steps; d with its size; sizes before those
         self._states: deque[tuple[float, float, float]] = deque(maxlen=4)
         self._bends: deque[tuple[float, float, float]] = deque([(0.0, 0.0, 0.0)] * 3, maxlen=3)
         self._earlier: deque[float] = deque([0.0] * 5, maxlen=5)
         self._bursts: deque[int] = deque()
+        self._throws: deque[int] = deque([-WINDOW] * MOST_THROWS, maxlen=MOST_THROWS)
+        self.worst = (0.0, 0.0)
         self._step = self._zigzags = 0
         self._largest = self._strength = 0.0
 
@@ -97,6 +112,12 @@ class RingingWatch:
         dx, dy = x_1 - x_2 - share * (x - x_2), y_1 - y_2 - share * (y - y_2)
         self._earlier.append(self._bends[0][2])
         self._bends.append((dx, dy, math.hypot(dx, dy)))
+        force = math.hypot(x_1, y_1)
+        if force > self.heavy and force > STRONG_SHARE * self._largest:
+            mean = math.hypot(x_1 - 0.5 * dx, y_1 - 0.5 * dy)
+            if force > PROPORTION * mean:
+                self._throws.append(self._step)
+                self.worst = max(self.worst, (force, mean))
         if not self._zigzag():
             return False
         self._zigzags += 1
@@ -130,7 +151,13 @@ class RingingWatch:
         self.most = max(self.most, len(bursts))
         self.first = time if math.isnan(self.first) else self.first
         self.last = time
+        self.rings = self.rings or len(bursts) >= LIMIT
         return len(bursts) >= LIMIT
+
+    @property
+    def throws(self) -> bool:
+        """Whether the run rings with forces out of all proportion to what they move and carry."""
+        return self.rings and self._throws[0] > self._step - WINDOW
 
 
 def watched(time: np.ndarray, force: np.ndarray, area: float) -> RingingWatch:

@@ -1,5 +1,6 @@
 """Accepted steps whose film no material bears: warned of by name, time and remedy, and ended where they are absurd."""
 
+import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
@@ -8,6 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.element.failures import ABSURD, HIGHEST_MEAN, HIGHEST_PEAK, Failures
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, make_row
+from exudyn_ehd.joint.audit.ringing import RingingWatch
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.025,
@@ -68,3 +70,82 @@ def test_an_absurd_film_ends_the_run_and_can_be_read(own):
     assert history.peak_pressure[-1] > ABSURD * HIGHEST_PEAK
     assert np.all(history.peak_pressure[:-1] <= ABSURD * HIGHEST_PEAK)
     assert np.all(np.isfinite(history.force))
+
+
+def run_of_forces(force):
+    """A watch that has seen forces (n,), shares of 10 MPa on the projected area, in a fixed direction."""
+    watch = RingingWatch(AREA)
+    for k, share in enumerate(force):
+        watch.take(1e-4 * k, 0.6e7 * AREA * share, -0.8e7 * AREA * share)
+    return watch
+
+
+STEPS = np.arange(400)
+
+
+@pytest.mark.parametrize(
+    ("force", "throws"),
+    [
+        (0.1 + (-1.0) ** STEPS, True),
+        # a force whose mean is half of it, and one that no bearing minds
+        (1.0 + 0.5 * (-1.0) ** STEPS, False),
+        (0.05 * (-1.0) ** STEPS, False),
+        # three steps per period; impacts in single steps; an alternation that fades
+        (0.1 + np.cos(2.0 * np.pi / 3.0 * STEPS), False),
+        (0.02 + 1.0 * (STEPS % 7 == 0), False),
+        (0.02 + (-0.9) ** STEPS, False),
+    ],
+)
+def test_forces_out_of_all_proportion_to_what_they_move(force, throws):
+    watch = run_of_forces(force)
+    assert watch.throws == throws
+    if throws:
+        assert watch.worst == pytest.approx((1.1e7 * AREA, 0.1e7 * AREA))
+
+
+def test_a_run_that_throws_its_film_ends():
+    """A pin shaken to and fro from step to step, as by an integration that rings; at a tenth of the force it may."""
+    step, count = 1e-4, 120
+    for size, ends in ((6e3, True), (0.6e3, False)):
+        mbs, _ = scenes.loaded_journal(BEARING, [0.0, 0.0, 0.0])
+        body = mbs.GetObject(mbs.GetMarker(0)["bodyNumber"])["nodeNumber"]
+        marker = mbs.AddMarker(eii.MarkerNodePosition(nodeNumber=body))
+        mbs.AddLoad(
+            eii.LoadForceVector(
+                markerNumber=marker,
+                loadVectorUserFunction=lambda mbs, t, load, size=size: [
+                    0.0,
+                    size * (0.05 + (-1) ** round(t / step)),
+                    0.0,
+                ],
+            )
+        )
+        mbs.Assemble()
+        settings = ehd.ConfigureSolver(scenes.settings(count * step, count))
+        settings.timeIntegration.adaptiveStep = False
+        with pytest.warns(ehd.RingingWarning):
+            if ends:
+                with pytest.raises(
+                    ehd.FilmError, match=r"'bearing' at t = .* out of all proportion .* spectral radius"
+                ):
+                    ehd.SolveDynamic(mbs, settings)
+            else:
+                ehd.SolveDynamic(mbs, settings)
+
+
+def test_limits_of_the_user_end_a_run():
+    mbs, joint, settings = thrown(1e3)
+    ehd.SolveDynamic(mbs, settings)
+    free = joint.history
+    force, peak = np.linalg.norm(free.force, axis=1), free.peak_pressure
+    for limit, values in (("force", force), ("pressure", peak)):
+        mbs, joint, settings = thrown(1e3)
+        joint.stop_at(**{limit: 0.5 * values.max()})
+        with pytest.raises(ehd.FilmError, match=rf"'bearing' at t = .* beyond the limits of joint.stop_at\(.*{limit}="):
+            ehd.SolveDynamic(mbs, settings)
+        ended = joint.history
+        first = int(np.flatnonzero(values > 0.5 * values.max())[0])
+        np.testing.assert_array_equal(ended.force, free.force[: len(ended.time)])
+        assert ended.time[-1] == free.time[first]
+    with pytest.raises(ehd.InputError, match="stop_at: force"):
+        joint.stop_at(force=-1.0)
