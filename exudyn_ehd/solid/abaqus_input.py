@@ -170,12 +170,17 @@ class _Reader:
                 f"file, got {options.get('PART')!r}; the parts are {sorted(self.parts) or 'none'}."
             )
         part, numbers = parts[name], [[_number(x) for x in row] for row in rows]
+        if [len(row) for row in numbers] not in ([], [3], [3, 7]):
+            raise InputError(
+                f"{self.where}: the instance {options.get('NAME', '')!r} of {self.path.name} must have a line of three "
+                "numbers, its translation (zeros for none), and then one of seven, two points of an axis and degrees."
+            )
         return _Body(
             nodes=dict(part.nodes),
             elements={kind: list(block) for kind, block in part.elements.items()},
             sets={key: list(own) for key, own in part.sets.items()},
             others=set(part.others),
-            translation=[*numbers[0], 0.0, 0.0][:3] if numbers else [],
+            translation=numbers[0] if numbers else [],
             rotation=numbers[1] if len(numbers) > 1 else [],
         )
 
@@ -254,7 +259,8 @@ def _blocks(path: pathlib.Path) -> Iterator[tuple[str, dict[str, str], list[list
             head += line
             continue
         if not line.startswith("*"):
-            rows.append([entry.strip() for entry in line.split(",")])
+            # a comma at the end opens no further entry
+            rows.append([entry.strip() for entry in line.rstrip(", ").split(",")])
             continue
         if head:
             first, *rest = (part.strip() for part in head[1:].split(","))

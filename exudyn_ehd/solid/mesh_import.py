@@ -9,6 +9,7 @@ from typing import Protocol, TypeAlias
 
 import numpy as np
 
+from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.elements.kinds import ELEMENTS, boundary_faces, element_of
 from exudyn_ehd.solid.mesh import BushMesh, frame_of, patch, surface_of
 from exudyn_ehd.status import InputError, require_number, require_numbers, require_vector
@@ -124,7 +125,7 @@ def mesh_from_arrays(
     elements : ndarray of int, shape (m, 20) or (m, 10)
         Hexahedra in the node order of Abaqus C3D20 or tetrahedra in that of C3D10 (VTK's, not Gmsh's), zero-based.
     bore_radius : float
-        Radius [m] of the bore; its corner nodes must lie within 1 % of the radius.
+        Radius [m] of the bore; its corners must lie within 1 % of the radius.
     held : nodes, `OnCylinder`, `OnPlane` or function, optional
         Where the housing holds the bush: the faces all of whose nodes are among these (numbers, or flags of the user's
         nodes), or have the function of positions (n, 3) in the bush frame [m] true. By default every face that belongs
@@ -142,7 +143,8 @@ def mesh_from_arrays(
     Warns
     -----
     UserWarning
-        If held faces reach the bore (a chamfer, a groove, an oil hole), whose edge is then clamped.
+        If held faces reach the bore (a chamfer, a groove, an oil hole), whose edge is then clamped; or if faces are
+        left free of which the corners are held only.
 
     Raises
     ------
@@ -164,7 +166,12 @@ def bush_mesh(
 ) -> BushMesh:
     """What `mesh_from_arrays` does; ``numbers`` (m,) are the elements' own in messages, by default their rows."""
     radius = require_number("mesh_from_arrays bore_radius", bore_radius, "m", above=0.0)
-    nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
+    try:
+        nodes, elements = np.asarray(nodes, dtype=float), np.asarray(elements, dtype=int)
+    except (TypeError, ValueError) as error:
+        raise InputError(
+            f"mesh_from_arrays nodes and elements must be arrays of numbers, all elements of one kind: {error}."
+        ) from None
     if nodes.ndim != 2 or nodes.shape[1] != 3 or elements.ndim != 2 or elements.shape[1] not in (20, 10):
         raise InputError(
             f"mesh_from_arrays nodes and elements must have shapes (n, 3) and (m, 20) or (m, 10), got {nodes.shape} "
@@ -182,7 +189,8 @@ def bush_mesh(
     r, z = np.hypot(nodes[:, 0], nodes[:, 1]), nodes[:, 2]
     flat = 1e-4 * np.ptp(z)
     low, high = z < z.min() + flat, z > z.max() - flat
-    bore = surface_of(nodes, boundary, np.abs(r - radius) < 0.01 * radius)
+    # edges may be straight: the nodes on them then lie off the cylinder
+    bore = patch(nodes, boundary[(np.abs(r - radius) < 0.01 * radius)[_corners(boundary)].all(axis=1)])
     if len(bore.nodes) == 0:
         raise InputError(
             f"mesh_from_arrays bore_radius must be the radius of the bore in m, got {radius:g}; no boundary face lies "
@@ -223,7 +231,14 @@ def _held_faces(
             f"mesh_from_arrays held: the function must give one bool for each of {len(nodes)} nodes, got an array of "
             f"shape {member.shape} and type {member.dtype}."
         )
-    faces = boundary[member[boundary].all(axis=1) & ~whole[-1]]
+    inside = member[boundary].all(axis=1)
+    faces = boundary[inside & ~whole[-1]]
+    if left := np.count_nonzero(member[_corners(boundary)].all(axis=1) & ~np.any([inside, *whole], axis=0)):
+        warnings.warn(
+            f"mesh_from_arrays held: {left} faces have their corners, but not all of their nodes among the held ones, "
+            "and are left free; raise the tolerance (nodes on straight edges lie off a cylinder), or name all nodes.",
+            stacklevel=4,
+        )
     if len(faces) == 0:
         r = np.hypot(nodes[:, 0], nodes[:, 1])
         raise InputError(
@@ -232,6 +247,11 @@ def _held_faces(
             f"{nodes[:, 2].min():g} to {nodes[:, 2].max():g} m in the bush frame. Check units, radius and tolerance."
         )
     return faces
+
+
+def _corners(faces: np.ndarray) -> np.ndarray:
+    """Corners (f, c) of faces (f, a)."""
+    return faces[:, : face_of(faces).corners]
 
 
 def _frame(axis: np.ndarray) -> np.ndarray:

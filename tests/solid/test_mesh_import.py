@@ -1,5 +1,6 @@
 """Bush meshes read from files: Abaqus input as CAD programs write it, and a format of meshio's."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import numpy as np
@@ -156,7 +157,11 @@ def test_several_instances_are_told_apart_by_name(tmp_path):
             ehd.mesh_from_file(path, bore_radius=0.03, instance="bush")
         with pytest.raises(InputError, match=r"of one kind, got \['S3'\]"):
             ehd.mesh_from_file(path, bore_radius=0.03, instance="shell-1")
-    path.write_text(path.read_text().replace("part=LUG", "part=cap"))
+    text = path.read_text()
+    path.write_text(text.replace(", ".join(map(str, SHIFT)) + "\n", ""))
+    with pytest.raises(InputError, match=r"the instance 'left' .* must have a line of three numbers, its translation"):
+        ehd.mesh_from_file(path, bore_radius=0.03, instance="left")
+    path.write_text(text.replace("part=LUG", "part=cap"))
     with pytest.raises(InputError, match=r"instance 'right' .* got 'cap'; the parts are \['bush', 'lug', 'shell'\]"):
         ehd.mesh_from_file(path, bore_radius=0.03)
 
@@ -195,8 +200,24 @@ def test_inverted_tetrahedra_are_named_by_the_file_s_numbers(tmp_path):
             ehd.mesh_from_file(path, bore_radius=0.03)
         with pytest.raises(InputError, match=r"the first is element 5;"):
             ehd.mesh_from_arrays(nodes, wrong, bore_radius=0.03)
+    with pytest.raises(InputError, match="must be arrays of numbers, all elements of one kind"):
+        ehd.mesh_from_arrays(nodes, [*elements.tolist(), MESH.elements[0].tolist()], bore_radius=0.03)
     # Gmsh's order of the last two nodes
     with pytest.raises(InputError, match="48 inverted or degenerate ones"):
         ehd.mesh_from_arrays(nodes, elements[:, [0, 1, 2, 3, 4, 5, 6, 7, 9, 8]], bore_radius=0.03)
     fem = SimpleNamespace(nodes={"Position": nodes}, elements=[{"Name": "bush", "Tet10": elements}])
     np.testing.assert_array_equal(ehd.mesh_from_fem(fem, bore_radius=0.03).elements, TETS.elements)
+
+
+def test_straight_edges_are_faces_of_the_bore_and_held_faces_that_miss_their_middle_nodes_are_counted():
+    """Chords of 17 degrees lie 1.1 % of the radius off the cylinder."""
+    nodes, elements = tetrahedra(dataclasses.replace(CYLINDER, circumferential=32), shift=0.25, straight=True)
+    mesh = ehd.mesh_from_arrays(nodes, elements, bore_radius=0.03)
+    assert len(mesh.bore.faces) == len(mesh.outer.faces) == 64
+    S = mesh.bore.interpolation(np.linspace(-3.0, 3.0, 50), np.linspace(-0.02, 0.02, 50))
+    np.testing.assert_allclose(S.sum(axis=1), 1.0, rtol=0, atol=1e-12)
+    with pytest.warns(UserWarning, match=r"held: \d+ faces have their corners, but not all of their nodes"):
+        part = ehd.mesh_from_arrays(nodes, elements, bore_radius=0.03, held=ehd.OnCylinder(radius=0.04))
+    assert len(part.outer.faces) < 64
+    whole = ehd.mesh_from_arrays(nodes, elements, bore_radius=0.03, held=ehd.OnCylinder(radius=0.04, tolerance=0.02))
+    assert len(whole.outer.faces) == 64

@@ -1,5 +1,6 @@
 """Films kept over a run: which instants, bounded memory, what they hold; their animation and VTK files."""
 
+import dataclasses
 import math
 import sys
 import xml.etree.ElementTree as ET
@@ -15,6 +16,7 @@ from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.pictures import animation
 from exudyn_ehd.status import InputError
 from tests.sampling import sample
+from tests.solid_tetrahedra import tet_mesh
 
 
 @pytest.fixture(scope="module")
@@ -156,6 +158,25 @@ def test_bush_and_film_in_vtk_files(kind, tmp_path):
     stress = solid.point_data["von Mises stress [Pa]"]
     # of the order of the pressure that makes it
     assert 0.2 * film.pressure.max() < stress.max() < 2.0 * film.pressure.max()
+
+
+def test_bush_of_tetrahedra_in_vtk_files_and_the_renderer(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    bush = steel_bush(ehd.ModalBush)
+    mbs, joint = rotor(dataclasses.replace(bush, mesh=tet_mesh(bush.mesh), quadrature=None))
+    joint.record_films(period=1e-3)
+    mbs.Assemble()
+    run(mbs, steps=4)
+    solid = meshio.read(joint.export_vtk(tmp_path / "bearing.pvd")[-1])
+    mesh = joint.bearing.bush.build_mesh()
+    assert solid.cells[0].type == "tetra10"
+    np.testing.assert_array_equal(solid.cells[0].data, mesh.elements)
+    stress, peak = solid.point_data["von Mises stress [Pa]"], joint.films[-1].pressure.max()
+    assert 0.2 * peak < stress.max() < 2.0 * peak
+    scene = mbs.variables["container"].renderer.GetGraphicsData()["triangles"]
+    own = scene["items"][:, 2] == int(joint.objectNumber)
+    n, m = joint.films[-1].pressure.shape
+    assert np.count_nonzero(own) == 2 * n * (m - 1) + 4 * len(mesh.boundary)
 
 
 def test_vtk_of_a_rigid_bearing_at_one_instant(tmp_path):
