@@ -83,6 +83,17 @@ def test_tangent_is_symmetric_and_the_derivative_of_the_force(rule, material):
     assert "has turned inside out" in solid.inversion(crushed)
 
 
+@pytest.mark.slow
+def test_serial_and_parallel_kernels_agree_to_rounding():
+    u, v = np.random.default_rng(10).standard_normal((2, *SMALL.nodes.shape)) * 0.001
+    results = []
+    for parallel in (False, True):
+        solid = TotalLagrange(mesh=SMALL, material=SOFT, parallel=parallel, viscosity_time=1e-3)
+        results.append((solid.force(u, v), solid.tangent_values(u, v)))
+    for serial, parallel in zip(*results, strict=True):
+        assert np.abs(serial - parallel).max() < 1e-14 * np.abs(serial).max()
+
+
 def test_six_rigid_motions_and_no_others_cost_no_energy():
     """Four points leave no mode of a single element without stiffness."""
     nodes = SMALL.nodes[SMALL.elements[0]]

