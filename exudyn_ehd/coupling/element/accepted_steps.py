@@ -110,6 +110,8 @@ class AcceptedSteps:
         Called with every accepted trial that has a film.
     in_own_run : bool
         Whether one of this package's calls of a solver is under way.
+    unseen : int
+        Steps in a row that no solver known has taken.
     """
 
     def __init__(self, film: Film) -> None:
@@ -129,8 +131,7 @@ class AcceptedSteps:
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
-        # steps in a row that no solver known has taken
-        self._unseen = 0
+        self.unseen = 0
         self._thin = -np.inf
         self._told = True
         self._overloaded = False
@@ -162,8 +163,8 @@ class AcceptedSteps:
         # without a stored solver it is the clock put back that tells of a new run
         begins = solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1] or start < self.start
         resumed = begins and self._begin_run(mbs, start, solvers)
-        self._unseen = 0 if begins or not self.is_idle else self._unseen + 1
-        if self._unseen == 2:
+        self.unseen = 0 if begins or not self.is_idle else self.unseen + 1
+        if self.unseen == 2:
             solver_state.warn_unknown(self.film.failures.name)
         if self._uses_memory and self.memory is None:
             self.start = start

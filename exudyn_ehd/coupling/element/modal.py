@@ -22,6 +22,9 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.modes.static import BoreModes
 
+# An explicit solver that is not stored gives itself away by so many steps in a row that it asks at the start of.
+EXPLICIT_STEPS = 3
+
 
 class BoreFilmElement(FilmElement):
     """Film between two sides on a bore with nodes of its own.
@@ -117,6 +120,8 @@ class ModalFilmElement(BoreFilmElement):
         self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
         self._weighed = False
+        # step of a solver unknown that has asked at its start, and how many such steps have followed each other
+        self._asked_at = self._in_a_row = 0
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """As `FilmElement.force`.
@@ -127,8 +132,16 @@ class ModalFilmElement(BoreFilmElement):
         """
         force = super().force(mbs, t, item, q, q_t)
         steps = self.steps
-        if self.is_massless and t == steps.start and not steps.is_idle and solver_state.is_implicit(steps.solver):
+        if not self.is_massless or t != steps.start:
+            return force
+        if not steps.is_idle and solver_state.is_implicit(steps.solver):
             force[self.rigid_size :] = 0.0
+        elif steps.is_idle and steps.unseen != self._asked_at:
+            # explicit solvers ask at the start of every step; one that is not stored can't be known otherwise
+            self._in_a_row = self._in_a_row + 1 if steps.unseen == self._asked_at + 1 else 1
+            self._asked_at = steps.unseen
+            if self._in_a_row == EXPLICIT_STEPS:
+                raise self.failures.no_mass()
         return force
 
     def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:

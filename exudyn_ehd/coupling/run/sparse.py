@@ -129,7 +129,9 @@ def SolveDynamicSparse(
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
     Newton's method starts at lasting accelerations, as in `exudyn_ehd.SolveDynamic`. User functions of the system take
-    part: before and after steps, before residuals, after Newton's method, and what one adds to the Jacobian.
+    part: before and after steps, before residuals, after Newton's method, and what one adds to the Jacobian. In
+    ``mbs.sys['dynamicSolver'].it`` they find ``newtonStepsCount`` and ``newtonJacobiCount`` of the run;
+    ``newtonSteps`` stays 0, since Exudyn's step control, which would read it, judges by the cost of full Newton.
 
     Parameters
     ----------
@@ -239,6 +241,7 @@ class _Newton:
                 # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
             self._update(solver, mbs)
+            solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
             previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
@@ -273,6 +276,7 @@ class _Newton:
             return False
         self.baseline = self.excess = 0
         self.run.jacobians += 1
+        solver.it.newtonJacobiCount += 1
         self.run.factor_bytes = 12 * (self.factor.nnz)
         self.run.seconds_jacobian += time.perf_counter() - start
         return True

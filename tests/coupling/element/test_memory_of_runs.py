@@ -136,3 +136,16 @@ def test_stored_memory_is_taken_at_any_time():
     joint.restore_state(state)
     run(mbs, 7)
     assert joint.history.film_temperature[0] == pytest.approx(state.memory.temperature, rel=1e-9)
+
+
+@pytest.mark.parametrize("what", EFFECTS)
+def test_a_state_stored_behind_a_static_solve_holds_the_film_of_the_run(what):
+    """The static solve fails, since the load has no equilibrium at rest; films are steady in it and learn nothing."""
+    mbs, joint = system(what)
+    run(mbs)
+    expected = memory(joint)
+    settings = ehd.ConfigureSolver(scenes.settings(1, 1))
+    settings.staticSolver.stabilizerODE2term = 1e12
+    with pytest.raises(ehd.EHDError):
+        ehd.SolveStatic(mbs, settings)
+    np.testing.assert_array_equal(memory(joint), expected)

@@ -218,6 +218,20 @@ def test_explicit_solvers_refuse_modes_without_mass(moving):
     assert len(joint.history.time) == 3
 
 
+@pytest.mark.filterwarnings("ignore:.* the solver at work is not in mbs.sys")
+def test_explicit_solvers_that_are_not_stored_end_after_some_steps():
+    """They are known by asking at the start of every step; implicit ones, and looks in between, are none."""
+    mbs, joint = free_pair(BEARING.bush, False)
+    solvers = exu.DynamicSolverType
+    for kind in (solvers.RK44, solvers.DOPRI5, solvers.ExplicitEuler):
+        with pytest.raises(exu.ExudynError) as caught:
+            mbs.SolveDynamic(settings(1e-6, 20), solverType=kind, storeSolver=False)
+        assert isinstance(caught.value.__cause__, ehd.InputError) and len(joint.history.time) < 5
+    for _ in range(5):
+        mbs.SolveDynamic(settings(1e-6, 5), storeSolver=False)
+        mbs.ComputeODE2Eigenvalues(ignoreAlgebraicEquations=True)
+
+
 def test_explicit_solvers_take_modes_with_mass():
     mbs, joint = free_pair(dataclasses.replace(BEARING.bush, dynamics=True), False)
     ehd.SolveDynamic(mbs, settings(2e-8, 2), solverType=exu.DynamicSolverType.RK44)
