@@ -105,6 +105,11 @@ class ANCFBush(_Solid):
 class ModalBush(_Solid):
     """A linear elastic bush, reduced to modes of its bore; outer surface fixed to the housing.
 
+    Its weight is the housing's; without ``dynamics`` weight and acceleration do not bend the bush itself. At 1 g its
+    bore would move by up to 0.1 nm in steel, 1.2 nm in a polymer of 3 GPa and 0.3 um in rubber of 10 MPa (20 mm thick
+    around a bore of 60 mm, held outside; it grows with the acceleration, and with the square of the thickness): take
+    `ANCFBush` where that is no small share of the film.
+
     Parameters
     ----------
     mesh : HollowCylinder or BushMesh

@@ -47,7 +47,13 @@ class Support:
 
 @dataclass(frozen=True, kw_only=True)
 class FreeOuter:
-    """The outer surface is free."""
+    """The outer surface is free.
+
+    Where such a bush spins, Exudyn's integrator loses angular momentum with the square of the angle per step, on
+    absolute coordinates that a turn takes around: of a steel ring 0.43 % per turn at 40 steps a turn, 0.10 % at 80,
+    0.03 % at 160 (spectral radius 0.6). At 20 steps motion and strains are nonsense, with a spectral radius of 0.9 and
+    more up to 40 and 80: elements turn inside out, which ends the run.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
