@@ -104,7 +104,7 @@ class LoadSearch:
                 f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. A load this high may need "
                 "asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film grid; a supply area in "
                 "the loaded zone or a starved film may carry no such load at any position: look at ehd.steady(...) "
-                "around there."
+                f"around there.{_hot(found)}"
             )
         return found
 
@@ -224,6 +224,18 @@ class LoadSearch:
             else:
                 place, resistance = reached, resistance / 5.0
         return place
+
+
+def _hot(place: Carried) -> str:
+    """What the heat has to do with a load that no film carries."""
+    T = place.film.temperature
+    if T is None:
+        return ""
+    return (
+        f" The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film thins "
+        "faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
+        "supply of oil or a housing_conductance raises it."
+    )
 
 
 def first_guess(bearing: JournalBearing, omega: float, force: np.ndarray, tilt: np.ndarray) -> np.ndarray:

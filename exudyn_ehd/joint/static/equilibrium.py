@@ -119,6 +119,9 @@ def equilibrium(
     steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
     `ElrodAdams`). Bushes are linear, as in `steady`.
 
+    Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
+    would and returns the one that it comes to; `stribeck` follows a branch over the speed.
+
     Parameters
     ----------
     bearing : JournalBearing

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -284,6 +285,15 @@ class TestThermal:
         with pytest.raises(ehd.FilmError, match=r"no position found|temperature"):
             ehd.equilibrium(_hot(make_bearing, kind), speed=600.0, load=(0.0, -2e6))
         assert solves[0] < 8000
+
+
+def test_a_load_at_which_the_friction_of_asperities_heats_the_film_away_says_so(make_bearing):
+    bearing = _hot(make_bearing, "one temperature")
+    rough = ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=1.15e11)
+    bearing = dataclasses.replace(bearing, asperity=rough)
+    ehd.equilibrium(bearing, speed=600.0, load=(0.0, -1e4))
+    with pytest.raises(ehd.FilmError, match=r"no position found .*The film is at \d+ K there: .*seizes"):
+        ehd.equilibrium(bearing, speed=600.0, load=(0.0, -3e5))
 
 
 def test_what_remembers_its_oil_has_its_settled_stiffness_at_rest(make_bearing):
