@@ -14,11 +14,13 @@ import numpy as np
 from exudyn_ehd.film.cavitation.closures import Gumbel
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
+from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply import AxialGroove, SupplyArea
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
@@ -150,6 +152,10 @@ class LongSolver(FilmSolver):
         return out
 
 
+class LongThinningSolver(LongSolver, ThinningFilmSolver):
+    """`LongSolver` of an oil that thins."""
+
+
 def check_film(
     film: Film, closure: Closure, supply: tuple[SupplyArea, ...], open_ring: bool, end_pressures: tuple[float, float]
 ) -> None:
@@ -201,12 +207,15 @@ def film_solver(
     density: CompressibleLaw | None = None,
 ) -> FilmSolver:
     """Solver of a film model on its grid; ``density``: of a compressible film."""
+    thins = any(isinstance(effect, ShearThinning) for effect in flux_effects)
     if density is not None:
         if not isinstance(film, FiniteLength):
             raise InputError(
                 f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as "
                 f"incompressible; use film=FiniteLength(...)."
             )
+        if thins:
+            return ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=flux_effects, density=density)
         return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):
         if flux_effects:
@@ -215,8 +224,8 @@ def film_solver(
                 "or temperature field; use film=FiniteLength(...)."
             )
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
-    solver = LongSolver if isinstance(film, LongBearing) else FilmSolver
-    return solver(
+    kinds = (FilmSolver, LongSolver, ThinningFilmSolver, LongThinningSolver)
+    return kinds[isinstance(film, LongBearing) + 2 * thins](
         grid,
         closure,
         squeeze=squeeze,

@@ -51,12 +51,16 @@ class Wear(Protocol):
 
 
 class ShearFactor(Protocol):
-    """Factor on the viscosity of Couette shear and of the fluxes that depends on the gap and on the sliding speed."""
+    """Factor on the viscosity of Couette shear that depends on the gap, on the sliding speed, and maybe on gradients of
+    the pressure."""
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> None:
-        """mu/mu_0 at the vertices with its derivatives with respect to H and vx."""
+    ) -> np.ndarray | None:
+        """mu/mu_0 at the vertices with its derivatives with respect to H and vx.
+
+        Returns those (2, n, m) to the gradients of the solver's unknown along theta and z, None if there are none.
+        """
 
 
 class ThermalEffect(Protocol):
@@ -93,16 +97,21 @@ class ShearProduct:
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> None:
-        """Product of both factors with its derivatives with respect to H and vx."""
+    ) -> np.ndarray | None:
+        """Product of both factors with its derivatives, as for `ShearFactor`; one of them knows the gradients."""
         other, other_h, other_v = np.empty_like(H), np.empty_like(H), np.empty_like(H)
-        self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
-        self.second.factor(H, vx, other, other_h, other_v)
+        slopes = self.first.factor(H, vx, ratio_out, ratio_h_out, ratio_v_out)
+        others = self.second.factor(H, vx, other, other_h, other_v)
+        if slopes is not None:
+            slopes *= other
+        elif others is not None:
+            slopes = others * ratio_out
         ratio_h_out *= other
         ratio_h_out += ratio_out * other_h
         ratio_v_out *= other
         ratio_v_out += ratio_out * other_v
         ratio_out *= other
+        return slopes
 
 
 def shear_product(first: ShearFactor | None, second: ShearFactor | None) -> ShearFactor | None:

@@ -22,9 +22,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import Directions, FilmGrid
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
@@ -127,8 +129,9 @@ class FilmParts:
     grid : FilmGrid
     solver : FilmSolver
         Holds gaps, links, factor and active set of the last evaluation.
-    liner, compressible : film solvers or None
-        The same solver, if it is one of an elastic liner or of a compressible film.
+    liner, compressible, nonlinear : film solvers or None
+        The same solver, if it is one of an elastic liner, of a compressible film, or one that wants to know the scale
+        of pressures.
     supply : SupplyMap or None
     contacts, limiter : buffers or None
     directions : Directions
@@ -149,6 +152,7 @@ class FilmParts:
     solver: FilmSolver
     liner: NonlinearFilmSolver | None
     compressible: CompressibleFilmSolver | NonlinearFilmSolver | None
+    nonlinear: CompressibleFilmSolver | NonlinearFilmSolver | None
     supply: SupplyMap | None
     contacts: ContactFields | None
     limiter: LimiterFields | None
@@ -217,6 +221,7 @@ class OilFields(NamedTuple):
     P_q : its derivative to the solver's unknown, the transformed pressure; None if they are the same
     ratio : viscosity over the reference; None where that is one
     ratio_q, ratio_h, ratio_v : derivatives to the unknown, H and vx; None where the ratio does not depend on it
+    ratio_g : (2, n, m), derivatives to the unknown's gradients along theta and z, of a film that thins
     beyond : whether the pressure law ends before the solution somewhere; there it goes on in a line, and all is reduced
     """
 
@@ -227,6 +232,7 @@ class OilFields(NamedTuple):
     ratio_h: np.ndarray | None = None
     ratio_v: np.ndarray | None = None
     beyond: bool = False
+    ratio_g: np.ndarray | None = None
 
 
 class Loads(NamedTuple):
@@ -295,6 +301,29 @@ class SolvedFilm(NamedTuple):
         """Raise RuntimeError if the buffers belong to another evaluation by now."""
         if self.parts.evaluations.count != self.serial:
             raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
+
+    def shear_by_unknowns(self) -> csr_matrix | None:
+        """Derivative (n m, n m) of the viscosity ratio to the unknowns around; None where it has none."""
+        if self.oil.ratio_g is None:
+            return None
+        along, across = (
+            diags(g.ravel()) @ d for g, d in zip(self.oil.ratio_g, self._thinning().operators, strict=True)
+        )
+        return csr_matrix((along + across) @ diags(self._pressures().ravel()))
+
+    def gather_shear(self, weights: np.ndarray) -> np.ndarray | None:
+        """The same from the left: sums (n, m) by the unknowns for weights (n, m) of the ratio."""
+        if self.oil.ratio_g is None:
+            return None
+        return self._thinning().gather(weights * self.oil.ratio_g) * self._pressures()
+
+    def _thinning(self) -> ShearThinning:
+        return next(e for e in self.solver.flux_effects if isinstance(e, ShearThinning))
+
+    def _pressures(self) -> np.ndarray:
+        """1 where the unknown is a pressure, 0 where oil has cavitated (n, m)."""
+        s = self.solver
+        return (s.work.active | self.grid.fixed).astype(float) if s.closure.conserves_mass else s.ones
 
     def share(self) -> np.ndarray:
         """Share of a full film's shear that acts at each vertex (n, m)."""

@@ -46,7 +46,7 @@ EFFECTS = {
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),
     "shear law": (
-        ("film.lubricant.shear_thinning",),
+        ("film.lubricant.shear_thinning", "film.lubricant.shear_profile", "film.solvers.thinning"),
         oil(shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6)),
     ),
     "density law": (

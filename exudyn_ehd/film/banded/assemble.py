@@ -76,3 +76,81 @@ def assemble(kx, kz, slopes, number, order, count, lower, upper):
             if across[c - _1] != 0.0 and places[c - _1] >= 0:
                 low[(row - _1) * stride + _1] -= az[c - _1]
         up[row * stride] = diagonal
+
+
+@njit(cache=True)
+def add_tangents(along, kx, kz, full, slopes):
+    """Change the `slopes` of the links' own conductances to those of flows that are ``along`` (2, n, m) times as steep.
+
+    ``full``: vertices whose unknown is the pressure, None: all.
+    """
+    n, m = kx.shape
+    last = n * m - m
+    for axis in range(2):
+        k, ratio = (kx if axis == 0 else kz).reshape(-1), along[axis].reshape(-1)
+        for c in range(k.size):
+            b = c + 1 if axis == 1 else (c + m if c < last else c - last)
+            if k[c] != 0.0:
+                more = (ratio[c] - 1.0) * k[c]
+                if full is None or full.reshape(-1)[c]:
+                    slopes[2 * axis, c] += more
+                if full is None or full.reshape(-1)[b]:
+                    slopes[2 * axis + 1, c] -= more
+
+
+@njit(cache=True)
+def _add_entry(row, column, value, lower, upper):
+    if row >= 0 and column >= 0:
+        if column >= row:
+            upper[row, column - row] += value
+        else:
+            lower[column, row - column] += value
+
+
+@njit(cache=True)
+def _add_flow(k, from_, to, a, b, full, number, lower, upper):
+    """Add a flow ``k (P_to - P_from)`` that leaves vertex a for b to their balances."""
+    for place, value in ((to, k), (from_, -k)):
+        if full is None or full.reshape(-1)[place]:
+            _add_entry(number[a], number[place], value, lower, upper)
+            _add_entry(number[b], number[place], -value, lower, upper)
+
+
+@njit(cache=True)
+def add_corners(across, weights, kx, kz, full, number, lower, upper):
+    """Add the derivatives of the links' flows to the gradients across them: Newton's matrix couples corners as well.
+
+    The flow over a link changes by ``-k across`` with the mean of the gradients across it at both ends, which are
+    ``back (P - P_before) + on (P_behind - P)``.
+
+    Parameters
+    ----------
+    across : (2, n, m) array
+        Of the links in theta and in z.
+    weights : four arrays
+        ``back`` and ``on`` in theta (n,), and in z (m,).
+    kx, kz : (n, m) arrays
+        Conductances of the links; numbering by `exudyn_ehd.film.banded.numbering.number_with_corners`.
+    full : (n, m) array or None
+        Vertices whose unknown is the pressure, None: all.
+    """
+    n, m = kx.shape
+    back_x, on_x, back_z, on_z = weights
+    places = number.reshape(-1)
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            a, b = i * m + j, nxt * m + j
+            k = -0.5 * kx[i, j] * across[0, i, j]
+            if k != 0.0:
+                for end in (a, b):
+                    if j > 0:
+                        _add_flow(k * back_z[j], end - 1, end, a, b, full, places, lower, upper)
+                    if j + 1 < m:
+                        _add_flow(k * on_z[j], end, end + 1, a, b, full, places, lower, upper)
+            k = -0.5 * kz[i, j] * across[1, i, j]
+            if j + 1 < m and k != 0.0:
+                prv = i - 1 if i > 0 else n - 1
+                for row in (j, j + 1):
+                    _add_flow(k * back_x[i], prv * m + row, i * m + row, a, a + 1, full, places, lower, upper)
+                    _add_flow(k * on_x[i], i * m + row, nxt * m + row, a, a + 1, full, places, lower, upper)

@@ -18,6 +18,8 @@ from numba import njit
 
 # numpy's integer, since numba compiles kernels anew for a plain 0
 _NONE = np.int64(0)
+# as spare links: the ring is cut at columns without active cells alone
+_NOWHERE = np.int64(-1)
 
 
 @njit(cache=True)
@@ -96,6 +98,21 @@ def number_along(active, kx, forth, spare, order_out, number_out):
                 b = number_out[nxt, j]
                 if b >= 0:
                     width = max(width, abs(b - a))
+    return count, width
+
+
+@njit(cache=True)
+def number_with_corners(active, kx, order_out, number_out):
+    """As `number_cells`, for a matrix that also couples a cell with its neighbours across the corners."""
+    n, m = active.shape
+    count, width = number_along(active, kx, 1, _NOWHERE, order_out, number_out)
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m - 1):
+            if kx[i, j] != 0.0 or kx[i, j + 1] != 0.0:
+                for a, b in ((number_out[i, j], number_out[nxt, j + 1]), (number_out[i, j + 1], number_out[nxt, j])):
+                    if a >= 0 and b >= 0:
+                        width = max(width, abs(b - a))
     return count, width
 
 

@@ -7,6 +7,7 @@ named_oils             viscosity grades
 pressure_viscosity     Barus, Roelands and the Kirchhoff transform
 temperature_viscosity  Reynolds, Vogel, Walther
 shear_thinning         Carreau
+shear_profile          its profile across the film
 density                Dowson-Higginson
 density_field          kernels of that law
 """

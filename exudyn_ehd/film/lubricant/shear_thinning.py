@@ -1,47 +1,51 @@
-"""Viscosity that depends on the shear rate: Carreau's law, on the rate ``G = |U| / h`` of the Couette flow.
+"""Viscosity that depends on the shear rate: Carreau's law at every height of the film.
 
 ``mu / mu_0 = r(G) = r_inf + (1 - r_inf) (1 + (lambda G)^2)^((n - 1) / 2)``   (P. J. Carreau, Trans. Soc. Rheology 16
 (1972) 99).
 
-The pressure flow disturbs the Couette flow only slightly in a bearing. Linearised about it, ``tau = mu(|G|) G`` gives a
-disturbance along the sliding direction the tangent viscosity ``mu + G dmu/dG`` and one across it ``mu`` itself (F. K.
-Dien and H. G. Elrod, J. Lubrication Technology 105 (1983) 385). Hence, with s = (lambda U / h)^2 and b = 1 + s:
+Sliding, squeeze and pressure flow thin the oil together: `exudyn_ehd.film.lubricant.shear_profile` integrates the
+profile across the gap. A link in theta or z then carries ``V H - a H^3 dP/ds``; the ratio a depends on the gap, the
+speed, the link's own gradient, and the gradient across it, the mean of those at its two vertices. The film so becomes
+nonlinear in its pressure (`exudyn_ehd.film.solvers.nonlinear`). Couette flux H unchanged, because pressure flow is odd
+in the gradient; the shear on the walls is ``tau_m -+ (h / 2) dp/dx``, its mean ``tau_m = ratio mu_0 U / h``.
 
-    r   = r_inf + (1 - r_inf) b^e,   e = (n - 1) / 2,           conductance across the sliding H^3 / r,
-    r_t = r_inf + (1 - r_inf) b^(e-1) (1 + n s),                conductance along the sliding  H^3 / r_t,
+What is left out: axial sliding, slow beside the turning, does not thin, and meets the ratio of the turning; the mean
+stress along z that pressure flow in both directions makes, and that is even in neither, since it cancels over an
+aligned film. Unknowns P of a density law are taken for pressures over the viscosity's ratio, which they are but for the
+density's. A viscosity that depends on pressure or temperature scales mu_0, at the same relaxation time.
 
-Couette flux H unchanged, wall shear r U / h. Only the circumferential sliding speed enters; axial sliding is slow
-in comparison.
-
-Symbols: shear = lambda U / c scaled, s = (shear / H)^2; suffix _h derivative to the gap, _v to vx = U / (2 R).
+Symbols: k = 2 lambda R / c, so that lambda U / h = k vx / H.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numba import njit
+from scipy.sparse import csr_matrix, diags, kron
 
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.shear_profile import (
+    FLOW_POINTS,
+    STRESS_POINTS,
+    fluidity_table,
+    gauss_points,
+    thin_links,
+    thin_shear,
+)
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
 from exudyn_ehd.status import InputError, require_number
-
-TABLE_INTERVALS = 2048
-TABLE_RATE = 50.0
-_FAST = {"reassoc", "contract", "nsz", "arcp"}
-_unsigned = np.uint64
-_ONE, _TWO, _THREE, _FOUR, _FIVE, _SIX = (_unsigned(k) for k in range(1, 7))
 
 
 @dataclass(frozen=True, kw_only=True)
 class CarreauShear:
     """Shear thinning after Carreau, for multigrade and polymer-thickened oils.
 
-    The pressure flow is linearised about the sliding, see the module; squeeze alone does not thin the oil. Against the
-    exact flow across the film of a long bearing (eccentricity ratio 0.8 and 0.9, lambda U / c from 0.2 to 4): the load
-    is 1 to 2 % high where thinning takes up to a quarter of it, 7 to 8 % low where it takes half (n = 0.6, residual
-    0.2), 15 to 16 % low where it takes three quarters (n = 0.5, no residual); the peak pressure likewise, up to 14 %
-    low.
+    The viscosity follows the shear rate at every height of the film, under sliding, squeeze and pressure flow; see the
+    module.
 
     Parameters
     ----------
@@ -81,181 +85,165 @@ class CarreauShear:
         return ShearThinning(self, radius, clearance)
 
 
+class Fluidity(Protocol):
+    """A viscosity that varies over the film: its ratio at the vertices, and 1 over it on the links (n, m)."""
+
+    ratio: np.ndarray
+    inverse_x: np.ndarray
+    inverse_z: np.ndarray
+
+
 class ShearThinning(FluxEffect):
     """A `CarreauShear` in scaled form: flux effect and shear factor of one bearing model.
+
+    The film solver calls `place` once, and `see` whenever its pressure changes.
 
     Parameters
     ----------
     law : CarreauShear
     radius, clearance : float
         m.
+
+    Attributes
+    ----------
+    field : Fluidity or None
+        Viscosity over that of the film's scale, if it varies over the film.
     """
 
     changes_carriers = False
     depends_on_speed = True
 
     def __init__(self, law: CarreauShear, radius: float, clearance: float) -> None:
-        self.law = law
-        self.table = power_table(0.5 * (law.exponent - 1.0))
+        self.oil = fluidity_table(law.exponent, law.residual)
+        self.flow_points, self.stress_points = gauss_points(FLOW_POINTS), gauss_points(STRESS_POINTS)
         self.per_speed = 2.0 * radius * law.relaxation_time / clearance
+        self.field: Fluidity | None = None
+
+    def place(self, grid: FilmGrid, flow_x: float) -> None:
+        """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
+        self.slopes, self.cross, self.vertex, *self.stress = np.zeros((5, 2, *grid.shape))
+        self.found = np.zeros((2, 5, *grid.shape))
+        along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
+        self.links = along, across
+        self.weights = *_central(along), *_central(across)
+        self.lengths = [np.divide(1.0, s, out=np.zeros_like(s), where=s != 0.0) for s in self.links]
+
+    def see(self, P: np.ndarray) -> None:
+        """Take the gradients of the film's unknown P (n, m)."""
+        gradients(P, self.links, self.weights, self.slopes, self.vertex, self.cross)
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
-        """Divide the conductances of the links by the tangent (theta) and the plain (z) viscosity ratio."""
-        law, k = self.law, self.per_speed
-        thin_conductance(gap_x, vx, k, law.exponent, law.residual, self.table, True, flux.gx, flux.gx_h, flux.gx_v)
-        thin_conductance(gap_z, vx, k, law.exponent, law.residual, self.table, False, flux.gz, flux.gz_h, flux.gz_v)
-
-    def start(self, flux: LinkFlux, H: np.ndarray, vx: float, vz: float) -> None:
-        """Conductances with their factors in one pass."""
-        if flux.carriers:
-            super().start(flux, H, vx, vz)
-            return
-        law = self.law
-        thin_flux(
-            H,
-            flux.gap_x,
-            vx,
-            self.per_speed,
-            law.exponent,
-            law.residual,
-            self.table,
-            flux.gap_z,
-            flux.gx,
-            flux.gx_h,
-            flux.gx_v,
-            flux.gz,
-            flux.gz_h,
-            flux.gz_v,
+        """Multiply the conductances of the links by the thin oil's, at the gradients last seen."""
+        k, one, f = self.per_speed, np.ones((1, 1)), self.field
+        parts = (
+            (gap_x, one if f is None else f.inverse_x, flux.gx, flux.gx_h, flux.gx_v),
+            (gap_z, one if f is None else f.inverse_z, flux.gz, flux.gz_h, flux.gz_v),
         )
+        for axis, (gap, fluid, g, g_h, g_v) in enumerate(parts):
+            found = self.found[axis]
+            thin_links(
+                gap, self.slopes[axis], self.cross[axis], fluid, k * vx, k, axis, self.oil, self.flow_points,
+                self.stress[axis], found,
+            )  # fmt: skip
+            multiply(found, g, g_h, g_v)
+
+    def response(self) -> tuple[np.ndarray, ...]:
+        """What Newton's matrix needs of the last call of `apply`, as `exudyn_ehd.film.banded.assemble.add_corners`."""
+        along, across = self.found[:, 3].copy(), self.found[:, 4].copy()
+        across[0] *= self.lengths[0][:, None]
+        across[1] *= self.lengths[1]
+        return (along, across, *self.weights)
 
     def factor(
         self, H: np.ndarray, vx: float, ratio_out: np.ndarray, ratio_h_out: np.ndarray, ratio_v_out: np.ndarray
-    ) -> None:
-        """mu/mu_0 of the Couette shear at the vertices, with its derivatives to H and vx."""
-        law, k = self.law, self.per_speed
-        thin_viscosity(H, vx, k, law.exponent, law.residual, self.table, ratio_out, ratio_h_out, ratio_v_out)
+    ) -> np.ndarray:
+        """tau_m h / (mu_0 U) at the vertices, at the gradients last seen, with its derivatives to H and vx.
+
+        Returns those (2, n, m) to the gradients along theta and z.
+        """
+        fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
+        out = np.empty((5, *H.shape))
+        k = self.per_speed
+        thin_shear(H, self.vertex, fluid, k * vx, k, self.oil, self.stress_points, out)
+        ratio_out[:], ratio_h_out[:], ratio_v_out[:] = out[:3]
+        return out[3:]
+
+    def gather(self, weights: np.ndarray) -> np.ndarray:
+        """Sums (n, m) by the film's unknown of weights (2, n, m) of the gradients at the vertices."""
+        out = np.zeros(weights.shape[1:])
+        gather(weights, self.weights, out)
+        return out
+
+    @cached_property
+    def operators(self) -> tuple[csr_matrix, csr_matrix]:
+        """Gradients along theta and z at the vertices as matrices (n m, n m) of the film's unknown."""
+        back_x, on_x, back_z, on_z = self.weights
+        n, m = back_x.size, back_z.size
+        x = diags([back_x - on_x, on_x[:-1], -back_x[1:]], [0, 1, -1]).tolil()
+        x[0, -1] -= back_x[0]
+        x[-1, 0] += on_x[-1]
+        z = diags([back_z - on_z, on_z[:-1], -back_z[1:]], [0, 1, -1])
+        return csr_matrix(kron(x, diags(np.ones(m)))), csr_matrix(kron(diags(np.ones(n)), z))
 
 
-def power_table(exponent: float) -> np.ndarray:
-    """Quintic Hermite coefficients (intervals, 6) of ``(1 + g^2)^exponent`` in y = g / (1 + g), g from 0 to TABLE_RATE.
+def _central(link: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Factors of the differences before and behind every vertex in its gradient, of second order on any spacing.
 
-    Error below 1e-12 of the value; a power costs three times as much.
+    ``link`` is 1 over the distance to the next vertex of a ring, 0 where there is none.
     """
-    y = np.linspace(0.0, TABLE_RATE / (1.0 + TABLE_RATE), TABLE_INTERVALS + 1)
-    g = y / (1.0 - y)
-    g_y, g_yy, b = (1.0 + g) ** 2, 2.0 * (1.0 + g) ** 3, 1.0 + g * g
-    f = b**exponent
-    f_g = 2.0 * exponent * g * f / b
-    f_gg = 2.0 * exponent * f / b * (1.0 + 2.0 * (exponent - 1.0) * g * g / b)
-    h = y[1]
-    d, e = f_g * g_y * h, 0.5 * (f_gg * g_y**2 + f_g * g_yy) * h**2
-    rise, bend, twist = np.diff(f) - d[:-1] - e[:-1], d[1:] - d[:-1] - 2.0 * e[:-1], e[1:] - e[:-1]
-    c3, c4 = 10.0 * rise - 4.0 * bend + twist, -15.0 * rise + 7.0 * bend - 2.0 * twist
-    c5 = 6.0 * rise - 3.0 * bend + twist
-    return np.ascontiguousarray(np.array([f[:-1], d[:-1], e[:-1], c3, c4, c5]).T)
+    before = np.roll(link, 1)
+    total = before + link
+    share = np.divide(1.0, total, out=np.zeros_like(total), where=total > 0.0)
+    return before * before * share, link * link * share
 
 
-# Checks for a division by zero would keep the compiler from vectorising the loops below; the table's gather stands
-# apart for the same reason.
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def powers(gap, speed, e, table, out):
-    """``(1 + g^2)^e`` at ``g = speed / gap`` from the table of `power_table`, written out beyond its end.
-
-    Gap, of either sign, and out (n, m).
-    """
-    h, p = gap.reshape(-1), out.reshape(-1)
-    coefficients = table.reshape(-1)
-    size = abs(speed)
-    scale = size * ((1.0 + TABLE_RATE) / TABLE_RATE * TABLE_INTERVALS)
-    for k in range(h.size):
-        p[k] = scale / (abs(h[k]) + size)
-    for k in range(h.size):
-        t = p[k]
-        if t < TABLE_INTERVALS:
-            at = _unsigned(t)
-            t -= float(at)
-            at *= _SIX
-            p[k] = coefficients[at] + t * (
-                coefficients[at + _ONE] + t * (
-                    coefficients[at + _TWO] + t * (
-                        coefficients[at + _THREE] + t * (coefficients[at + _FOUR] + t * coefficients[at + _FIVE])
-                    )
-                )
-            )  # fmt: skip
-        else:
-            g = size / h[k]
-            p[k] = np.exp(e * np.log(1.0 + g * g))
+@njit(cache=True)
+def gradients(P, links, weights, slopes_out, vertex_out, cross_out):
+    """Gradients (2, n, m) along theta and z: on links in their own direction, at vertices, and across the links."""
+    n, m = P.shape
+    back_x, on_x, back_z, on_z = weights
+    for i in range(n):
+        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
+        for j in range(m):
+            rise = P[nxt, j] - P[i, j]
+            slopes_out[0, i, j] = rise * links[0][i]
+            vertex_out[0, i, j] = back_x[i] * (P[i, j] - P[prv, j]) + on_x[i] * rise
+            rise = P[i, j + 1] - P[i, j] if j + 1 < m else 0.0
+            slopes_out[1, i, j] = rise * links[1][j]
+            vertex_out[1, i, j] = on_z[j] * rise + (back_z[j] * (P[i, j] - P[i, j - 1]) if j > 0 else 0.0)
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            cross_out[0, i, j] = 0.5 * (vertex_out[1, i, j] + vertex_out[1, nxt, j])
+            far = j + 1 if j + 1 < m else j
+            cross_out[1, i, j] = 0.5 * (vertex_out[0, i, j] + vertex_out[0, i, far])
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def thin_viscosity(H, vx, per_speed, n, r_inf, table, ratio_out, ratio_h_out, ratio_v_out):
-    """Carreau's ratio at gaps H with its derivatives to H and vx."""
-    speed = per_speed * vx
-    powers(H, speed, 0.5 * (n - 1.0), table, ratio_out)
-    h, r, r_h, r_v = H.reshape(-1), ratio_out.reshape(-1), ratio_h_out.reshape(-1), ratio_v_out.reshape(-1)
-    s = speed * speed
-    for k in range(h.size):
-        thin = (1.0 - r_inf) * r[k]
-        slope = (n - 1.0) * speed * thin / (h[k] * h[k] + s)
-        r[k] = r_inf + thin
-        r_h[k] = -slope * speed / h[k]
-        r_v[k] = slope * per_speed
+@njit(cache=True)
+def gather(of, weights, out):
+    """Add what the vertices' gradients in `gradients` give to the unknowns, times weights ``of`` (2, n, m)."""
+    n, m = out.shape
+    back_x, on_x, back_z, on_z = weights
+    for i in range(n):
+        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
+        for j in range(m):
+            x, z = of[0, i, j], of[1, i, j]
+            out[i, j] += x * (back_x[i] - on_x[i]) + z * (back_z[j] - on_z[j])
+            out[prv, j] -= x * back_x[i]
+            out[nxt, j] += x * on_x[i]
+            if j > 0:
+                out[i, j - 1] -= z * back_z[j]
+            if j + 1 < m:
+                out[i, j + 1] += z * on_z[j]
 
 
-@njit(cache=True, fastmath=_FAST, error_model="numpy", inline="always")
-def _fluidity(h, power, speed, s, n, r_inf, tangent):
-    """1 / r, or 1 / r_t with ``tangent``, at a gap h, and D with d/dh = D speed / h, d/dvx = -D per_speed.
-
-    ``power`` = b^e, ``s`` = speed^2.
-    """
-    per_b = 1.0 / (h * h + s)  # over h^2
-    r = (1.0 - r_inf) * power
-    if tangent:
-        bend = (h * h + n * s) * per_b
-        slope = n + (0.5 * (n - 1.0) - 1.0) * bend
-        f = 1.0 / (r_inf + r * bend)
-    else:
-        slope = 0.5 * (n - 1.0)
-        f = 1.0 / (r_inf + r)
-    return f, 2.0 * speed * r * per_b * slope * f * f
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def thin_conductance(gap, vx, per_speed, n, r_inf, table, tangent, g_io, g_h_io, g_v_io):
-    """Divide conductances by the (tangent) viscosity ratio at the links' gaps; also their derivatives to gap and vx."""
-    speed = per_speed * vx
-    power = np.empty(gap.size)
-    powers(gap, speed, 0.5 * (n - 1.0), table, power)
-    h, g, g_h, g_v = gap.reshape(-1), g_io.reshape(-1), g_h_io.reshape(-1), g_v_io.reshape(-1)
-    s = speed * speed
-    for k in range(h.size):
-        f, d = _fluidity(h[k], power[k], speed, s, n, r_inf, tangent)
-        g_h[k] = g_h[k] * f + g[k] * d * speed / h[k]
-        g_v[k] = g_v[k] * f - g[k] * d * per_speed
-        g[k] *= f
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def thin_flux(H, HF, vx, per_speed, n, r_inf, table, gap_z_out, gx_out, gx_h_out, gx_v_out, gz_out, gz_h_out, gz_v_out):
-    """`plain_flux` over the viscosity ratios, with the derivatives of `thin_conductance`."""
-    rows, cols = H.shape
-    for i in range(rows):
-        for j in range(cols - 1):
-            gap_z_out[i, j] = 0.5 * (H[i, j] + H[i, j + 1])
-        gap_z_out[i, cols - 1] = H[i, cols - 1]
-    _thin_plain(HF, per_speed * vx, per_speed, n, r_inf, table, True, gx_out, gx_h_out, gx_v_out)
-    _thin_plain(gap_z_out, per_speed * vx, per_speed, n, r_inf, table, False, gz_out, gz_h_out, gz_v_out)
-
-
-@njit(cache=True, fastmath=_FAST, error_model="numpy")
-def _thin_plain(gap, speed, per_speed, n, r_inf, table, tangent, g_out, g_h_out, g_v_out):
-    """H^3 over the (tangent) viscosity ratio, with its derivatives to the gap and to vx."""
-    powers(gap, speed, 0.5 * (n - 1.0), table, g_out)
-    h, g, g_h, g_v = gap.reshape(-1), g_out.reshape(-1), g_h_out.reshape(-1), g_v_out.reshape(-1)
-    s = speed * speed
-    for k in range(h.size):
-        f, d = _fluidity(h[k], g[k], speed, s, n, r_inf, tangent)
-        square = h[k] * h[k]
-        g[k] = square * h[k] * f
-        g_h[k] = square * (3.0 * f + d * speed)
-        g_v[k] = -square * h[k] * d * per_speed
+@njit(cache=True)
+def multiply(found, g, g_h, g_v):
+    """Multiply conductances by the ratio of `thin_links`; also their derivatives to gap and vx."""
+    n, m = g.shape
+    for i in range(n):
+        for j in range(m):
+            a = found[0, i, j]
+            g_h[i, j] = g_h[i, j] * a + g[i, j] * found[1, i, j]
+            g_v[i, j] = g_v[i, j] * a + g[i, j] * found[2, i, j]
+            g[i, j] *= a

@@ -74,7 +74,8 @@ NEARLY_SOLID = 0.9
 
 
 class NonlinearFilmSolver(FilmSolver):
-    """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors.
+    """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors; or between rigid surfaces
+    (beta 0) where the oil thins.
 
     The caller writes gaps and rate of the undeformed surfaces, ``solve`` leaves
     those that the film sees in ``H``, ``HF`` and ``H_t``.
@@ -237,7 +238,7 @@ class NonlinearFilmSolver(FilmSolver):
         if self.work.warm:
             ok, steps = e.solve()
         if not ok:
-            ok, more = cold_start(e)
+            ok, more = self._start(mass_old, step)
             steps += more
         if not ok:
             ok, more = pseudo_transient(e)
@@ -251,12 +252,16 @@ class NonlinearFilmSolver(FilmSolver):
             return Status.NO_FILM, steps
         return Status.CONVERGED, steps
 
+    def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
+        """Newton's method from no other film: (found, steps)."""
+        return cold_start(self.elements)
+
     def _failure(self) -> Status:
         """Status of a film that was not found."""
         e = self.elements
         if e.oil is not None and float(e.load.p.max()) * e.scale > NEARLY_SOLID * e.oil.largest_pressure:
             return Status.NO_PRESSURE
-        if e.contact is not None:
+        if e.contact is not None or e.beta == 0.0:
             return Status.NOT_CONVERGED
         # tension may pull the liner shut: without cavitation, or by the cavity's own pressure
         shut = not self.ruptures or float(e.rigid[0].min()) + e.beta * e.cavity_load <= 0.0
@@ -320,12 +325,16 @@ class NonlinearFilmSolver(FilmSolver):
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
+        lower, upper = self._exact_factor()
+        solve_lu_transposed(lower, upper, self.work.inv_diag, self.work.count, self.work.width, rhs)
+
+    def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
+        """L and U of Newton's matrix at the solution, factored if the last one was before."""
         w, e = self.work, self.elements
         if not e.exact:
             e.factor()
             e.exact = True
-        lower, upper = (dense_band(band, w.count, w.width) for band in e.matrix[2][2:4])
-        solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
+        return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)
 
     def motion_columns(self, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
         """Derivatives (10, count) of the balances at the unknowns to the motion of a rigid journal, as for

@@ -11,9 +11,9 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.banded.assemble import assemble, dense_band
+from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
@@ -43,24 +43,34 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
-def factor_film(u, density, terms, fixed, liner, matrix, active):
+def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 
     ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by)
-    of one, ``by`` of `link_gradients`.
+    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure.
     """
     P, fill, full = u
     rho, rho_P = density
     slopes, number, factored = matrix
     order, _, lower, upper, inv_diag = factored
     film = terms_of(terms, fixed)
-    count, width = number_cells(active, film.kx, order, number)
+    links = film.kx
+    if thin is None:
+        count, width = number_cells(active, links, order, number)
+    else:
+        # Couette flows couple where pressure flow is dropped
+        links = np.abs(film.kx) + np.abs(film.fx)
+        count, width = number_with_corners(active, links, order, number)
     film_slopes(fill, full, rho, rho_P, film, slopes)
+    if thin is not None:
+        add_tangents(thin[0], film.kx, film.kz, full, slopes)
     if liner is not None:
         gap_slopes, load, rates, beta, by = liner
         add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-    assemble(film.kx, film.kz, slopes, number, order, count, L, U)
+    assemble(links, film.kz, slopes, number, order, count, L, U)
+    if thin is not None:
+        add_corners(thin[1], thin[2:], film.kx, film.kz, full, number, L, U)
     return factor_lu(L, U, count, width, inv_diag), count, width
 
 

@@ -45,8 +45,8 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
         return OilFields(s.pressure)
     if law is None and shear is not None:
         ratio, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-        shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
-        return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v)
+        slopes = shear.factor(s.H, s.vx, ratio, ratio_h, ratio_v)
+        return OilFields(s.pressure, ratio=ratio, ratio_h=ratio_h, ratio_v=ratio_v, ratio_g=slopes)
     P, ratio, ratio_q = np.empty(shape), np.empty(shape), np.empty(shape)
     P_q, beyond = ratio, False
     if film is not None:
@@ -67,11 +67,12 @@ def oil_fields(parts: FilmParts, effects: Effects, pressure_scale: float) -> Oil
     if shear is None:
         return OilFields(P, P_q, ratio, ratio_q, s.nothing, s.nothing, beyond)
     factor, ratio_h, ratio_v = np.empty(shape), np.empty(shape), np.empty(shape)
-    shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
-    ratio_h *= ratio
-    ratio_v *= ratio
+    slopes = shear.factor(s.H, s.vx, factor, ratio_h, ratio_v)
+    for by in (ratio_h, ratio_v, slopes):
+        if by is not None:
+            by *= ratio
     ratio_q *= factor
-    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond)
+    return OilFields(P, P_q, factor * ratio, ratio_q, ratio_h, ratio_v, beyond, slopes)
 
 
 def film_loads(

@@ -40,7 +40,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         flux_effects=effects.flux,
         density=effects.density,
     )
-    compressible = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
+    nonlinear = solver if isinstance(solver, (CompressibleFilmSolver, NonlinearFilmSolver)) else None
     contacts = None
     if effects.contacts:
         friction = [(float(f.friction_coefficient), float(f.transition_speed)) for f in effects.contacts]
@@ -54,7 +54,8 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         grid=grid,
         solver=solver,
         liner=liner,
-        compressible=None if effects.density is None else compressible,
+        compressible=None if effects.density is None else nonlinear,
+        nonlinear=nonlinear,
         supply=supply,
         contacts=contacts,
         limiter=LimiterFields(grid.shape) if effects.limiter is not None and liner is None else None,

@@ -25,6 +25,7 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     effects = Effects(pressure_law=transform_law(oil))
     if isinstance(effects.pressure_law, CompressibleLaw):
         effects = replace(effects, density=effects.pressure_law)
+    thinning = None
     if oil.shear_law is not None:
         thinning = oil.shear_law.bound(bearing.journal_radius, bearing.radial_clearance)
         effects = replace(effects, flux=(thinning,), shear_factor=thinning)
@@ -38,6 +39,8 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     if isinstance(thermal, LumpedThermal):
         return replace(effects, thermal=LumpedTemperature(thermal, bearing))
     field = ViscosityField()
+    if thinning is not None:
+        thinning.field = field
     return replace(
         effects,
         flux=(*effects.flux, field),

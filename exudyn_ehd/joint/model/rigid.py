@@ -150,9 +150,8 @@ class BearingModel:
         self._prescribed: list[float] = prescribed.tolist()
         if p.liner is not None and self.effects.liner is not None:
             p.liner.beta = self.effects.liner.compliance * pressure / c
-            p.liner.pressure_scale = pressure
-        if p.compressible is not None:
-            p.compressible.pressure_scale = pressure
+        if p.nonlinear is not None:
+            p.nonlinear.pressure_scale = pressure
 
     def forget(self) -> None:
         """Drop the warm start. It never changes a result, only the time it takes."""

@@ -24,9 +24,11 @@ from scipy.optimize import brentq
 from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
+from exudyn_ehd.film.banded.assemble import add_corners, add_tangents
 from exudyn_ehd.film.cavitation.elrod_adams import film_terms
-from exudyn_ehd.film.reynolds.balance import film_slopes
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_slopes
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
+from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients
 
@@ -50,16 +52,26 @@ class FilmResponse:
         order = w.order[: w.count].copy()
         slopes, store = np.zeros((5, w.order.size)), (s.area * s.H).reshape(-1)
         full = w.active | film.grid.fixed
+        terms = film_terms(s.system.coefficients, 0.0, s.system.mass_old)
+        rho = rho_P = None
         if isinstance(s, CompressibleFilmSolver):
-            film_slopes(s.fill, full, s.rho, s.rho_P, s.film, slopes)
-            store = store * np.where(w.active, s.rho_P, s.rho).reshape(-1)
-        else:
-            terms = film_terms(s.system.coefficients, 0.0, s.system.mass_old)
-            film_slopes(s.fill, full, None, None, terms, slopes)
+            terms, rho, rho_P = s.film, s.rho, s.rho_P
+        elif isinstance(s, ThinningFilmSolver):
+            rho, rho_P = s.elements.rho, s.elements.rho_P
+        film_slopes(s.fill, full, rho, rho_P, terms, slopes)
+        if rho is None or rho_P is None:
             store = np.where(w.active.reshape(-1), 0.0, store)
+        else:
+            store = store * np.where(w.active, rho_P, rho).reshape(-1)
         number = np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
-        self.matrix = _matrix(slopes, number, shape[1])
+        if isinstance(s, ThinningFilmSolver):
+            along, *across = s.response()
+            add_tangents(along, terms.kx, terms.kz, full, slopes)
+            corners = _corners(across, terms, full, number.reshape(shape), (w.count, w.width))
+            self.matrix = _matrix(slopes, number, shape[1]) + corners
+        else:
+            self.matrix = _matrix(slopes, number, shape[1])
         self.store = diags_array(store[order])
         self.rows = adjoint_rows(film)[:2].T.astype(complex)
         by_motion = -balance_gradients(film) * (film.scales.force * film.parts.motion_scale)[:, None]
@@ -92,6 +104,17 @@ def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:
     known = (rows >= 0) & (columns >= 0)
     count = int(number.max()) + 1
     return coo_matrix((values[known], (rows[known], columns[known])), shape=(count, count)).tocsc()
+
+
+def _corners(
+    across: list[np.ndarray], terms: FilmTerms, full: np.ndarray, number: np.ndarray, size: tuple[int, int]
+) -> csc_matrix:
+    """What `exudyn_ehd.film.banded.assemble.add_corners` adds to a matrix of ``size`` (count, half-bandwidth)."""
+    count, width = size
+    lower, upper = np.zeros((2, count, width + 1))
+    add_corners(across[0], tuple(across[1:]), terms.kx, terms.kz, full, number, lower, upper)
+    bands = [*(upper[: count - k, k] for k in range(width + 1)), *(lower[: count - k, k] for k in range(1, width + 1))]
+    return csc_matrix(diags_array(bands, offsets=[*range(width + 1), *range(-1, -width - 1, -1)], shape=(count, count)))
 
 
 def threshold(stiffness: Callable[[float], np.ndarray], omega: float) -> tuple[float, float]:

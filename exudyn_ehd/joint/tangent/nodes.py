@@ -146,6 +146,12 @@ class TractionChange:
             # the shear factor knows the scaled speed omega / 2
             thinning = 0.5 * scale * W / H * (film.share() * oil.ratio_v).ravel()
             self.speed[1:, :, 0] += speeds[:, None] * thinning
+        # of the density of Couette shear to the unknowns at all vertices, (n m, count)
+        self.thins: list[csr_matrix] | None = None
+        by_others = film.shear_by_unknowns()
+        if by_others is not None:
+            density = diags((scale * W / H) * film.share().ravel()) @ by_others[:, self.places]
+            self.thins = [csr_matrix(speed * density) for speed in speeds]
         if film.pressing is not None:
             self._add_contacts(film, film.pressing)
 
@@ -180,7 +186,8 @@ class TractionChange:
         out = [at_own(self.load)]
         for c, along in enumerate((self.forces.slope_x, self.forces.slope_z)):
             own = at_own(self.couette[c] + self.by_pressure[c][self.places] * self.pressure)
-            out.append(diags(self.by_slope) @ (along @ pressure) + own)
+            force = diags(self.by_slope) @ (along @ pressure) + own
+            out.append(force if self.thins is None else force + self.thins[c])
         return out
 
     def vertex_forces(self, unknowns: np.ndarray, gap: np.ndarray, moved: np.ndarray, speed: np.ndarray) -> np.ndarray:
@@ -197,6 +204,8 @@ class TractionChange:
                 self.by_slope * (along @ pressure) + self.by_pressure[c] * pressure + self.slope * (along @ moved)
             )
             out[1 + c, self.places] += self.couette[c] * unknowns
+            if self.thins is not None:
+                out[1 + c] += self.thins[c] @ unknowns
         out[0, self.places] += self.load * unknowns
         return out
 

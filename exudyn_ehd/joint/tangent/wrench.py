@@ -157,7 +157,9 @@ def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow
 
 def shear_needs_adjoint(film: SolvedFilm) -> bool:
     """Whether fill or pressure enter the Couette shear."""
-    return film.solver.closure.conserves_mass or film.oil.ratio_q is not None or film.parts.liner is not None
+    s, oil = film.solver, film.oil
+    by_pressure = oil.ratio_q is not None or oil.ratio_g is not None
+    return s.closure.conserves_mass or by_pressure or film.parts.liner is not None
 
 
 def has_extra_rows(film: SolvedFilm) -> bool:
@@ -229,6 +231,9 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
         by_gap = ratio, s.nothing if oil.ratio_h is None else oil.ratio_h, p.liner.gap_slopes.H_P
     by_fill = ratio if s.closure.conserves_mass else s.nothing
     shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
+    by_others = film.gather_shear(g.weight * film.share() / s.H)
+    if by_others is not None:
+        row += by_others.reshape(-1)[w.order[: w.count]]
 
 
 def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:

@@ -10,9 +10,10 @@ from scipy.optimize import brentq, root
 from scipy.special import ndtr
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble
+from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.grid import bearing_grid
+from exudyn_ehd.film.lubricant.shear_profile import fluidity_table, gauss_points, profile
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import film_slopes
 from exudyn_ehd.film.reynolds.links import FilmState
@@ -121,16 +122,22 @@ def contact_twin(contact):
     return pressure, mean
 
 
-def link_twin(effect, vx):
-    """(conductance, carrier) as functions of (i, j, axis, gap) from the textbook formulas."""
+def link_twin(effect, vx, grid, Q):
+    """(conductance, carrier) as functions of (i, j, axis, gap) from the textbook formulas; Q the film's unknown."""
     if effect == "carreau":
-        n, rest = THINNING.exponent, THINNING.residual
+        k, oil = 2.0 * THINNING.relaxation_time * 0.02 / CLEARANCE, fluidity_table(THINNING.exponent, THINNING.residual)
+        # gradients at the vertices, numpy's of second order
+        along = np.gradient(np.pad(Q, ((1, 1), (0, 0)), mode="wrap"), grid.x[1] - grid.x[0], axis=0)[1:-1]
+        across = np.gradient(Q, grid.z, axis=1)
 
         def thinned(i, j, axis, h):
-            s = (THINNING.relaxation_time * 2.0 * 0.02 * vx / (CLEARANCE * h)) ** 2
-            power = (1.0 - rest) * (1.0 + s) ** ((n - 1.0) / 2.0)
-            # along the sliding the tangent of the shear stress, across it the viscosity
-            return h**3 / (rest + power * ((1.0 + n * s) / (1.0 + s) if axis == 0 else 1.0)), h
+            other = ((i + 1) % len(Q), j) if axis == 0 else (i, j + 1)
+            # no gradient at all is a flow over its gradient in the limit
+            own = (Q[other] - Q[i, j] or 1e-9) * (grid.link_x[i] if axis == 0 else grid.link_z[j])
+            cross = across if axis == 0 else along
+            G = 6.0 * k * h * np.array([own, 0.5 * (cross[i, j] + cross[other])])
+            p = profile(k * vx / h, *(G if axis == 0 else G[::-1]), oil, gauss_points(6), 0.0, 0.0)
+            return 12.0 * h**3 * (p.F_x if axis == 0 else p.F_z) / G[0], h
 
         return thinned
     if effect == "rough":
@@ -162,7 +169,6 @@ def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_o
     """Balance of every vertex, link by link, elements by bracketing; P the true pressures but where a film clips."""
     n, m = P.shape
     press, seen = contact_twin(contact)
-    links = link_twin(effect, vx)
     alpha = BARUS.coefficient * SCALE
     D, H, E, rate = (np.zeros((n, m)) for _ in range(4))
     for i, j in itertools.product(range(n), range(m)):
@@ -176,6 +182,7 @@ def twin(grid, rigid, P, fill, beta, contact, vx, vz, inverse, delta_old, mass_o
         rate[i, j] = slope * (rigid[2, i, j] + (D[i, j] - delta_old[i, j]) * inverse)
     # Barus: dp over the viscosity's ratio exp(alpha p), integrated along a link
     Q = (1.0 - np.exp(-alpha * P)) / alpha if effect == "barus" else P
+    links = link_twin(effect, vx, grid, Q)
     r = np.zeros((n, m))
     for i, j in itertools.product(range(n), range(m)):
         k = (i + 1) % n
@@ -257,10 +264,17 @@ def test_matrix_is_the_derivative_of_the_balance(closure, contact, effect):
     e.gradients()
     lower, upper = (np.zeros((P.size, 2 * SMALL.z.size + 6)) for _ in range(2))
     slopes = e.matrix[0]
-    count, width = number_cells(~SMALL.fixed, e.metric[0], w.order, w.number)
-    film_slopes(*(e._sides(e.u)[1:]), None, None, e.terms, slopes)
-    add_gap_slopes(*e._sides(e.u), None, e.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
+    thin = None if e.thin is None else e.thin.response()
+    numbering = number_cells if thin is None else number_with_corners
+    count, width = numbering(~SMALL.fixed, e.metric[0], w.order, w.number)
+    sides = e._sides(e.u)
+    film_slopes(*sides[1:], None, None, e.terms, slopes)
+    if thin is not None:
+        add_tangents(thin[0], e.terms.kx, e.terms.kz, sides[2], slopes)
+    add_gap_slopes(*sides, None, e.terms, e.gap_slopes, e.load, e.rates, e.beta, e.by, slopes)
     assemble(e.metric[0], e.metric[1], slopes, w.number, w.order, count, lower, upper)
+    if thin is not None:
+        add_corners(thin[1], thin[2:], e.terms.kx, e.terms.kz, sides[2], w.number, lower, upper)
     A, B = np.zeros((count, count)), np.zeros((count, count))
     for k in range(count):
         for d in range(min(width, count - 1 - k) + 1):

@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
 from exudyn_ehd.film.reynolds.links import FilmState
-from exudyn_ehd.film.solvers.compiled import solve
+from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
@@ -116,6 +116,7 @@ class LinerBalance(LinerFilm):
             (self.slope_fields, self.load_fields, tuple(self.rates), self.beta, self.by),
             self.matrix,
             w.active if self._chooses() else ~g.fixed,
+            None if self.thin is None else self.thin.response(),
         )
         return bool(ok)
 
@@ -125,7 +126,12 @@ class LinerBalance(LinerFilm):
 
     def step(self, gap: float) -> Step:
         """Newton's step with the factor at hand, and the trial state after it; ``gap`` is the smallest one."""
-        w, opening, pc = self.film.work, gap / self.beta, self.film.system.cavity_pressure
+        w, pc = self.film.work, self.film.system.cavity_pressure
+        # the pressure that would open the gap of a liner; between rigid surfaces none does
+        opening, least = np.inf, SMALLEST_PEAK / self.scale
+        if self.beta > 0.0:
+            opening = gap / self.beta
+            least = LEAST_DEFLECTION * opening
         *found, self.changes = newton_step(
             self.residual,
             self._sides(self.u),
@@ -135,7 +141,7 @@ class LinerBalance(LinerFilm):
             w.count,
             w.width,
             (self.clips, self._chooses()),
-            (pc, self.cavity_load, max(LEAST_DEFLECTION * opening, self.slight), opening, ROUNDED * self.slight),
+            (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
             self._sides(self.trial),
         )
         return Step(*found)
@@ -198,6 +204,9 @@ class LinerBalance(LinerFilm):
         self.u.P[:] = self.trial.P
         if self.fills:
             self.u.fill[:] = self.trial.fill
+        if self.thin is not None:
+            # conductances follow the last correction, too
+            self.balance(self.u)
 
     def sound(self) -> bool:
         """Whether no vertex holds less than nothing, to rounding, which is cut off."""

@@ -41,9 +41,9 @@ def _dry_guess(film: LinerBalance) -> None:
     undeformed surfaces come closer than that."""
     H0 = film.rigid[0]
     guess = np.zeros(H0.shape)
-    if film.contact is None and H0.min() < THIN:
+    if film.contact is None and H0.min() < THIN and film.beta > 0.0:
         guess = np.maximum((THIN - H0) / film.beta, 0.0)
-    if film.oil is not None:
+    if film.oil is not None and film.beta > 0.0:
         guess = _transformed(film, film.oil, guess)
     free = ~film.film.grid.fixed
     lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0

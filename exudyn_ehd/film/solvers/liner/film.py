@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.balance import FilmTerms
 from exudyn_ehd.film.reynolds.links import FilmState, LinkFlux
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -51,6 +52,10 @@ class LinerFilm:
         self.contact, self.limiter, self.oil, self.density = contact, limiter, oil, density = parts
         # coefficients of links that effects change
         self.links: LinkFlux | None = None
+        # the one among them that follows the pressure
+        self.thin = next((e for e in film.flux_effects if isinstance(e, ShearThinning)), None)
+        if self.thin is not None:
+            self.thin.place(film.grid, film.flow_x)
         self.to_pressure: Callable[..., bool] | None = None if oil is None else oil.inverse
         if density is not None:
             self.to_pressure = density.pressure
@@ -197,6 +202,8 @@ class LinerFilm:
         if self.links is None:
             plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
         else:
+            if self.thin is not None:
+                self.thin.see(state.P)
             self.set_links()
         norm = liner_residual(
             state.P,

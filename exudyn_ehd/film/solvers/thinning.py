@@ -1,0 +1,105 @@
+"""Film between rigid surfaces whose conductances follow the pressure: oil that thins by the shear of its own flow.
+
+`exudyn_ehd.film.solvers.nonlinear` without a liner; the rest of the package sees a plain film's links, whose
+derivatives at fixed pressure are those of `LinkFlux`, and Newton's matrix.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.film.banded.many_sides import solve_in_tiles
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.lubricant.density import CompressibleLaw
+from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
+from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.solvers.linear import Closure, FilmSolver, Sensitivities
+from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.status import Status
+
+
+class ThinningFilmSolver(NonlinearFilmSolver):
+    """`FilmSolver` with a `ShearThinning` among its effects.
+
+    Parameters
+    ----------
+    grid, closure, circumferential_pressure_flow, squeeze, flux_effects
+        As for `FilmSolver`.
+    density : CompressibleLaw or None
+        Of a compressible film.
+    """
+
+    plain_links = True
+
+    def __init__(
+        self,
+        grid: FilmGrid,
+        closure: Closure,
+        *,
+        circumferential_pressure_flow: bool = True,
+        squeeze: bool = True,
+        flux_effects: tuple[FluxEffect, ...] = (),
+        density: CompressibleLaw | None = None,
+    ) -> None:
+        super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects, oil=density, density=density)
+        thins, coarse = next(e for e in flux_effects if isinstance(e, ShearThinning)), grid.coarser()
+        self.thins = thins
+        self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
+        thins.place(grid, self.flow_x)
+        if coarse is not None and self.complementary:
+            # for the sets of a start alone
+            self.coarse = FilmSolver(
+                coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
+            )
+
+    def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
+        """Newton's method from the film in which the sliding alone thins the oil; without it from a dry guess."""
+        e, s = self.elements, self.system
+        self.thins.see(self.nothing)
+        self.work.warm = e.reusable = False
+        status, steps = FilmSolver.solve(self, self.vx, self.vz, s.cavity_pressure, mass_old, step)
+        self._set_times(mass_old, step)
+        ok, more = False, 0
+        if status is Status.CONVERGED:
+            if e.fills:
+                np.logical_or(self.work.active, self.grid.fixed, out=e.u.full)
+            self.work.warm = True
+            ok, more = e.solve()
+        if not ok:
+            steps += more
+            ok, more = super()._start(mass_old, step)
+        return ok, steps + more
+
+    def refresh_fixed(self) -> None:
+        """As `FilmSolver.refresh_fixed`."""
+        super().refresh_fixed()
+        FilmSolver.refresh_fixed(self)
+
+    def response(self) -> tuple[np.ndarray, ...]:
+        """`ShearThinning.response` of the last solution."""
+        return self.thins.response()
+
+    def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:
+        """As `FilmSolver.link_derivatives`, of mass flows if compressible."""
+        return FilmSolver.link_derivatives(self, self.elements.rho)
+
+    def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """As `FilmSolver.storage_weights`, of masses if compressible."""
+        return FilmSolver.storage_weights(self, self.elements.rho)
+
+    def sensitivities(self, lam: np.ndarray) -> Sensitivities:
+        """As `FilmSolver.sensitivities`."""
+        return FilmSolver.sensitivities(self, lam)
+
+    def adjoint_columns(self, rhs: np.ndarray) -> None:
+        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
+
+    def direct(self, rhs: np.ndarray) -> None:
+        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
+        w = self.work
+        lower, upper = self._exact_factor()
+        solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
