@@ -11,7 +11,8 @@ d, and the gap g = c - max |p| before, the part s of the step that is taken hold
 
 the smallest s of all films and ends. Coordinates, velocities and accelerations satisfy Newmark's formulas one by one,
 after a part of a step too: the solution stays what it is. Rotations of Lie groups don't add up, and keep their step.
-Films thinner than a thousandth of the clearance, on a contact, are left alone.
+Films thinner than a thousandth of the clearance, on a contact, are left alone. Flexible bores are judged as undeformed:
+a journal that presses into one is free beyond the clearance, and on the way there the steps are a few more or fewer.
 """
 
 from __future__ import annotations
