@@ -66,7 +66,7 @@ class _Solid:
 class ANCFBush(_Solid):
     """A bush of 20-node hexahedra or 10-node tetrahedra in absolute nodal coordinates.
 
-    Any strain and rotation in a joint; `steady` and `equilibrium` take its stiffness at rest.
+    Any strain and rotation in a joint; `steady` and `equilibrium` take its static equilibrium.
 
     Parameters
     ----------

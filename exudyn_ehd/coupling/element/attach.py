@@ -17,7 +17,7 @@ from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
-from exudyn_ehd.joint.model.build_flexible import displacements_at_rest
+from exudyn_ehd.joint.bore.solid import SolidElasticity
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Gravity
@@ -123,7 +123,8 @@ def _attach_nodes(
         require_heavy_housing(mbs, item.node, bush.equations.contained.describe(), name)
     start = initial_coordinates(model, sides)
     if start is not None:
-        u = displacements_at_rest(solid, model.elasticity.force(start)) @ sides[0].frame[:, :3].T
+        assert isinstance(model.elasticity, SolidElasticity)
+        u = model.elasticity.displacements @ sides[0].frame[:, :3].T
         for number, shift in zip(bush.nodeNumbers, u):
             if number >= 0 and shift.any():
                 node = NodeIndex(int(number))

@@ -21,10 +21,9 @@ from exudyn_ehd.coupling.bush.object import FlexibleBush
 from exudyn_ehd.coupling.contract import Evaluation, Index, Side, Trial
 from exudyn_ehd.coupling.element.modal import BoreFilmElement
 from exudyn_ehd.coupling.kinematics import relative
-from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.joint.tangent.nodes import BoreForces
+from exudyn_ehd.joint.tangent.spread import complete, resultant, spread_matrix
 from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -57,8 +56,6 @@ class NodalFilmElement(BoreFilmElement):
         self.reference = bush.solid.mesh.nodes[bush.mesh.bore.nodes]
         self.place = bush.mesh.bore.positions
         self.count = len(self.place)
-        assert isinstance(model.bore, NodalBore)
-        self.forces = BoreForces(model.bore.values, model.grid)
         self._nodal: tuple[Evaluation | None, np.ndarray] = (None, np.zeros((0, 3)))
         self.arms = np.zeros((self.count, 3))
         self.drift = np.zeros((self.count, 3))
@@ -71,12 +68,6 @@ class NodalFilmElement(BoreFilmElement):
         d = self.arms @ A - self.place
         return d[:, :2].ravel(), (self.drift @ A[:, :2]).ravel()
 
-    def _complete(self, wrench: np.ndarray, local: np.ndarray) -> np.ndarray:
-        """Nodal forces (count, 3, ...): those of pressure and shear, and the rest of minus the wrench (6, ...)."""
-        x = self.arms @ self.sides[0].frame[:, :3]
-        rest = -wrench - np.tensordot(resultant(x), local.reshape(3 * self.count, *local.shape[2:]), 1)
-        return local + np.tensordot(relative.spread_matrix(x), rest, 1)
-
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray:
         """Displacement (k, 3) of the bush's mesh against the housing, to whose frame the sides were brought."""
         frame = self.sides[0].frame
@@ -86,8 +77,8 @@ class NodalFilmElement(BoreFilmElement):
     def nodal_forces(self, evaluation: ElasticEvaluation) -> np.ndarray:
         """Forces on the bore's nodes (count, 3), joint frame, N."""
         if self._nodal[0] is not evaluation:
-            self._nodal = evaluation, evaluation.nodal_forces(self.forces)
-        return self._complete(evaluation.wrench, self._nodal[1])
+            self._nodal = evaluation, evaluation.nodal_forces()
+        return complete(self.arms @ self.sides[0].frame[:, :3], evaluation.wrench, self._nodal[1])
 
     def _quantities(self, evaluation: Evaluation) -> dict[str, float]:
         assert isinstance(evaluation, ElasticEvaluation)
@@ -108,7 +99,7 @@ class NodalFilmElement(BoreFilmElement):
 
     def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
         evaluation = self._evaluation(trial)
-        wrench, nodal = evaluation.nodal_tangent(self.forces)
+        wrench, nodal = evaluation.nodal_tangent()
         T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(wrench[:, :MOTION_SIZE]))
@@ -173,7 +164,8 @@ class NodalFilmElement(BoreFilmElement):
         whole[n_h:n] = self._wrench_map()[n_h:] @ by_bore[:6]
         whole[n_h:n, :n] += rigid[n_h:]
         by_bore[:, :n] += by_motion
-        nodal = self._complete(by_bore[:6], by_bore[6:].reshape(self.count, 3, size))
+        local = by_bore[6:].reshape(self.count, 3, size)
+        nodal = complete(self.arms @ self.sides[0].frame[:, :3], by_bore[:6], local)
         whole[n:] = np.einsum("ij,ajc->aic", self.sides[0].frame[:, :3], nodal).reshape(-1, size)
         return whole
 
@@ -192,7 +184,7 @@ class NodalTangent:
 
     def __init__(self, element: NodalFilmElement, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> None:
         evaluation = element._evaluation(trial)
-        self.film = evaluation.nodal_product(element.forces)
+        self.film = evaluation.nodal_product()
         self.factors = f_q, f_qt
         self.n, self.n_h, self.count = element.rigid_size, element.sides[0].size, element.count
         stiffness, damping, by_place, by_rate = element._rigid_derivatives(mbs, trial, self.film.wrench)
@@ -202,7 +194,7 @@ class NodalTangent:
         self.frame, omega = element.sides[0].frame[:, :3], element.sides[0].frame[:, 5]
         self.turning = (self.frame[:, :2].T @ -relative.skew(omega)).T
         x = element.arms @ self.frame
-        self.spread, self.resultant = relative.spread_matrix(x).reshape(-1, 6), resultant(x)
+        self.spread, self.resultant = spread_matrix(x).reshape(-1, 6), resultant(x)
         if self.n_h:
             self.place, self.drift = element._housing_maps()
             self.turned = f_q * element._turning_forces(evaluation)
@@ -228,16 +220,6 @@ class NodalTangent:
         if n_h:
             out[n:] += self.turned @ change[:n_h]
         return np.negative(out, out=out)
-
-
-def resultant(x: np.ndarray) -> np.ndarray:
-    """Force and moment about O (6, 3 count) of nodal forces at x (count, 3)."""
-    out = np.zeros((6, len(x), 3))
-    out[0, :, 0] = out[1, :, 1] = out[2, :, 2] = 1.0
-    out[3, :, 1], out[3, :, 2] = -x[:, 2], x[:, 1]
-    out[4, :, 0], out[4, :, 2] = x[:, 2], -x[:, 0]
-    out[5, :, 0], out[5, :, 1] = -x[:, 1], x[:, 0]
-    return out.reshape(6, -1)
 
 
 def _per_node(rows: np.ndarray, map_: np.ndarray) -> np.ndarray:

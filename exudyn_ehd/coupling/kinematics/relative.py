@@ -195,39 +195,6 @@ def modal_jacobian(tangent, k_rigid, d_rigid, motion_q, motion_qt, wrench_map, f
 
 
 @njit(cache=True)
-def spread_matrix(x):
-    """Map (count, 3, 6) from a force and a moment about O to forces with these resultants at points x (count, 3).
-
-    The forces are ``(a + b x r) / count``.
-    """
-    count = len(x)
-    mean, second = np.zeros(3), np.zeros((3, 3))
-    for k in range(count):
-        for i in range(3):
-            mean[i] += x[k, i] / count
-            for j in range(3):
-                second[i, j] += x[k, i] * x[k, j] / count
-    # force = a + b x mean, moment = mean x a + int r x (b x r)
-    both = np.eye(6)
-    both[0, 4], both[0, 5], both[1, 5] = mean[2], -mean[1], mean[0]
-    both[1, 3], both[2, 3], both[2, 4] = -mean[2], mean[1], -mean[0]
-    both[3:, :3] = both[:3, 3:].T
-    trace = second[0, 0] + second[1, 1] + second[2, 2]
-    for i in range(3):
-        for j in range(3):
-            both[3 + i, 3 + j] = (trace if i == j else 0.0) - second[i, j]
-    ab = np.linalg.inv(both) / count
-    out = np.empty((count, 3, 6))
-    for k in range(count):
-        for c in range(6):
-            b0, b1, b2 = ab[3, c], ab[4, c], ab[5, c]
-            out[k, 0, c] = ab[0, c] + b1 * x[k, 2] - b2 * x[k, 1]
-            out[k, 1, c] = ab[1, c] + b2 * x[k, 0] - b0 * x[k, 2]
-            out[k, 2, c] = ab[2, c] + b0 * x[k, 1] - b1 * x[k, 0]
-    return out
-
-
-@njit(cache=True)
 def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, motion_qt, k_out, d_out):
     """Add dQ/dq to ``k_out`` and write dQ/dq_t to ``d_out`` (n, n); ``k_out`` brings the geometric blocks of the sides.
 

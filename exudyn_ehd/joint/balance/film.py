@@ -67,6 +67,8 @@ def evaluate_at(
 def _without_a_shape(evaluation: ElasticEvaluation) -> str:
     """Why no shape of a flexible bore has a film, and what to do."""
     bearing, last = evaluation.model.bearing, evaluation.closing
+    if evaluation.model.elasticity.failure:
+        return f"{type(bearing.bush).__name__}: {evaluation.model.elasticity.failure}"
     missing = f"no shape of the {type(bearing.bush).__name__}'s bore was found in balance with a film"
     if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
         return (

@@ -4,4 +4,5 @@ Module map
 ----------
 shapes       displacement of the bore on the film's grid
 equilibrium  bore in balance with its film
+solid        the same for the mesh of a nodal bush, at any strain
 """

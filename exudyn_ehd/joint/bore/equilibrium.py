@@ -38,11 +38,20 @@ LARGEST_WAY = 3000
 class Elasticity:
     """What resists the bore's coordinates in a steady state: a constant stiffness matrix.
 
+    `exudyn_ehd.joint.bore.solid` has that of a solid at any strain.
+
     Parameters
     ----------
     make : function
         Returns the matrix (k, k), N/m; called when it is first needed.
+
+    Attributes
+    ----------
+    failure : str
+        Why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
     """
+
+    failure = ""
 
     def __init__(self, make: Callable[[], np.ndarray]) -> None:
         self._make = make
@@ -60,6 +69,24 @@ class Elasticity:
         """Solve ``(K - softening) x = rhs`` for rhs (k,) or (k, r), K the stiffness at q."""
         return np.linalg.solve(self.stiffness - softening, rhs)
 
+    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k) of a film after `settle`, good enough for a search."""
+        return evaluation.tangent()
+
+    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray | None:
+        """The same, exact; None if `tangent` is."""
+        return None
+
+    def settle(
+        self,
+        model: FilmOnBore[NodalEvaluation],
+        motion: np.ndarray,
+        film: tuple[History | None, float, float],
+        start: np.ndarray,
+    ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
+        """As `bore_equilibrium`."""
+        return bore_equilibrium(model, motion, film, start)
+
 
 class BoreEvaluation(Protocol):
     """A film on a bore with given coordinates."""
@@ -70,6 +97,21 @@ class BoreEvaluation(Protocol):
     def bore(self) -> BoreState: ...
     def combined_tangent(self, by_place: float, by_rate: float) -> np.ndarray:
         """d (wrench, Q) to the motion, and ``by_place d/dq + by_rate d/dq_t``, (6 + k, 10 + k)."""
+
+
+class NodalEvaluation(BoreEvaluation, Protocol):
+    """A film on the nodes of a bore."""
+
+    @property
+    def motion(self) -> np.ndarray: ...
+    def tangent(self) -> np.ndarray:
+        """d (wrench, Q) / d motion (6 + k, 10 + 2 k)."""
+
+    def forces_at(self, x: np.ndarray) -> np.ndarray:
+        """Forces (nodes, 3) on the bore's nodes at x (nodes, 3), N."""
+
+    def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """d wrench / d motion (6, 10 + 2 k), and that of `forces_at` (nodes, 3, 10 + 2 k)."""
 
 
 Result = TypeVar("Result", bound=BoreEvaluation, covariant=True)

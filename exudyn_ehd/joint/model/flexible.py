@@ -5,13 +5,14 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
     motion = [x, y, ..., omega, w, q_1 .. q_k, dq_1/dt .. dq_k/dt];
 
 the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of
-this model; only `evaluate_steady` knows its stiffness K and finds the q with K q = Q.
+this model; only `evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
 """
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +20,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.sensitivity.bore_stencil import add_gap
-from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium, condensed_tangent
+from exudyn_ehd.joint.bore.equilibrium import Elasticity, condensed_tangent
 from exudyn_ehd.joint.bore.shapes import Bore, NodalBore
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.seams import Effects
@@ -35,6 +36,7 @@ from exudyn_ehd.joint.solved_film import (
 )
 from exudyn_ehd.joint.tangent.bore import TangentProduct, elastic_tangent
 from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tangent, traction
+from exudyn_ehd.joint.tangent.spread import complete
 from exudyn_ehd.status import Status
 
 # Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the
@@ -94,31 +96,44 @@ class ElasticEvaluation(Evaluation):
             return np.full((6 + k, MOTION_SIZE + k * len(combinations)), np.nan)
         return elastic_tangent(film, self.model.bore, *combinations)
 
-    def steady_tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) with the bore following slowly, after `ElasticBearingModel.evaluate_steady`."""
-        return condensed_tangent(self.tangent(), self.model.elasticity, self.bore.coordinates)
+    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+        """d wrench / d motion (6, 10) with the bore following slowly; as `Evaluation.steady_tangent`."""
+        elasticity = self.model.elasticity
+        tangent = elasticity.tangent(self) if rough is None else elasticity.refined_tangent(self)
+        if tangent is None:
+            return super().steady_tangent(rough)
+        return condensed_tangent(tangent, elasticity, self.bore.coordinates)
 
     def tangent_product(self) -> TangentProduct:
         """The tangent as an operator; there must be a film."""
         return TangentProduct(self._found(), self.model.bore)
 
-    def nodal_forces(self, forces: BoreForces) -> np.ndarray:
+    def nodal_forces(self) -> np.ndarray:
         """Forces (nodes, 3) of pressure, shear and contacts on the nodes of a nodal bore, joint frame, N.
 
         There must be a film.
         """
-        shear = traction(self._found(), forces)
-        nodal = forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
+        shear = traction(self._found(), self.model.bore_forces)
+        nodal = self.model.bore_forces.nodal(np.concatenate((np.zeros((1, shear.shape[1])), shear)))
         nodal[:, :2] += self.bore.load.reshape(-1, 2)
         return nodal
 
-    def nodal_tangent(self, forces: BoreForces) -> tuple[np.ndarray, np.ndarray]:
-        """As `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
-        return nodal_tangent(self._found(), self._nodes(), forces)
+    def forces_at(self, x: np.ndarray) -> np.ndarray:
+        """`nodal_forces` on nodes at x (nodes, 3), completed to the opposite of the wrench on the journal."""
+        return complete(x, self.wrench, self.nodal_forces())
 
-    def nodal_product(self, forces: BoreForces) -> NodalProduct:
+    def nodal_tangent(self) -> tuple[np.ndarray, np.ndarray]:
+        """As `exudyn_ehd.joint.tangent.nodes.nodal_tangent`; there must be a film."""
+        return nodal_tangent(self._found(), self._nodes(), self.model.bore_forces)
+
+    def tangent_at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """`nodal_tangent` with the forces completed as in `forces_at`."""
+        wrench, nodal = self.nodal_tangent()
+        return wrench, complete(x, wrench, nodal)
+
+    def nodal_product(self) -> NodalProduct:
         """The tangent of wrench and nodal forces as an operator; there must be a film."""
-        return NodalProduct(self._found(), self._nodes(), forces)
+        return NodalProduct(self._found(), self._nodes(), self.model.bore_forces)
 
     def quantities(self) -> dict[str, float]:
         """As `Evaluation.quantities`, and ``bore_displacement`` (m, largest)."""
@@ -221,6 +236,12 @@ class ElasticBearingModel(BearingModel):
         self._end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
         self._area = self.grid.weight * self.grid.reference_length**2
 
+    @cached_property
+    def bore_forces(self) -> BoreForces:
+        """Of a nodal bore: what carries the film's forces to its nodes."""
+        assert isinstance(self.bore, NodalBore)
+        return BoreForces(self.bore.values, self.grid)
+
     def _journal(self, motion: np.ndarray) -> JournalMotion:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""
         motion, k = np.asarray(motion, dtype=float), self.bore.size
@@ -290,8 +311,9 @@ class ElasticBearingModel(BearingModel):
         Starts from the coordinates of the last evaluation. NOT_CONVERGED if no equilibrium was found.
         """
         start = self._coordinates.copy()
-        found, steps, (part, q) = bore_equilibrium(self, motion, (history, step, spin), start)
+        found, steps, (part, q) = self.elasticity.settle(self, motion, (history, step, spin), start)
         if found is not None:
+            assert isinstance(found, ElasticEvaluation)
             return dataclasses.replace(found, settling_steps=steps)
         closing = self._closing(motion, (history, step, spin), part, q) if part > 0.0 else None
         evaluation = self.evaluate(motion, history, step, spin)

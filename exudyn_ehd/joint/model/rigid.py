@@ -74,9 +74,12 @@ class Evaluation:
         film = self._current()
         return np.full((6, MOTION_SIZE), np.nan) if film is None else wrench_tangent(film, slow_motion)
 
-    def steady_tangent(self) -> np.ndarray:
-        """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows."""
-        return self.tangent()
+    def steady_tangent(self, rough: np.ndarray | None = None) -> np.ndarray:
+        """d wrench / d motion (6, 10) after `BearingModel.evaluate_steady`; a flexible bore follows.
+
+        On a nodal bush good enough for a search; exact if called again with that result as ``rough``.
+        """
+        return self.tangent() if rough is None else rough
 
     def quantities(self) -> dict[str, float]:
         """Scalars of this state in SI units; see `exudyn_ehd.joint.model.quantities.quantities`."""

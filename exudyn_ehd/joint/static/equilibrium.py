@@ -117,7 +117,7 @@ def equilibrium(
     come from `EquilibriumResult.dynamic_stiffness`. With ``thermal`` they hold at the temperature of the equilibrium;
     `EquilibriumResult.settled_stiffness` lets it follow. On a liner or a flexible bore the stiffness is that of the
     steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
-    `ElrodAdams`). Bushes are linear, as in `steady`.
+    `ElrodAdams`). An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed state.
 
     Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
     would and returns the one that it comes to; `stribeck` follows a branch over the speed.
@@ -156,7 +156,7 @@ def equilibrium(
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium")
     found = search.find(motion)
-    evaluation, tangent = found.evaluation, found.tangent
+    evaluation, tangent = found.evaluation, found.evaluation.steady_tangent(found.tangent)
     response, frequency = None, 0.0
     if model.remembers_mass and model.parts.liner is None and not model.flexible and evaluation.film is not None:
         response = FilmResponse(evaluation.film, tangent)
@@ -193,7 +193,8 @@ def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
         return evaluation.tangent(slow_motion=True)
     if not model.remembers_mass:
         return tangent
-    return model.evaluate(evaluation.motion, evaluation.history()).steady_tangent()
+    sudden = model.evaluate(evaluation.motion, evaluation.history())
+    return sudden.steady_tangent(sudden.steady_tangent())
 
 
 def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) -> tuple[float, float]:

@@ -24,7 +24,7 @@ from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.status import InputError, Status, StrainWarning, require_number, require_size, require_vector, warn_user
 
-# Of a bush, displacement over thickness: above, what its stiffness at rest says is off by more than one per cent.
+# Of a linear bush, displacement over thickness: above, its displacement is off by more than one per cent.
 LARGEST_STRAIN = 0.01
 SPEEDS = {"smallest": 1e-30, "largest": 1e6}
 
@@ -122,8 +122,8 @@ def steady(
 ) -> SteadyResult:
     """Film at a prescribed position.
 
-    A bush, `ANCFBush` too, resists with its stiffness at rest; where the bore yields by more than 1 % of the bush's
-    wall, a `StrainWarning` says so. A joint takes the strains of an `ANCFBush` in full.
+    An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
+    its bore yields by more than 1 % of the wall, a `StrainWarning` says so.
 
     Parameters
     ----------
@@ -182,8 +182,9 @@ MORE_OIL = (
 
 
 def _warn_of_strain(film: SolvedFilm, where: str) -> None:
-    """Warn where a bush strains beyond what its stiffness at rest describes."""
-    mesh, c = getattr(film.parts.bearing.bush, "mesh", None), film.parts.bearing.radial_clearance
+    """Warn where a `ModalBush` strains beyond what its modes describe."""
+    bush, c = film.parts.bearing.bush, film.parts.bearing.radial_clearance
+    mesh = getattr(bush, "mesh", None) if hasattr(bush, "tolerance") else None
     # of a mesh of its own from the journal to the nearest point of its outer surface
     wall = (
         math.inf
@@ -194,9 +195,8 @@ def _warn_of_strain(film: SolvedFilm, where: str) -> None:
     share = 0.0 if film.bore is None else c * float(np.abs(film.bore.displacement).max()) / wall
     if share > LARGEST_STRAIN:
         warn_user(
-            f"{where}: the bore yields by {share:.1%} of the bush's wall, and the bush is taken as linear here: its "
-            "displacement is off by one to two times that share. An ANCFBush in a joint takes strains in full: let a "
-            "run settle.",
+            f"{where}: the bore yields by {share:.1%} of the bush's wall, and a ModalBush is linear: its displacement "
+            "is off by one to two times that share. Take an ANCFBush, with NeoHooke(...) for large strain.",
             StrainWarning,
         )
 

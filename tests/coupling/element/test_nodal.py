@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 
+import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 from exudyn.utilities import InertiaCylinder
-from scenes import new_system, rotation, settings
+from scenes import NODE_TYPES, new_system, rotation, settings
 
 import exudyn_ehd as ehd
 
@@ -213,3 +214,46 @@ def test_own_solver_follows_exudyns_full_newton_on_a_moving_housing():
     # both to a relative residual of 1e-8; the iterations of full Newton, and up to one more per step
     assert abs(motions[1] - motions[0]).max() < 1e-6 * C
     assert run.iterations <= full + steps
+
+
+RUBBER = dataclasses.replace(CYLINDER, inner_radius=0.03 + C, thickness=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("law", "modulus", "load"),
+    [
+        (ehd.NeoHooke, 1e7, 600.0),
+        pytest.param(ehd.SaintVenantKirchhoff, 1e7, 600.0, marks=pytest.mark.slow),
+        pytest.param(ehd.NeoHooke, 1e7, 60.0, marks=pytest.mark.slow),
+        pytest.param(ehd.SaintVenantKirchhoff, 1e8, 3e3, marks=pytest.mark.slow),
+        pytest.param(ehd.NeoHooke, 3e9, 1e4, marks=pytest.mark.slow),
+    ],
+)
+def test_steady_films_on_soft_bushes_are_those_of_a_static_solve(law, modulus, load):
+    """The mesh in Exudyn's own static solver, from a start at another position."""
+    bush = ehd.ANCFBush(mesh=RUBBER, material=law(youngs_modulus=modulus, poisson_ratio=0.3, density=1200.0))
+    bearing = dataclasses.replace(BEARING, bush=bush)
+    eq = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -load))
+    mbs = new_system()
+    journal = mbs.CreateRigidBody(
+        initialDisplacement=[*(0.8 * eq.position), 0.0],
+        initialAngularVelocity=[0.0, 0.0, SPEED],
+        inertia=InertiaCylinder(7800, 0.3, 0.03, 2),
+        nodeType=NODE_TYPES["Rxyz"],
+    )
+    ground = mbs.CreateGround()
+    joint = ehd.CreateLubricatedJoint(mbs, "b", [ground, journal], [0, 0, 0], [0, 0, 1], bearing)
+    mbs.CreateForce(itemNumber=journal, loadVector=[0.0, -load, 0.0])
+    zero = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=mbs.AddNode(eii.NodePointGround()), coordinate=0))
+    node = mbs.GetObject(journal)["nodeNumber"]
+    for c in range(2, 6):
+        marker = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=c))
+        mbs.AddObject(eii.ObjectConnectorCoordinate(markerNumbers=[zero, marker]))
+    mbs.Assemble()
+    mbs.SolveStatic(settings(1.0, 1))
+    h, film = joint.history, eq.film
+    assert np.abs(h.eccentricity[-1] - eq.position).max() < 1e-6 * C
+    assert h.minimum_gap[-1] == pytest.approx(film.minimum_gap, rel=1e-6)
+    assert h.peak_pressure[-1] == pytest.approx(film.peak_pressure, rel=1e-6)
+    assert np.allclose(h.force[-1, :2], film.force[:2], rtol=0, atol=1e-6 * load)
+    assert h.bore_displacement[-1] == pytest.approx(np.abs(film.bore_displacement).max(), rel=1e-6)

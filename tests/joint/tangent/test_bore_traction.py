@@ -70,7 +70,7 @@ def test_shear_is_that_of_its_definition_and_adds_up_to_the_torque_of_the_bearin
     film = evaluation.film
     expected, got = plain(film), traction(film, forces).reshape(2, *model.grid.shape)
     assert np.abs(got - expected).max() < 1e-12 * np.abs(expected).max()
-    nodal = evaluation.nodal_forces(forces)
+    nodal = evaluation.nodal_forces()
     R = model.grid.reference_length
     if option not in ("rough journal", "asperity"):
         # summed by parts there, by differences here: of the second order of the grid of 32 x 6
@@ -98,12 +98,12 @@ def test_shear_of_a_concentric_journal_is_that_of_petroff():
 
 @pytest.mark.parametrize("option", MORE)
 def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
-    model, motion, history, step, evaluation, forces = evaluated(option)
+    model, motion, history, step, evaluation, _ = evaluated(option)
     probe = build_model(make_bearing(BUSHES["nodal"], **MORE[option]))
     k, active = model.bore.size, model.solver.work.active.copy()
-    wrench, nodal = evaluation.nodal_tangent(forces)
+    wrench, nodal = evaluation.nodal_tangent()
     assert np.abs(wrench - evaluation.tangent()[:6]).max() < 1e-12 * np.abs(wrench).max()
-    product = evaluation.nodal_product(forces)
+    product = evaluation.nodal_product()
     change = np.random.default_rng(4).normal(size=motion.size)
     unit = np.concatenate(([C, C, C / 0.03, C / 0.03, 0.01, 0.01, 0.3, 0.3, 300, 9.0], np.full(k, C), np.full(k, 0.01)))
     change *= unit
@@ -119,7 +119,7 @@ def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
             for sign in (1.0, -1.0):
                 moved = motion.copy()
                 moved[j] += sign * size * unit[j]
-                ends.append(probe.evaluate(moved, history, step).nodal_forces(forces))
+                ends.append(probe.evaluate(moved, history, step).nodal_forces())
                 same &= np.array_equal(probe.solver.work.active, active)
             if same:
                 break

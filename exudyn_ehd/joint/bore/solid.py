@@ -1,0 +1,291 @@
+"""The bore of a nodal bush in balance with its film: the solid's own static equilibrium, at any strain.
+
+With the displacements u of the mesh, its internal forces f(u) and the film's forces F on the nodes of the bore
+
+    f(u) = F(u)    with the outer surface held,
+
+F as on the same nodes in a joint. The solid is linear about a state u0, ``f(u0) + K (u - u0)``; condensed on the x and
+y displacements q of the bore's nodes it resists the film's pressure as ``K_c (q - q_free)``, which
+`exudyn_ehd.joint.bore.equilibrium` balances, far from the solution too. From there the same K, with the film's slope
+S, corrects u by ``(K - S) du = F - f(u)``: each correction costs one film. Where they contract too slowly the solid is
+made linear about the state that they have reached, and so on.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.linalg import LinAlgError
+from scipy.linalg import lu_factor, lu_solve
+from scipy.sparse.linalg import SuperLU
+
+from exudyn_ehd.joint.bore.equilibrium import Elasticity, FilmOnBore, Newton, NodalEvaluation, bore_equilibrium
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.solid.static_equilibrium import symmetric_factor
+from exudyn_ehd.solid.total_lagrange import TotalLagrange
+from exudyn_ehd.status import Status
+
+# Of the residual over the film's forces: what counts as balanced, and what does where rounding lets it fall no more.
+TOLERANCE, ROUNDING = 1e-11, 1e-8
+# Largest ratio of successive residuals of the corrections, and those up to which their K serves a search and a tangent.
+SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
+# Corrections by one K; states at which the solid is made linear in a search, and parts of a step that lead to one.
+CORRECTIONS, LINEARISATIONS, HALVINGS = 40, 40, 8
+SMALLEST_PART = 0.05
+# Of nodes of the bore that are held: times the largest stiffness of the others.
+HELD = 1e6
+NO_BALANCE = (
+    "the solid finds no balance with the film's load, which may lie above a limit point; take NeoHooke(...) for "
+    "strains beyond a few per cent, a finer mesh, a thicker wall, or less load."
+)
+
+
+Film = tuple[History | None, float, float]
+
+
+class SolidElasticity(Elasticity):
+    """What resists the bore's coordinates in a steady state: a solid, linear about a state near its last balance.
+
+    Parameters
+    ----------
+    solid : TotalLagrange
+        Bush frame = joint frame.
+
+    Attributes
+    ----------
+    displacements : (n, 3) array
+        u of the last balance, m.
+    """
+
+    def __init__(self, solid: TotalLagrange) -> None:
+        super().__init__(self._linearise)
+        mesh = solid.mesh
+        self.solid = solid
+        free = np.ones(mesh.nodes.shape, dtype=bool)
+        free[mesh.outer.nodes] = False
+        self._free = free.ravel()
+        # places of the bore's x and y among the free coordinates, of those that are free themselves
+        self._moves = free[mesh.bore.nodes, :2].ravel()
+        self._places = (np.cumsum(self._free) - 1)[(3 * mesh.bore.nodes[:, None] + np.arange(2)).ravel()][self._moves]
+        self.displacements, self._beside = np.zeros(free.shape), np.zeros(free.shape)
+        self._contraction, self._linearised, self._pose = 0.0, 0, np.zeros(4)
+        self._q_free = np.zeros(self._moves.size)
+        self._reached = 0.0, self._q_free
+        self._factor: SuperLU | None = None
+
+    def force(self, q: np.ndarray) -> np.ndarray:
+        """Generalised force (k,) that holds the bore of the linear solid at q, N."""
+        return self.stiffness @ (q - self._q_free)
+
+    def tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
+        """As `Elasticity.tangent`: without the forces that are no radial loads, and by a K of a state nearby."""
+        self._require(NEARBY)
+        return evaluation.tangent()
+
+    def refined_tangent(self, evaluation: NodalEvaluation) -> np.ndarray:
+        """Exact: of all forces on the bore's nodes, with the solid linear about the last balance.
+
+        Forces along z act as the loads on q that displace the bore alike.
+        """
+        self._require(EXACT)
+        bore, moves = self.solid.mesh.bore, self._moves
+        wrench, nodal = evaluation.tangent_at(bore.positions + self.displacements[bore.nodes])
+        loads = nodal[:, :2].reshape(-1, nodal.shape[2])
+        loads[moves] += (self.stiffness[np.ix_(moves, moves)] @ self._by_axial.T) @ nodal[:, 2]
+        return np.concatenate((wrench, loads))
+
+    def settle(
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+    ) -> tuple[NodalEvaluation | None, int, tuple[float, np.ndarray]]:
+        """As `bore_equilibrium`; from the last balance on, or else from the undeformed bush."""
+        self.failure, self._linearised, self._reached = "", 0, (0.0, start)
+        if self._factor is None:
+            self._renew()
+        last, pose, rest = self.displacements, self._pose, np.zeros_like(self.displacements)
+        found, trials = self._balance(model, motion, film, start)
+        if found is None and last.any():
+            self._return(last)
+            found, more = self._approach(model, motion, film, start)
+            trials += more
+        if found is None and last.any():
+            self._return(rest)
+            found, more = self._balance(model, motion, film, np.zeros_like(start))
+            trials += more
+        if found is None and (self.failure or not last.any()):
+            self._return(rest)
+            self._pose = np.zeros(4)
+            found, more = self._approach(model, motion, film, np.zeros_like(start))
+            trials += more
+        if found is None:
+            self._return(last)
+            self._pose = pose
+        else:
+            self.failure, self._pose = "", motion[:4].copy()
+        return found, trials, self._reached
+
+    def _approach(
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+    ) -> tuple[NodalEvaluation | None, int]:
+        """As `_balance`, with the pose in parts from that of the present displacements on."""
+        reached, part, trials = 0.0, 0.5, 0
+        between = motion.copy()
+        while part > SMALLEST_PART and self._linearised < LINEARISATIONS:
+            target, before = min(1.0, reached + part), self.displacements
+            between[:4] = (1.0 - target) * self._pose + target * motion[:4]
+            near, count = self._balance(model, between, film, start)
+            trials += count
+            if near is None:
+                self._return(before)
+                part *= 0.5
+            elif target == 1.0:
+                return near, trials
+            else:
+                reached, start = target, near.bore.coordinates.copy()
+        return None, trials
+
+    def _balance(
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+    ) -> tuple[NodalEvaluation | None, int]:
+        """Film and bush in balance, from the present displacements on, and the trials; None if it was not found."""
+        trials = 0
+        try:
+            while True:
+                self._release()
+                evaluation, count = self._settled(model, motion, film, start)
+                trials += count
+                if evaluation is None:
+                    return None, trials
+                if self._follow(evaluation):
+                    balanced, count = self._correct(model, film, evaluation)
+                    trials += count
+                    if balanced is not None:
+                        self.failure = self.solid.inversion(self.displacements)
+                        return None if self.failure else balanced, trials
+                if self._linearised >= LINEARISATIONS:
+                    break
+                self._renew()
+                start = self._coordinates(self.displacements)
+        except (RuntimeError, LinAlgError):
+            pass
+        self.failure = self.solid.inversion(self.displacements) or NO_BALANCE
+        return None, trials
+
+    def _settled(
+        self, model: FilmOnBore[NodalEvaluation], motion: np.ndarray, film: Film, start: np.ndarray
+    ) -> tuple[NodalEvaluation | None, int]:
+        """The bore of the linear solid in balance with the film, and the trials; None if it was not found.
+
+        What is linear about a deformed state describes no bore that is far from it: from there the bore comes to
+        balance on its own.
+        """
+        if not self.displacements.any():
+            evaluation, trials, self._reached = bore_equilibrium(model, motion, film, start)
+            return evaluation, trials
+        newton = Newton(model, motion, film)
+        return newton.solve(start, 1.0, straight=True), newton.trials
+
+    def _follow(self, evaluation: NodalEvaluation) -> bool:
+        """Move the linear solid under the film's loads; a part of the way, and False, where it would be torn."""
+        u, nodes = self.displacements, self.solid.mesh.bore.nodes
+        load = self._beside.copy()
+        load[nodes, :2] += evaluation.bore.load.reshape(-1, 2)
+        lack = self._free_part(load - self.solid.force(u))
+        step, before, part = self._answer(lack), float(np.linalg.norm(lack)), 1.0
+        for _ in range(HALVINGS):
+            self.displacements = u + part * step
+            after = float(np.linalg.norm(self._free_part(load - self.solid.force(self.displacements))))
+            if after < 2.0 * before or after <= ROUNDING * np.linalg.norm(load):
+                return part == 1.0
+            part *= 0.5
+        raise LinAlgError
+
+    def _correct(
+        self, model: FilmOnBore[NodalEvaluation], film: Film, evaluation: NodalEvaluation
+    ) -> tuple[NodalEvaluation | None, int]:
+        """Balance by the same K and the film's slope at a film, and the trials; None if that is slow."""
+        full, k, nodes = evaluation.motion.copy(), self._q_free.size, self.solid.mesh.bore.nodes
+        S = evaluation.combined_tangent(1.0, 0.0)[6:, MOTION_SIZE:]
+        factor = lu_factor(self.stiffness - S)
+        lack, size = self._lack(self.displacements, evaluation)
+        error, last = float(np.linalg.norm(lack)), np.inf
+        for count in range(CORRECTIONS):
+            rounded = error <= ROUNDING * size
+            if error <= TOLERANCE * size or (rounded and error > 0.5 * last):
+                return evaluation, count
+            if not rounded and error > SLOWEST * last:
+                break
+            step, load = self._answer(lack), np.zeros_like(lack)
+            moved = lu_solve(factor, self.stiffness @ self._coordinates(step))
+            load[nodes, :2] = (S @ moved).reshape(-1, 2)
+            u = self.displacements + step + self._answer(load)
+            full[MOTION_SIZE : MOTION_SIZE + k] = self._coordinates(u)
+            evaluation = model.evaluate(full, *film)
+            if evaluation.status is not Status.CONVERGED:
+                break
+            lack, size = self._lack(u, evaluation)
+            error, last = float(np.linalg.norm(lack)), error
+            if not (error < last or rounded):
+                break
+            self.displacements = u
+            if not rounded:
+                self._contraction = error / last
+        return None, count + 1
+
+    def _lack(self, u: np.ndarray, evaluation: NodalEvaluation) -> tuple[np.ndarray, float]:
+        """F - f(u) (n, 3) at the free coordinates, and the size of F, N; keeps what of F is no radial load."""
+        mesh, load = self.solid.mesh, np.zeros_like(u)
+        load[mesh.bore.nodes] = evaluation.forces_at(mesh.bore.positions + u[mesh.bore.nodes])
+        self._beside = load.copy()
+        self._beside[mesh.bore.nodes, :2] -= evaluation.bore.load.reshape(-1, 2)
+        return self._free_part(load - self.solid.force(u)), float(np.linalg.norm(load))
+
+    def _linearise(self) -> np.ndarray:
+        """K about the present displacements: its factor, and K_c (k, k), N/m."""
+        free = self._free
+        self._factor = factor = symmetric_factor(self.solid.tangent(self.displacements)[free][:, free])
+        self._contraction, self._linearised = 0.0, self._linearised + 1
+        places = self._places
+        unit = np.zeros((int(free.sum()), places.size))
+        unit[places, np.arange(places.size)] = 1.0
+        answer = factor.solve(unit)
+        inner = np.linalg.inv(answer[places])
+        axial = 3 * self.solid.mesh.bore.nodes + 2
+        self._by_axial = np.where(free[axial, None], answer[(np.cumsum(free) - 1)[axial]], 0.0)
+        if self._moves.all():
+            return 0.5 * (inner + inner.T)
+        # nodes that are held are so beside the others
+        stiffness = np.diag(np.where(self._moves, 0.0, HELD * np.abs(np.diag(inner)).max()))
+        stiffness[np.ix_(self._moves, self._moves)] = 0.5 * (inner + inner.T)
+        return stiffness
+
+    def _require(self, contraction: float) -> None:
+        """Make the solid linear about its last balance where the corrections went on more slowly than that."""
+        if self._contraction > contraction:
+            self._renew()
+
+    def _renew(self) -> None:
+        self.stiffness = self._linearise()
+        self._release()
+
+    def _return(self, u: np.ndarray) -> None:
+        """Go back to displacements u; what was linear about them may be so about others now, and serves as well."""
+        self.displacements, self._beside = u, np.zeros_like(u)
+        if self._linearised:
+            self._renew()
+
+    def _release(self) -> None:
+        """Where the bore of the linear solid is without pressure."""
+        unloaded = self._answer(self._free_part(self._beside - self.solid.force(self.displacements)))
+        self._q_free = self._coordinates(self.displacements + unloaded)
+
+    def _answer(self, force: np.ndarray) -> np.ndarray:
+        """Displacements (n, 3) of the linear solid under forces (n, 3)."""
+        assert self._factor is not None
+        u = np.zeros(force.size)
+        u[self._free] = self._factor.solve(force.ravel()[self._free])
+        return u.reshape(-1, 3)
+
+    def _free_part(self, force: np.ndarray) -> np.ndarray:
+        return np.where(self._free.reshape(-1, 3), force, 0.0)
+
+    def _coordinates(self, u: np.ndarray) -> np.ndarray:
+        return u[self.solid.mesh.bore.nodes, :2].ravel()
