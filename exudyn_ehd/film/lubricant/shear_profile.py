@@ -35,6 +35,8 @@ FLOW_POINTS, STRESS_POINTS = 6, 12
 LAST_STEP, MOST_STEPS, MOST_HALVINGS = 1e-7, 200, 30
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
+# Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
+STILL = 1e-3
 _BISECTIONS = 90
 
 
@@ -244,15 +246,17 @@ def thin_shear(H, slopes, fluid, speed, k, oil, points, out):
             h = H[i, j]
             S, per = speed / h, 6.0 * k * h * (fluid[i, j] if wide else fluid[0, 0])
             G_x, G_z = per * slopes[0, i, j], per * slopes[1, i, j]
-            p = profile(S, G_x, G_z, oil, points, couette_stress(S, oil), 0.0)
-            if abs(S) <= SLIGHT * (1.0 + abs(G_x) + abs(G_z)):
-                out[0, i, j] = p.T_xs
-                out[1:, i, j] = 0.0
-                # a journal that turns slowly does not change what a squeeze thins
-                continue
-            a = p.T_x / S
+            # a journal that hardly turns meets what the pressure flow leaves of the viscosity
+            least = STILL * (1.0 + abs(G_x) + abs(G_z))
+            turns = abs(S) > least
+            at = S if turns else least
+            p = profile(at, G_x, G_z, oil, points, couette_stress(at, oil), 0.0)
+            a = p.T_x / at
             out[0, i, j] = a
-            out[1, i, j] = ((p.T_x - S * p.T_xs + p.T_xx * G_x + p.T_xz * G_z) / S) / h
-            out[2, i, j] = (p.T_xs - a) / S * k / h
-            out[3, i, j] = p.T_xx / S * per
-            out[4, i, j] = p.T_xz / S * per
+            out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
+            out[2, i, j] = 0.0
+            if turns:
+                out[1, i, j] += (a - p.T_xs) / h
+                out[2, i, j] = (p.T_xs - a) / S * k / h
+            out[3, i, j] = p.T_xx / at * per
+            out[4, i, j] = p.T_xz / at * per

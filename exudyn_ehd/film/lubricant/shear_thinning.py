@@ -10,8 +10,8 @@ nonlinear in its pressure (`exudyn_ehd.film.solvers.nonlinear`). Couette flux H 
 in the gradient; the shear on the walls is ``tau_m -+ (h / 2) dp/dx``, its mean ``tau_m = ratio mu_0 U / h``.
 
 What is left out: axial sliding, slow beside the turning, does not thin, and meets the ratio of the turning; the mean
-stress along z that pressure flow in both directions makes, and that is even in neither, since it cancels over an
-aligned film. Unknowns P of a density law are taken for pressures over the viscosity's ratio, which they are but for the
+stress along z that pressure flow in both directions makes, since it cancels over an aligned film.
+Unknowns P of a density law are taken for pressures over the viscosity's ratio, which they are but for the
 density's. A viscosity that depends on pressure or temperature scales mu_0, at the same relaxation time.
 
 Symbols: k = 2 lambda R / c, so that lambda U / h = k vx / H.
