@@ -47,6 +47,8 @@ class History:
     mass : (n, m) array or None
         Scaled oil that the flows have brought there. Flows and mass balance to rounding; mass and content differ by
         what `exudyn_ehd.film.solvers.linear.FilmSolver.keep` says. No film depends on it.
+    outflow : (3, n, m) array or None
+        What `exudyn_ehd.film.cavitation.lagging_void` has to know of the step (mass-conserving closures).
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
@@ -59,6 +61,7 @@ class History:
 
     void: np.ndarray | None = None
     mass: np.ndarray | None = None
+    outflow: np.ndarray | None = None
     wear: np.ndarray | None = None
     temperature: float | np.ndarray | None = None
     deflection: np.ndarray | None = None

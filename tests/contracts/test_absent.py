@@ -134,6 +134,7 @@ SHARED = {
     "banded.many_sides",
     "cavitation.cavity_transport",
     "cavitation.pseudo_time",
+    "cavitation.lagging_void",
     "surfaces.patir_cheng",
     "solvers.liner.parts",
     "surfaces.contact",

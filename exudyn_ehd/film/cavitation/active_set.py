@@ -46,6 +46,8 @@ class FilmSystem:
         Couette fluxes of a full film, gap, its rate, control volumes; ``b`` already holds the fluxes and the squeeze.
     fill, mass_old : (n, m) arrays
         Film fraction, and the old value of fill H; only used by closures that conserve mass.
+    prompt, late : (n, m) arrays
+        Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.cavitation.lagging_void`; 1 and 0 without.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
     """
@@ -65,11 +67,14 @@ class FilmSystem:
         self.inverse_step = 0.0
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
+        self.prompt, self.late = np.ones(shape), np.zeros(shape)
 
     @property
     def coefficients(self) -> Coefficients:
         """These arrays as kernels take them."""
-        return Coefficients(self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed)
+        return Coefficients(
+            self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed, self.prompt, self.late
+        )
 
 
 @njit(cache=True)

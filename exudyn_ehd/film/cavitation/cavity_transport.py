@@ -104,13 +104,14 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
     m, size = full.shape[1], full.size
     kx, kz, fx, fz = film.kx.reshape(-1), film.kz.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
     area, H, H_t, old = film.area.reshape(-1), film.H.reshape(-1), film.H_t.reshape(-1), mass_old.reshape(-1)
+    prompt, late = film.prompt.reshape(-1), film.late.reshape(-1)
     fixed, sets, given = film.fixed.reshape(-1), full.reshape(-1), P.reshape(-1)
     number, place = t.number.reshape(-1), t.place.reshape(-1)
     width = t.shape[WIDTH]
     driven = received = fronts = 0
     for r in range(count + placed):
         own = order[r]
-        is_full = sets[own]
+        is_full, now, before = sets[own], prompt[own], late[own]
         c = r - count
         if inverse_step > 0.0:
             rhs = area[own] * old[own] * inverse_step
@@ -153,17 +154,21 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                 t.driven_by[driven] = k
                 driven += 1
             if inflow <= 0.0:
-                store -= inflow
+                store -= inflow * now
+                rhs += inflow * before
             elif known or sets[at]:
-                rhs += inflow
-            elif is_full:
-                source, by = count + place[at], inflow
-            elif side < 2:
-                along = place[at]
-                by_along = inflow
+                rhs += inflow * (prompt[at] + late[at])
             else:
-                across = place[at]
-                by_across = inflow
+                rhs += inflow * late[at]
+                inflow *= prompt[at]
+                if is_full:
+                    source, by = count + place[at], inflow
+                elif side < 2:
+                    along = place[at]
+                    by_along = inflow
+                else:
+                    across = place[at]
+                    by_across = inflow
             if source >= 0:
                 if fresh:
                     t.front[fronts] = r

@@ -3,14 +3,15 @@
 Every vertex is either full (``P >= Pc``, fill = 1, unknown P) or cavitated (``P = Pc``, 0 <= fill <= 1, unknown fill).
 Its balance is
 
-    sum over links of [k (P - P_neighbour) + f fill_upstream] + area (fill H - kept) / dt = 0,
+    sum over links of [k (P - P_neighbour) + f carried_upstream] + area (fill H - kept) / dt = 0,
 
-with the Poiseuille conductance k and the Couette flux f of a full film (gap on the link, fill from upstream), and
-``kept`` by the film's history, `exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady
-and the last term is ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a
-semi-smooth Newton method in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever
-the sets, so that the film exists and is unique. Should the sets not converge, the steady film is approached through
-growing pseudo time steps, whose storage makes the matrices dominant enough.
+with the Poiseuille conductance k, the Couette flux f of a full film (gap on the link), the fill carried from upstream,
+which in a step is averaged over it (`exudyn_ehd.film.cavitation.lagging_void`), and ``kept`` by the film's history,
+`exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady and the last term is
+``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth Newton method
+in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so that the film
+exists and is unique. Should the sets not converge, the steady film is approached through growing pseudo time steps,
+whose storage makes the matrices dominant enough.
 
 Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
 the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity,
@@ -45,6 +46,7 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     solve_transport,
 )
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.cavitation.lagging_void import hold_back
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
 from exudyn_ehd.status import Status, require_number
@@ -184,7 +186,9 @@ def film_terms(film, inverse_step, mass_old):
         for j in range(m):
             grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
             kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
-    return FilmTerms(film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.fixed)
+    return FilmTerms(
+        film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.prompt, film.late, film.fixed
+    )
 
 
 @njit(cache=True)
@@ -262,6 +266,8 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
             if film.fixed[i, j]:
                 full[i, j] = False
                 fill[i, j] = 1.0
+    if inverse_step > 0.0:
+        hold_back(film, inverse_step, mass_old)
     directions = flow_direction(film.fx), flow_direction(film.fz)
     sets, pressures, fills = full.reshape(-1), P.reshape(-1), fill.reshape(-1)
     for step in range(MAX_NEWTON_STEPS):

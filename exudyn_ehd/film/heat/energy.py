@@ -111,11 +111,12 @@ def outside_flows(q, fill, kx, kz, fx, fz, area, rate, fixed, unbroken, outside_
 
 
 @njit(cache=True)
-def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze, film, cavity):
+def exchange_sums(P, q, fill, carried, active, conserves, mass_old, inverse_step, squeeze, film, cavity):
     """Sums over what `outside_flows` gives, without fields in between.
 
-    Rates as in `content_rate`. ``active`` (n, m): the unbroken film of cavitation models that do not conserve mass,
-    ``film``: `Coefficients`, ``cavity``: the scaled cavity pressure.
+    Rates as in `content_rate`. ``carried`` (n, m): the fill that Couette flows take along, ``active`` (n, m): the
+    unbroken film of cavitation models that do not conserve mass, ``film``: `Coefficients`, ``cavity``: the scaled
+    cavity pressure.
 
     Returns
     -------
@@ -123,7 +124,7 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
         What leaves, and ``sum (P - cavity) (inflow - area rate)``.
     """
     n, m = q.shape
-    kx, kz, fx, fz, H, H_t, area, fixed = film
+    kx, kz, fx, fz, H, H_t, area, fixed, _, _ = film
     leaving = 0.0
     work = 0.0
     for i in range(n):
@@ -136,13 +137,13 @@ def exchange_sums(P, q, fill, active, conserves, mass_old, inverse_step, squeeze
                 continue
             inflow = 0.0
             if j + 1 < m:
-                inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], fill[i, j], fill[i, j + 1])
+                inflow += _flow(kz[i, j], fz[i, j], q[i, j], q[i, j + 1], carried[i, j], carried[i, j + 1])
             if j > 0:
-                inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], fill[i, j - 1], fill[i, j])
+                inflow -= _flow(kz[i, j - 1], fz[i, j - 1], q[i, j - 1], q[i, j], carried[i, j - 1], carried[i, j])
             end = 1 if j == 0 else m - 2
             if conserves or 0 < j < m - 1 or active[i, end] or fixed[i, end]:
-                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], fill[i, j], fill[nxt, j])
-                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], fill[prv, j], fill[i, j])
+                inflow += _flow(kx[i, j], fx[i, j], q[i, j], q[nxt, j], carried[i, j], carried[nxt, j])
+                inflow -= _flow(kx[prv, j], fx[prv, j], q[prv, j], q[i, j], carried[prv, j], carried[i, j])
                 inflow += rate
             leaving -= min(inflow, 0.0)
             work += (P[i, j] - cavity) * inflow

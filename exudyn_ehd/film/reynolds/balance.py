@@ -3,10 +3,11 @@
 The film at one state is a set of coefficients, `FilmTerms`. With the mean
 density rho of a link's ends and the fill of its upstream end,
 
-    flow over the link a -> b    k (P_a - P_b) + f fill_upstream (rho_a + rho_b) / 2,
+    flow over the link a -> b    k (P_a - P_b) + f (prompt fill + late)_upstream (rho_a + rho_b) / 2,
     storage of a vertex          area (rho (grow fill + known) + kept),
 
-the balance is what leaves a vertex and what it stores. Its derivatives to the unknowns (P
+the balance is what leaves a vertex and what it stores; ``prompt`` and ``late`` are 1 and 0, or those of
+`exudyn_ehd.film.cavitation.lagging_void`. Its derivatives to the unknowns (P
 where ``full``, else the fill) are kept per link, the slopes that `banded.assemble` takes: those
 through the density here, those through the gap in `exudyn_ehd.film.solvers.liner.gap_response`.
 """
@@ -23,7 +24,7 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 class FilmTerms(NamedTuple):
     """One film's coefficients, (n, m) each: conductances and Couette fluxes of
-    the links, storage, areas, prescribed vertices."""
+    the links, storage, areas, shares of the fill that flows carry, prescribed vertices."""
 
     kx: np.ndarray
     kz: np.ndarray
@@ -33,13 +34,15 @@ class FilmTerms(NamedTuple):
     known: np.ndarray
     kept: np.ndarray
     area: np.ndarray
+    prompt: np.ndarray
+    late: np.ndarray
     fixed: np.ndarray
 
 
 @njit(cache=True)
 def terms_of(f, fixed):
-    """`FilmTerms` of their fields (8, n, m)."""
-    return FilmTerms(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], fixed)
+    """`FilmTerms` of their fields (10, n, m)."""
+    return FilmTerms(f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8], f[9], fixed)
 
 
 @njit(cache=True)
@@ -48,6 +51,18 @@ def part(x, start, stop):
     if x is None:
         return None
     return x.reshape(-1)[start:stop]
+
+
+@njit(cache=True)
+def carried_fill(fill, film):
+    """Fill (n, m) that leaves every vertex with the Couette flows; None of None."""
+    if fill is None:
+        return None
+    out = np.empty(fill.shape)
+    x, now, prompt, late = out.reshape(-1), fill.reshape(-1), film.prompt.reshape(-1), film.late.reshape(-1)
+    for c in range(x.size):
+        x[c] = prompt[c] * now[c] + late[c]
+    return out
 
 
 @njit(cache=True, fastmath=_FAST)
@@ -83,6 +98,7 @@ def film_balance(P, fill, rho, film, out):
     last = size - m
     p, q = P.reshape(-1), out.reshape(-1)
     kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    carried = carried_fill(fill, film)
     along = np.empty(size + m)
     across = np.empty(size + 1)
     _link_flows(
@@ -90,8 +106,8 @@ def film_balance(P, fill, rho, film, out):
         fx[:last],
         p[:last],
         p[m:],
-        part(fill, 0, last),
-        part(fill, m, size),
+        part(carried, 0, last),
+        part(carried, m, size),
         part(rho, 0, last),
         part(rho, m, size),
         along[m:size],
@@ -101,8 +117,8 @@ def film_balance(P, fill, rho, film, out):
         fx[last:],
         p[last:],
         p[:m],
-        part(fill, last, size),
-        part(fill, 0, m),
+        part(carried, last, size),
+        part(carried, 0, m),
         part(rho, last, size),
         part(rho, 0, m),
         along[size:],
@@ -116,8 +132,8 @@ def film_balance(P, fill, rho, film, out):
         fz[:e],
         p[:e],
         p[1:],
-        part(fill, 0, e),
-        part(fill, 1, size),
+        part(carried, 0, e),
+        part(carried, 1, size),
         part(rho, 0, e),
         part(rho, 1, size),
         across[1:size],
@@ -151,7 +167,7 @@ def violation(r, P, fixed, pc, complementary):
 
 
 @njit(cache=True, fastmath=_FAST)
-def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, out):
+def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, prompt, out):
     """Derivatives of the flows over links a -> b at fixed gaps to the unknown
     at one end, b (side 1) or a (-1); by: of its density."""
     for c in range(out.size):
@@ -163,7 +179,7 @@ def _end_slopes(k, f, side, full, fill_a, fill_b, rho_a, rho_b, by, out):
             mean *= 0.5 * (rho_a[c] + rho_b[c])
             slope += half * by[c]
         if full is not None:
-            slope = slope if full[c] else (mean if side * f[c] < 0.0 else 0.0)
+            slope = slope if full[c] else (mean * prompt[c] if side * f[c] < 0.0 else 0.0)
         out[c] = slope
 
 
@@ -196,17 +212,46 @@ def film_slopes(fill, full, rho, rho_P, film, slopes):
     size = n * m
     last, e = size - m, size - 1
     kx, fx, kz, fz = film.kx.reshape(-1), film.fx.reshape(-1), film.kz.reshape(-1), film.fz.reshape(-1)
+    carried, prompt = carried_fill(fill, film), film.prompt.reshape(-1)
     for start, stop, there, end in ((0, last, m, size), (last, size, 0, m)):
         k, f = kx[start:stop], fx[start:stop]
-        fill_a, fill_b = part(fill, start, stop), part(fill, there, end)
+        fill_a, fill_b = part(carried, start, stop), part(carried, there, end)
         rho_a, rho_b = part(rho, start, stop), part(rho, there, end)
         full_a, full_b = part(full, start, stop), part(full, there, end)
-        _end_slopes(k, f, -1.0, full_a, fill_a, fill_b, rho_a, rho_b, part(rho_P, start, stop), slopes[0, start:stop])
-        _end_slopes(k, f, 1.0, full_b, fill_a, fill_b, rho_a, rho_b, part(rho_P, there, end), slopes[1, start:stop])
+        _end_slopes(
+            k,
+            f,
+            -1.0,
+            full_a,
+            fill_a,
+            fill_b,
+            rho_a,
+            rho_b,
+            part(rho_P, start, stop),
+            prompt[start:stop],
+            slopes[0, start:stop],
+        )
+        _end_slopes(
+            k,
+            f,
+            1.0,
+            full_b,
+            fill_a,
+            fill_b,
+            rho_a,
+            rho_b,
+            part(rho_P, there, end),
+            prompt[there:end],
+            slopes[1, start:stop],
+        )
     k, f = kz[:e], fz[:e]
-    fill_a, fill_b, rho_a, rho_b = part(fill, 0, e), part(fill, 1, size), part(rho, 0, e), part(rho, 1, size)
-    _end_slopes(k, f, -1.0, part(full, 0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, 0, e), slopes[2, :e])
-    _end_slopes(k, f, 1.0, part(full, 1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, 1, size), slopes[3, :e])
+    fill_a, fill_b, rho_a, rho_b = part(carried, 0, e), part(carried, 1, size), part(rho, 0, e), part(rho, 1, size)
+    _end_slopes(
+        k, f, -1.0, part(full, 0, e), fill_a, fill_b, rho_a, rho_b, part(rho_P, 0, e), prompt[:e], slopes[2, :e]
+    )
+    _end_slopes(
+        k, f, 1.0, part(full, 1, size), fill_a, fill_b, rho_a, rho_b, part(rho_P, 1, size), prompt[1:], slopes[3, :e]
+    )
     slopes[2:4, e] = 0.0
     _storage_slopes(
         film.area.reshape(-1), part(full, 0, size), part(fill, 0, size), part(rho, 0, size), part(rho_P, 0, size),

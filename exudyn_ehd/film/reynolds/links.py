@@ -35,7 +35,8 @@ class FilmState(NamedTuple):
 
 
 class Coefficients(NamedTuple):
-    """What the balance of the vertices is made of, (n, m) each: symbols of this module, areas, prescribed vertices."""
+    """What the balance of the vertices is made of, (n, m) each: symbols of this module, areas, prescribed vertices, and
+    ``prompt`` and ``late`` of `exudyn_ehd.film.cavitation.lagging_void`."""
 
     kx: np.ndarray
     kz: np.ndarray
@@ -45,6 +46,8 @@ class Coefficients(NamedTuple):
     H_t: np.ndarray
     area: np.ndarray
     fixed: np.ndarray
+    prompt: np.ndarray
+    late: np.ndarray
 
 
 class LinkFlux(NamedTuple):

@@ -10,7 +10,7 @@ form of `exudyn_ehd.film.reynolds.links`. sigma is the mean density of a link's 
 its upstream end. The closures are unchanged in P, because q grows with p: `FullSommerfeld`, `Gumbel` (solved over
 the whole film, cut off afterwards; the density follows the clipped pressure), `SwiftStieber` and `ElrodAdams`.
 
-Storage. `ElrodAdams` with a history: backward Euler in the void, the gap less ``rho fill H``. Without a history
+Storage. `ElrodAdams` with a history: the difference of the void, the gap less ``rho fill H``. Without a history
 there is no rate of the pressure: ``d(rho H)/dt = rho dH/dt``. What is left out, ``H d(rho)/dt``, is to the squeeze as
 the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to that of the gap in the same time, dH / H:
 1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
@@ -74,9 +74,10 @@ class CompressibleFilmSolver(FilmSolver):
         shape = grid.shape
         self.law, self.pressure_scale = law, 1.0
         s, fills = self.system, closure.conserves_mass
-        self.fields = np.zeros((8, *shape))
-        s.kx, s.kz, s.fx, s.fz, grow, known, kept, area = self.fields
-        self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, grid.fixed)
+        self.fields = np.zeros((10, *shape))
+        s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, s.prompt, s.late = self.fields
+        s.prompt[:] = 1.0
+        self.film = FilmTerms(s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, s.prompt, s.late, grid.fixed)
         self.film.area[:] = self.area
         if squeeze and not fills:
             # what full films store grows with the gap
@@ -280,7 +281,7 @@ class CompressibleFilmSolver(FilmSolver):
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette mass flows of the links in theta and z, and the rate at which
         a full film's mass grows with its gap."""
-        flow_x, flow_z = mass_flows(self._fill, self.rho, (self.system.fx, self.system.fz))
+        flow_x, flow_z = mass_flows(self.carried, self.rho, (self.system.fx, self.system.fz))
         return flow_x, flow_z, self.rho * self.H_t
 
     def flow_work(self, P: np.ndarray) -> np.ndarray:

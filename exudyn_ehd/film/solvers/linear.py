@@ -14,6 +14,7 @@ from numba import njit
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.elrod_adams import film_terms
+from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance
@@ -129,7 +130,7 @@ class FilmSolver:
         self.link_fields = np.zeros((5, *shape))
         self.vx = 0.0
         self.vz = 0.0
-        self.instant = False
+        self.instant = self.lagging = False
         # whether there is a cavity, and whether no unknown pressure is below the cavity's
         self.ruptures = bool(np.isfinite(closure.cavity_pressure))
         self.complementary = self.ruptures and not closure.clips
@@ -151,6 +152,14 @@ class FilmSolver:
     def fill(self) -> np.ndarray:
         """Film fraction of the last solution (n, m); empty if the closure does not conserve mass."""
         return self.system.fill
+
+    @property
+    def carried(self) -> np.ndarray:
+        """Fill that the Couette flows of the last solution take along from every vertex (n, m)."""
+        s = self.system
+        if not self.closure.conserves_mass:
+            return self.ones
+        return s.prompt * s.fill + s.late if self.lagging else s.fill
 
     @property
     def content(self) -> np.ndarray:
@@ -237,11 +246,11 @@ class FilmSolver:
 
             (fill H - kept) / h = dH/dt - (void - void_old) / h,
 
-        backward Euler in the void, while a full film is squeezed by its rate as under closures without a memory. The
-        difference quotient of the gap would be the mean of the rates at both ends of a step under Newmark's formulas:
-        rates that alternate from step to step are not felt by it, and not damped. What ``kept`` differs by from the
-        content that was, ``H - h dH/dt - H_old``, is the same for full and for cavitated vertices and adds up over
-        the steps to what rates and gap differ by: with rates that follow the gap it telescopes to
+        a difference of the void (its flows: `lag`), while a full film is squeezed by its rate as under closures
+        without a memory. The difference quotient of the gap would be the mean of the rates at both ends of a step under
+        Newmark's formulas: rates that alternate from step to step are not felt by it, and not damped. What ``kept``
+        differs by from the content that was, ``H - h dH/dt - H_old``, is the same for full and for cavitated vertices
+        and adds up over the steps to what rates and gap differ by: with rates that follow the gap it telescopes to
         ``-h (dH/dt at the end - at the start) / 2``, bounded over any number of steps and vanishing with h.
         """
         before, slope = self._gap_before(step)
@@ -255,6 +264,22 @@ class FilmSolver:
         content = self.content
         known = mass is not None and step > 0.0
         return self.H - content, mass + content - self.system.mass_old if known else content
+
+    def lag(self, outflow: np.ndarray | None, step: float) -> None:
+        """Let the next solution's flows out of cavities lag, by what `outflow` (3, n, m) was at the start of its
+        step; None, or a step of 0: they do not."""
+        s = self.system
+        if outflow is not None and step > 0.0:
+            lag_void(outflow, step, s.fixed, s.prompt, s.late)
+            self.lagging = True
+        elif self.lagging:
+            s.prompt[:], s.late[:] = 1.0, 0.0
+            self.lagging = False
+
+    def outflow(self) -> np.ndarray:
+        """What `exudyn_ehd.film.cavitation.lagging_void` keeps of the last solution (3, n, m)."""
+        s = self.system
+        return outflow_of(s.fx, s.fz, s.H, s.H_t, s.area, s.fill)
 
     def _gap_before(self, step: float) -> tuple[np.ndarray, np.ndarray]:
         """Gap (n, m) at the start of a step as the rates at its end have it, and its derivative to the gap now."""
@@ -315,7 +340,7 @@ class FilmSolver:
         """
         s, f, fill, couette = self.system, self.flux, None, None
         if self.closure.conserves_mass:
-            fill, couette = s.fill, (s.fx, s.fz)
+            fill, couette = self.carried, (s.fx, s.fz)
         slopes, by_speed = (None, None) if f is None else (f.slopes, f.by_speed)
         link_derivatives(
             s.linear_pressure,

@@ -369,7 +369,7 @@ class NonlinearFilmSolver(FilmSolver):
         s, e = self.system, self.elements
         if e.rho is None:
             return super().couette_flows()
-        flow_x, flow_z = mass_flows(e.u.fill, e.rho, (s.fx, s.fz))
+        flow_x, flow_z = mass_flows(self.carried, e.rho, (s.fx, s.fz))
         return flow_x, flow_z, e.rho * self.H_t
 
     def inflow(self) -> np.ndarray:

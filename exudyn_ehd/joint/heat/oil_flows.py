@@ -36,7 +36,7 @@ class Exchange:
     def __init__(self, film: SolvedFilm) -> None:
         s, y, shape = film.solver, film.solver.system, film.grid.shape
         conserves, fixed = s.closure.conserves_mass, film.grid.fixed
-        self.fill = self.convected = s.fill if conserves else s.ones
+        self.fill, self.convected = s.fill if conserves else s.ones, s.carried
         self.fx, self.fz = y.fx, y.fz
         oil = film.parts.compressible
         if oil is not None:
@@ -107,6 +107,7 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
             film.oil.P,
             s.pressure,
             s.fill if conserves else s.ones,
+            s.carried,
             s.work.active,
             conserves,
             y.mass_old if stepped else s.H,

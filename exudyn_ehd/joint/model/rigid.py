@@ -21,7 +21,8 @@ from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
 from exudyn_ehd.joint.model.quantities import eccentricities, quantities
-from exudyn_ehd.joint.seams import Effects, Wear
+from exudyn_ehd.joint.model.surfaces import worn_depth
+from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import (
     MOTION_SIZE,
     BoreState,
@@ -170,9 +171,16 @@ class BearingModel:
         self._set_gap(self._journal(motion), None)
         wear = None if self.effects.wear is None else self.effects.wear.depth(None).copy()
         deflection = self._steady_deflection(motion) if self.remembers_deflection else None
-        void, mass = (self.solver.nothing, self.solver.H.copy()) if self.remembers_mass else (None, None)
-        density = self.solver.ones if self.remembers_density else None
-        return History(void=void, mass=mass, wear=wear, deflection=deflection, temperature=temperature, density=density)
+        s, remembers = self.solver, self.remembers_mass
+        return History(
+            void=s.nothing if remembers else None,
+            mass=s.H.copy() if remembers else None,
+            outflow=np.array([s.ones, s.nothing, s.nothing]) if remembers else None,
+            wear=wear,
+            deflection=deflection,
+            temperature=temperature,
+            density=s.ones if self.remembers_density else None,
+        )
 
     def _steady_deflection(self, motion: np.ndarray) -> np.ndarray | None:
         """Scaled deflection of the steady film at this motion; None if there is no such film."""
@@ -193,6 +201,7 @@ class BearingModel:
         return History(
             void=void,
             mass=mass,
+            outflow=s.outflow() if self.remembers_mass else None,
             wear=wear,
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
@@ -230,15 +239,15 @@ class BearingModel:
             self.solver.refresh_fixed()
         # a sum is finite only if all its terms are
         if not math.isfinite(sum(journal.motion.tolist())):
-            return self._result(Status.NOT_FINITE, journal, _no_wrench(), 0, math.nan, None)
+            return self._result(Status.NOT_FINITE, journal, np.full(6, np.nan), 0, math.nan, None)
         smallest, extra, pressing, limited = self._set_gap(journal, history)
         if smallest <= 0.0 and not self.effects.contacts and p.liner is None:
-            return self._result(Status.NO_FILM, journal, _no_wrench(), 0, c * smallest, None)
+            return self._result(Status.NO_FILM, journal, np.full(6, np.nan), 0, c * smallest, None)
         status, iterations = self._solve(journal, history, step)
         oil = oil_fields(p, self.effects, self.scales.pressure) if status is Status.CONVERGED else None
         status = Status.NO_PRESSURE if status is Status.CONVERGED and (oil is None or oil.beyond) else status
         if oil is None:
-            return self._result(status, journal, _no_wrench(), iterations, c * smallest, None)
+            return self._result(status, journal, np.full(6, np.nan), iterations, c * smallest, None)
         if p.liner is not None:
             smallest = p.liner.smallest_gap()
             if p.contacts is not None:
@@ -364,7 +373,13 @@ class BearingModel:
         if history is not None and history.void is not None:
             kept = self.solver.keep(history.void, step)
         along = 0.5 * journal.axial_speed / self.grid.reference_length
-        return self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
+        self.solver.lag(None if history is None else history.outflow, step)
+        status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
+        if status is Status.NOT_CONVERGED and self.solver.lagging:
+            # flows that grow manifold within a step may take more than there was
+            self.solver.lag(None, step)
+            status, count = self.solver.solve(0.5 * journal.omega, along, cavity, kept, step)
+        return status, count
 
     def evaluate_steady(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -374,18 +389,3 @@ class BearingModel:
         A flexible bore settles under it. The rest as for `evaluate`.
         """
         return self.evaluate(motion, history, step, spin)
-
-
-def _no_wrench() -> np.ndarray:
-    return np.full(6, np.nan)
-
-
-def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
-    """Scaled wear depth at the end of a solved film's step."""
-    contacts, history = film.parts.contacts, film.history
-    assert contacts is not None
-    speed = math.hypot(film.grid.reference_length * film.journal.omega, film.journal.axial_speed)
-    pressure, *others = contacts.P
-    for other in others:
-        pressure = pressure + other
-    return wear.grown(None if history is None else history.wear, pressure, speed, film.step)

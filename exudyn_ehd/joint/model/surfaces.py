@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -14,8 +15,8 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.flow_factors import RoughFlow, RoughShear
 from exudyn_ehd.film.surfaces.profile import ProfileTerm
 from exudyn_ehd.film.surfaces.wear import WearDepth
-from exudyn_ehd.joint.seams import Effects, GapTerm
-from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.seams import Effects, GapTerm, Wear
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import InputError
 
 
@@ -115,3 +116,14 @@ def _check(bearing: JournalBearing) -> None:
             f"JournalBearing: the composite roughness {sigma:g} m must be below a quarter of the radial clearance "
             f"{bearing.radial_clearance:g} m; it is the standard deviation of the heights, in metres."
         )
+
+
+def worn_depth(wear: Wear, film: SolvedFilm) -> np.ndarray:
+    """Scaled wear depth at the end of a solved film's step."""
+    contacts, history = film.parts.contacts, film.history
+    assert contacts is not None
+    speed = math.hypot(film.grid.reference_length * film.journal.omega, film.journal.axial_speed)
+    pressure, *others = contacts.P
+    for other in others:
+        pressure = pressure + other
+    return wear.grown(None if history is None else history.wear, pressure, speed, film.step)

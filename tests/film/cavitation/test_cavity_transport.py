@@ -68,7 +68,9 @@ def film(
         full ^= rng.uniform(size=(N, M)) < 0.2
     full &= ~fixed
     P = np.where(fixed, 0.2, PC)
-    return (Coefficients(kx, kz, fx, fz, H, H_t, area, fixed), inverse_step, mass_old, PC, full), P
+    lag = rng.uniform(0.0, 0.45, (N, M)) * (inverse_step > 0.0)
+    coefficients = Coefficients(kx, kz, fx, fz, H, H_t, area, fixed, 1.0 - lag, lag * rng.uniform(size=(N, M)))
+    return (coefficients, inverse_step, mass_old, PC, full), P
 
 
 def dense(arguments, P):

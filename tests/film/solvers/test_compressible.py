@@ -103,12 +103,13 @@ def test_balance_equals_its_twin():
     rng = np.random.default_rng(3)
     n, m = 5, 4
     P, fill, rho = rng.random((3, n, m))
-    fields = rng.normal(size=(8, n, m))
+    fields = rng.normal(size=(10, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
     film = FilmTerms(*fields, np.zeros((n, m), dtype=bool))
     out = np.empty((n, m))
     film_balance(P, fill, rho, film, out)
     expected = film.area * (rho * (film.grow * fill + film.known) + film.kept)
+    fill = film.prompt * fill + film.late
     for axis, k, f in ((0, film.kx, film.fx), (1, film.kz, film.fz)):
         P_b, rho_b, fill_b = (np.roll(v, -1, axis=axis) for v in (P, rho, fill))
         q = k * (P - P_b) + f * np.where(f >= 0.0, fill, fill_b) * 0.5 * (rho + rho_b)
@@ -120,9 +121,9 @@ def test_balance_of_a_full_film_equals_the_general_one():
     rng = np.random.default_rng(4)
     n, m = 5, 4
     P, rho = rng.random((2, n, m))
-    fields = rng.normal(size=(8, n, m))
+    fields = rng.normal(size=(10, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0  # no link behind the last row
-    fields[5:7] = 0.0  # no history
+    fields[5:7], fields[8], fields[9] = 0.0, 1.0, 0.0  # no history
     film = FilmTerms(*fields, np.zeros((n, m), dtype=bool))
     out, expected = np.empty((2, n, m))
     film_balance(P, None, rho, film, out)
@@ -136,9 +137,9 @@ def test_matrix_of_a_full_film_equals_the_general_one(count):
     rng = np.random.default_rng(5)
     n, m = 9, 4
     rho, rho_P = 1.0 + 0.1 * rng.random((2, n, m))
-    fields = rng.random(size=(8, n, m))
+    fields = rng.random(size=(10, n, m))
     fields[1, :, -1] = fields[3, :, -1] = 0.0
-    fields[5:7] = 0.0
+    fields[5:7], fields[8], fields[9] = 0.0, 1.0, 0.0
     full = np.ones((n, m), dtype=bool)
     full[:, 0] = False
     if count is not None:
@@ -162,13 +163,13 @@ def test_matrix_is_the_derivative_of_the_balance(case):
     n, m = 8, 5
     P, rho, rho_P = 1.0 + rng.random((3, n, m))
     fill = rng.random((n, m))
-    fields = rng.random(size=(8, n, m))
+    fields = rng.random(size=(10, n, m))
     fields[2:4] -= 0.5
     if case == "cut":
         fields[0, 3] = fields[2, 3] = 0.0
     fields[1, :, -1] = fields[3, :, -1] = 0.0
     if case != "history":
-        fields[5:7] = 0.0
+        fields[5:7], fields[8], fields[9] = 0.0, 1.0, 0.0
     fixed = np.zeros((n, m), dtype=bool)
     fixed[:, 0] = True
     full = ~fixed & (rng.random((n, m)) < 0.5) if case in ("partly", "cut", "history") else ~fixed

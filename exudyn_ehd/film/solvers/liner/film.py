@@ -84,9 +84,10 @@ class LinerFilm:
         self.cavity_load = 0.0
         self.rho = None if density is None else np.ones(shape)
         self.rho_P = None if density is None else np.zeros(shape)
-        self.term_fields = np.zeros((8, *shape))
-        kx, kz, fx, fz, grow, known, kept, area = self.term_fields
-        self.terms = FilmTerms(kx, kz, fx, fz, grow, known, kept, area, g.fixed)
+        self.term_fields = np.zeros((10, *shape))
+        kx, kz, fx, fz, grow, known, kept, area, s.prompt, s.late = self.term_fields
+        s.prompt[:] = 1.0
+        self.terms = FilmTerms(kx, kz, fx, fz, grow, known, kept, area, s.prompt, s.late, g.fixed)
         self.terms.area[:] = film.area
         # Couette flows pass through the widths where links conduct
         across = np.append(g.link_z, 0.0)
@@ -263,7 +264,7 @@ class LinerFilm:
         )
         link_gradients(
             u.P,
-            u.fill if self.fills else None,
+            self.film.carried if self.fills else None,
             self.rho,
             self.term_fields,
             f.grid.fixed,
@@ -291,7 +292,7 @@ class LinerFilm:
     def flows_by_speed(self) -> np.ndarray:
         """Derivatives (3, n, m) of the links' flows, as returned by `speed_gradients`."""
         by = np.empty((3, *self.u.P.shape))
-        fill = self.u.fill if self.fills else None
+        fill = self.film.carried if self.fills else None
         speed_gradients(
             self.u.P,
             fill,
