@@ -67,7 +67,7 @@ class MemoryWarning(UserWarning):
 
 
 class RingingWarning(UserWarning):
-    """The forces of a joint alternate from step to step: the steps are too large for the time integration."""
+    """Steps are too large for the time integration: forces of a joint alternate, or its mesh turns too far in one."""
 
 
 class StarvationWarning(UserWarning):

@@ -19,12 +19,12 @@ from typing import Protocol
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.contract import JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
 from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory, Record
-from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films
+from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, turning_meshes
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
@@ -47,12 +47,15 @@ class Film(Protocol):
     Attributes
     ----------
     model : JointModel
+    sides : pair of Side
+        Housing and journal.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own without mass, of which explicit solvers make nothing.
     """
 
     model: JointModel
+    sides: tuple[Side, Side]
     failures: Failures
     is_massless: bool
 
@@ -130,6 +133,7 @@ class AcceptedSteps:
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._chatter: ChatterWatch | None = None
         self._ringing: ringing.RingingWatch | None = None
+        self._turning: turning_meshes.TurnWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
         self.unseen = 0
         self._thin = -np.inf
@@ -214,6 +218,7 @@ class AcceptedSteps:
         self._chatter = ChatterWatch(bearing) if explicit else None
         area = 2.0 * bearing.journal_radius * bearing.length
         self._ringing = None if explicit or static else ringing.RingingWatch(area)
+        self._turning = turning_meshes.turn_watch(mbs, film.sides, self.solver)
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
@@ -282,6 +287,8 @@ class AcceptedSteps:
         if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
             self._may_starve = False
             starvation.warn(failures.name, start, lost)
+        if self._turning is not None:
+            self._turning.take(failures.name, start)
         if row is None:
             return
         self._warn_of_film(start, trial, row)

@@ -5,6 +5,7 @@ import exudyn.itemInterface as eii
 import numpy as np
 import pytest
 import scenes
+from turning import spinning_ring
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.kinematics.fitted_sides import FittedSide
@@ -88,45 +89,6 @@ def test_rigid_motion_is_found_exactly_and_loads_keep_their_power():
         force, moment = rng.normal(size=3), rng.normal(size=3)
         push = side.jac[0].T @ force + side.jac[1].T @ moment
         assert push @ q_t == pytest.approx(force @ side.frame[:, 4] + moment @ omega, rel=1e-12)
-
-
-STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
-RING = ehd.HollowCylinder(inner_radius=0.01, thickness=0.01, length=0.02, axial=1, radial=1, circumferential=6)
-
-
-def spinning_ring(speed, role="journal"):
-    """A free ring of finite elements that spins in a bearing on ground, or as a bearing about a fixed journal."""
-    mbs = scenes.new_system()
-    ring = ehd.CreateFlexibleBush(
-        mbs,
-        "ring",
-        bush=ehd.ANCFBush(mesh=RING, material=STEEL),
-        outer=ehd.FreeOuter(),
-        initialAngularVelocity=[0, 0, speed],
-    )
-    nodes = ring.mesh.outer.nodes.tolist()
-    marker = mbs.AddMarker(
-        eii.MarkerSuperElementRigid(
-            bodyNumber=ring.objectNumber, meshNodeNumbers=nodes, weightingFactors=[1.0 / len(nodes)] * len(nodes)
-        )
-    )
-    ground = mbs.CreateGround()
-    joint = ehd.CreateLubricatedJoint(
-        mbs,
-        name="film",
-        itemNumbers=[ground, marker] if role == "journal" else [marker, ground],
-        position=[],
-        axis=[0, 0, 1],
-        bearing=ehd.JournalBearing(
-            journal_radius=0.02,
-            length=0.02,
-            radial_clearance=40e-6,
-            lubricant=ehd.Lubricant(viscosity=0.001),
-            film=ehd.FiniteLength(n_theta=24, n_z=4),
-        ),
-    )
-    mbs.Assemble()
-    return mbs, ring, joint
 
 
 @pytest.mark.parametrize(
