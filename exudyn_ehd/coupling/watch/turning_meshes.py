@@ -27,6 +27,8 @@ from exudyn_ehd.status import RingingWarning
 # Loss of angular momentum in a turn that counts, and the turn of a step over 1 - rho from which vibrations may grow; no
 # smaller turn of a step than the last one counts, rad.
 LOST, GROWING, LEAST = 0.01, 0.8, 2.0 * math.pi / 200
+# That of ConfigureSolver.
+USUAL_RADIUS = 0.6
 
 
 def lost_share(radius: float) -> float:
@@ -81,15 +83,15 @@ def turn_watch(mbs: exu.MainSystem, sides: tuple[Side, Side], solver: solver_sta
 
 def warn(name: str, time: float, turn: float, radius: float) -> None:
     """Warn that a body at the joint ``name`` turns too far in a step."""
-    fate = f"loses some {100.0 * lost_share(radius) * turn**2:.2g} % of its angular momentum in a turn"
+    fate = f"loses some {100.0 * lost_share(radius) * turn**2:.2g} % of its angular momentum in the first turn"
     if turn > GROWING * (1.0 - radius):
         fate += ", and its elements vibrate more and more, up to nonsense"
-    wanted = math.ceil(2.0 * math.pi / largest_turn(radius))
+    wanted, usual = (math.ceil(2.0 * math.pi / largest_turn(each)) for each in (radius, USUAL_RADIUS))
     warnings.warn(
         f"LubricatedJoint '{name}': in the step to t = {time:.9g} s the finite elements that it holds turn by "
         f"{turn:.3g} rad, {2.0 * math.pi / turn:.3g} steps a turn: on absolute coordinates Exudyn's integrator with a "
-        f"spectral radius of {radius:g} {fate}; take {wanted} steps a turn or more, a "
-        "spectral radius of 0.6 (ConfigureSolver), or a body with a floating frame (ObjectFFRFreducedOrder).",
+        f"spectral radius of {radius:g} {fate}; take {wanted} steps a turn or more ({usual} at a "
+        f"spectral radius of {USUAL_RADIUS:g}), or a body with a floating frame (ObjectFFRFreducedOrder).",
         RingingWarning,
         stacklevel=2,
     )

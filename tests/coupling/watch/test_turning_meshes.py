@@ -66,7 +66,7 @@ def test_meshes_at_twenty_steps_a_turn_warn_once(make):
     assert f"'film': in the step to t = {first:.9g} s" in text
     # the first step takes the nodes along a line
     assert float(text.split("turn by ")[1].split(" rad")[0]) == pytest.approx(2.0 * np.pi / 20, rel=0.05)
-    assert "of its angular momentum in a turn; " in text
+    assert "of its angular momentum in the first turn; " in text
     assert "take 37 steps a turn or more" in text
 
 
