@@ -98,22 +98,24 @@ def add_tangents(along, kx, kz, full, slopes):
                     slopes[2 * axis + 1, c] -= more
 
 
-@njit(cache=True)
-def _add_entry(row, column, value, lower, upper):
-    if row >= 0 and column >= 0:
-        if column >= row:
-            upper[row, column - row] += value
+@njit(cache=True, inline="always")
+def _add_flow(value, column, row_from, row_to, stride, low, up):
+    """Add to the balances of both ends of a link what its flow has by one unknown; rows or columns below 0: none."""
+    if column < 0:
+        return
+    c = _unsigned(column)
+    if row_from >= 0:
+        r = _unsigned(row_from)
+        if c >= r:
+            up[r * stride + (c - r)] += value
         else:
-            lower[column, row - column] += value
-
-
-@njit(cache=True)
-def _add_flow(k, from_, to, a, b, full, number, lower, upper):
-    """Add a flow ``k (P_to - P_from)`` that leaves vertex a for b to their balances."""
-    for place, value in ((to, k), (from_, -k)):
-        if full is None or full.reshape(-1)[place]:
-            _add_entry(number[a], number[place], value, lower, upper)
-            _add_entry(number[b], number[place], -value, lower, upper)
+            low[c * stride + (r - c)] += value
+    if row_to >= 0:
+        r = _unsigned(row_to)
+        if c >= r:
+            up[r * stride + (c - r)] -= value
+        else:
+            low[c * stride + (r - c)] -= value
 
 
 @njit(cache=True)
@@ -136,21 +138,36 @@ def add_corners(across, weights, kx, kz, full, number, lower, upper):
     """
     n, m = kx.shape
     back_x, on_x, back_z, on_z = weights
-    places = number.reshape(-1)
+    low, up = lower.reshape(-1), upper.reshape(-1)
+    stride = _unsigned(lower.shape[1])
     for i in range(n):
-        nxt = i + 1 if i + 1 < n else 0
+        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
         for j in range(m):
-            a, b = i * m + j, nxt * m + j
+            a, b = number[i, j], number[nxt, j]
             k = -0.5 * kx[i, j] * across[0, i, j]
-            if k != 0.0:
-                for end in (a, b):
+            if k != 0.0 and (a >= 0 or b >= 0):
+                for end in (i, nxt):
+                    own = 0.0
                     if j > 0:
-                        _add_flow(k * back_z[j], end - 1, end, a, b, full, places, lower, upper)
+                        own += k * back_z[j]
+                        if full is None or full[end, j - 1]:
+                            _add_flow(-k * back_z[j], number[end, j - 1], a, b, stride, low, up)
                     if j + 1 < m:
-                        _add_flow(k * on_z[j], end, end + 1, a, b, full, places, lower, upper)
+                        own -= k * on_z[j]
+                        if full is None or full[end, j + 1]:
+                            _add_flow(k * on_z[j], number[end, j + 1], a, b, stride, low, up)
+                    if own != 0.0 and (full is None or full[end, j]):
+                        _add_flow(own, number[end, j], a, b, stride, low, up)
+            if j + 1 == m:
+                continue
+            b = number[i, j + 1]
             k = -0.5 * kz[i, j] * across[1, i, j]
-            if j + 1 < m and k != 0.0:
-                prv = i - 1 if i > 0 else n - 1
+            if k != 0.0 and (a >= 0 or b >= 0):
                 for row in (j, j + 1):
-                    _add_flow(k * back_x[i], prv * m + row, i * m + row, a, a + 1, full, places, lower, upper)
-                    _add_flow(k * on_x[i], i * m + row, nxt * m + row, a, a + 1, full, places, lower, upper)
+                    if full is None or full[prv, row]:
+                        _add_flow(-k * back_x[i], number[prv, row], a, b, stride, low, up)
+                    if full is None or full[nxt, row]:
+                        _add_flow(k * on_x[i], number[nxt, row], a, b, stride, low, up)
+                    own = k * (back_x[i] - on_x[i])
+                    if own != 0.0 and (full is None or full[i, row]):
+                        _add_flow(own, number[i, row], a, b, stride, low, up)

@@ -19,7 +19,7 @@ Symbols: x along the sliding, z across; _s derivative to S (which has no part ac
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -27,17 +27,31 @@ from numba import njit
 # Intervals of the fluidity's table for every factor of two in 1 + |T|^2, a power of two; most factors of two; scaled
 # shear rate that the table need not pass.
 PARTS, OCTAVES, FASTEST = 32, 48, 1e12
-_MANTISSA, _SHIFT = np.int64(52), np.int64(47)
+_unsigned: Any = np.uint64
+_1, _2, _3, _4 = (_unsigned(k) for k in range(1, 5))
+# Bits of a number: its power of two, and the interval within.
+_MANTISSA, _SHIFT, _PARTS_SHIFT = (_unsigned(k) for k in (52, 47, 5))
+_FIRST, _TURNED = _unsigned(1023 << 5), _unsigned(2046)
+_PLACE, _ONE = _unsigned((1 << 52) - 1), _unsigned(1023 << 52)
 # Gauss points across the film, of the pressure flow and of the mean stress. Largest error of a flow for exponents from
 # 0.4 on, of any rates: 4.3 % with 3 points, 1.7 % with 4, 1.1 % with 5, 0.55 % with 6, 0.24 % with 8, of either sign.
 FLOW_POINTS, STRESS_POINTS = 6, 12
-# Share of the stress at which Newton's step is the last one: what it leaves of stress and flow is its square.
-LAST_STEP, MOST_STEPS, MOST_HALVINGS = 1e-7, 200, 30
+# Share of the stress at which Newton's step is the last one, on the way and for exact derivatives: what it leaves of
+# stress and flow is its square. A profile so near an exact one is on its tangent.
+LAST_STEP, EXACT, MOST_STEPS, MOST_HALVINGS = 1e-5, 1e-7, 200, 30
+# Numbers that a place keeps of its last profile: S, G (2), T_m (2), its six derivatives, share of the last step, gap if
+# it is the one of the links' ratios, F (2), its five derivatives.
+LAST = 20
+# Share of the stress up to which the derivatives lead to the next profile.
+FAR = 0.3
+# Of the stress of sliding alone, until its law is asked.
+MOST_TRIALS = 5
 # Pressure stress over that of the sliding below which a flow over its gradient is its derivative.
 SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
 _BISECTIONS = 90
+_FUSE = {"contract"}
 
 
 class Profile(NamedTuple):
@@ -58,11 +72,9 @@ class Profile(NamedTuple):
 
 
 class Oil(NamedTuple):
-    """The law as kernels take it: coefficients (intervals, 4) of the fluidity's cubics, power behind them, exponent and
-    residual of Carreau's law."""
+    """The law as kernels take it: coefficients of the fluidity's cubics, four each; exponent, residual of the law."""
 
     table: np.ndarray
-    power: float
     exponent: float
     residual: float
 
@@ -71,7 +83,7 @@ def fluidity_table(exponent: float, residual: float) -> Oil:
     """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma (r + (1 - r) (1 + Gamma^2)^((n - 1) / 2))`` as cubics in s.
 
     Value and slope are exact at the ends of 32 equal parts of every factor of two in 1 + s, so that errors stay below
-    1e-8 of the value; behind the last one follows a power.
+    1e-8 of the value. Behind the last one, at `FASTEST` or 2^48, the fluidity stays.
     """
     e = 0.5 * (exponent - 1.0)
     highest = FASTEST * (residual + (1.0 - residual) * (1.0 + FASTEST**2) ** e)
@@ -92,52 +104,65 @@ def fluidity_table(exponent: float, residual: float) -> Oil:
     h = np.diff(s)
     d0, d1, rise = f_s[:-1] * h, f_s[1:] * h, np.diff(f)
     table = np.array([f[:-1], d0, 3.0 * rise - 2.0 * d0 - d1, d0 + d1 - 2.0 * rise]).T
-    return Oil(np.ascontiguousarray(table), float((1.0 + s[-1]) * f_s[-1] / f[-1]), exponent, residual)
+    return Oil(np.append(table, [f[-1], 0.0, 0.0, 0.0]), exponent, residual)
 
 
 def gauss_points(count: int) -> np.ndarray:
-    """Heights and weights (2, count) across the film."""
-    zeta, weight = np.polynomial.legendre.leggauss(count)
-    return 0.5 * np.array([zeta, weight])
+    """Heights zeta across the film, and weights times 1, zeta .. zeta^4: (6, count)."""
+    zeta, weight = 0.5 * np.array(np.polynomial.legendre.leggauss(count))
+    return np.array([zeta, *(weight * zeta**k for k in range(5))])
 
 
 @njit(cache=True, inline="always")
-def _fluidity(s, table, power):
+def _fluidity(s, table):
     """f(s) and its derivative."""
-    y = 1.0 + s
-    bits = np.float64(y).view(np.int64)
-    at = (bits >> _SHIFT) - (np.int64(1023) << np.int64(5))
-    if at >= table.shape[0]:
-        last = table.shape[0] - 1
-        end = 2.0 ** (table.shape[0] // PARTS)
-        f = (table[last, 0] + table[last, 1] + table[last, 2] + table[last, 3]) * (y / end) ** power
-        return f, power * f / y
-    width = 2.0 ** (-5.0) * np.int64(bits >> _MANTISSA << _MANTISSA).view(np.float64)
-    t = (bits & np.int64((1 << 47) - 1)) * (1.0 / (1 << 47))
-    a, b, c, d = table[at, 0], table[at, 1], table[at, 2], table[at, 3]
-    return a + t * (b + t * (c + t * d)), (b + t * (2.0 * c + t * 3.0 * d)) / width
+    bits = np.float64(1.0 + s).view(np.uint64)
+    at = min(((bits >> _SHIFT) - _FIRST) << _2, _unsigned(table.size) - _4)
+    # 1 over the width of the interval: the power of two turned round
+    per = PARTS * _unsigned((_TURNED - (bits >> _MANTISSA)) << _MANTISSA).view(np.float64)
+    # place in it: 1 .. 2 by its bits
+    t = _unsigned((bits << _PARTS_SHIFT & _PLACE) | _ONE).view(np.float64) - 1.0
+    a, b, c, d = table[at], table[at + _1], table[at + _2], table[at + _3]
+    return a + t * (b + t * (c + t * d)), (b + t * (2.0 * c + t * 3.0 * d)) * per
 
 
 @njit(cache=True, inline="always")
 def _moments(T_x, T_z, S, G_x, G_z, oil, points):
-    """Excess of the shear rate's integral over S, F, and H, C, B (xx, xz, zz each)."""
-    r_x, r_z, F_x, F_z = -S, 0.0, 0.0, 0.0
-    H_xx = H_xz = H_zz = C_xx = C_xz = C_zz = B_xx = B_xz = B_zz = 0.0
+    """Excess of the shear rate's integral over S, F, and H, C, B (xx, xz, zz each).
+
+    With ``J = f + 2 f' T T^T`` all of them are sums of f zeta^k and 2 f' zeta^k, times T and G.
+    """
+    a0 = a1 = a2 = b0 = b1 = b2 = b3 = b4 = 0.0
     for k in range(points.shape[1]):
-        zeta, w = points[0, k], points[1, k]
+        zeta = points[0, k]
         t_x, t_z = T_x + zeta * G_x, T_z + zeta * G_z
-        f, f_s = _fluidity(t_x * t_x + t_z * t_z, oil.table, oil.power)
-        f, f_s = w * f, 2.0 * w * f_s
-        r_x += f * t_x
-        r_z += f * t_z
-        F_x += zeta * f * t_x
-        F_z += zeta * f * t_z
-        J_xx, J_xz, J_zz = f + f_s * t_x * t_x, f_s * t_x * t_z, f + f_s * t_z * t_z
-        H_xx, H_xz, H_zz = H_xx + J_xx, H_xz + J_xz, H_zz + J_zz
-        C_xx, C_xz, C_zz = C_xx + zeta * J_xx, C_xz + zeta * J_xz, C_zz + zeta * J_zz
-        q = zeta * zeta
-        B_xx, B_xz, B_zz = B_xx + q * J_xx, B_xz + q * J_xz, B_zz + q * J_zz
-    return (r_x, r_z), (F_x, F_z), (H_xx, H_xz, H_zz), (C_xx, C_xz, C_zz), (B_xx, B_xz, B_zz)
+        f, f_s = _fluidity(t_x * t_x + t_z * t_z, oil.table)
+        w0, w1, w2 = points[1, k], points[2, k], points[3, k]
+        a0, a1, a2 = a0 + w0 * f, a1 + w1 * f, a2 + w2 * f
+        b0, b1, b2 = b0 + w0 * f_s, b1 + w1 * f_s, b2 + w2 * f_s
+        b3, b4 = b3 + points[4, k] * f_s, b4 + points[5, k] * f_s
+    own_xx, own_xz, own_zz = 2.0 * T_x * T_x, 2.0 * T_x * T_z, 2.0 * T_z * T_z
+    mix_xx, mix_xz, mix_zz = 4.0 * T_x * G_x, 2.0 * (T_x * G_z + T_z * G_x), 4.0 * T_z * G_z
+    far_xx, far_xz, far_zz = 2.0 * G_x * G_x, 2.0 * G_x * G_z, 2.0 * G_z * G_z
+    return (
+        (a0 * T_x + a1 * G_x - S, a0 * T_z + a1 * G_z),
+        (a1 * T_x + a2 * G_x, a1 * T_z + a2 * G_z),
+        (
+            a0 + b0 * own_xx + b1 * mix_xx + b2 * far_xx,
+            b0 * own_xz + b1 * mix_xz + b2 * far_xz,
+            a0 + b0 * own_zz + b1 * mix_zz + b2 * far_zz,
+        ),
+        (
+            a1 + b1 * own_xx + b2 * mix_xx + b3 * far_xx,
+            b1 * own_xz + b2 * mix_xz + b3 * far_xz,
+            a1 + b1 * own_zz + b2 * mix_zz + b3 * far_zz,
+        ),
+        (
+            a2 + b2 * own_xx + b3 * mix_xx + b4 * far_xx,
+            b2 * own_xz + b3 * mix_xz + b4 * far_xz,
+            a2 + b2 * own_zz + b3 * mix_zz + b4 * far_zz,
+        ),
+    )
 
 
 @njit(cache=True, error_model="numpy")
@@ -146,18 +171,21 @@ def couette_stress(S, oil):
     return S * (oil.residual + (1.0 - oil.residual) * (1.0 + S * S) ** (0.5 * (oil.exponent - 1.0)))
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
 def profile(S, G_x, G_z, oil, points, T_x, T_z):
     """`Profile` of one place, by Newton's method from a mean stress, which may prolong but not mislead it."""
-    scale = 0.0
+    return _profile(S, G_x, G_z, oil, points, T_x, T_z, EXACT)[0]
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
+    """`Profile`; the mean stress's derivatives T_zs, T_zx, T_zz; the last step's share of the stress."""
     r, F, H, C, B = _moments(T_x, T_z, S, G_x, G_z, oil, points)
     for _ in range(MOST_STEPS):
         det = 1.0 / (H[0] * H[2] - H[1] * H[1])
         d_x, d_z = (H[1] * r[1] - H[2] * r[0]) * det, (H[1] * r[0] - H[0] * r[1]) * det
-        size, share = abs(d_x) + abs(d_z), 1.0
-        # the shear stress across the film, of either flow
-        scale = abs(T_x) + abs(T_z) + 1e-3 * (abs(G_x) + abs(G_z)) + 1e-300
-        if size <= LAST_STEP * scale:
+        share, rough = 1.0, (abs(d_x) + abs(d_z)) / _scale(T_x, T_z, G_x, G_z)
+        if rough <= last_step:
             break
         norm = r[0] * r[0] + r[1] * r[1]
         for _ in range(MOST_HALVINGS):
@@ -173,15 +201,63 @@ def profile(S, G_x, G_z, oil, points, T_x, T_z):
     # H^-1 C, which is not symmetric
     m_xx, m_xz = i_xx * C[0] + i_xz * C[1], i_xx * C[1] + i_xz * C[2]
     m_zx, m_zz = i_xz * C[0] + i_zz * C[1], i_xz * C[1] + i_zz * C[2]
-    return Profile(
+    found = Profile(
         T_x + d_x, T_z + d_z, F[0] + C[0] * d_x + C[1] * d_z, F[1] + C[1] * d_x + C[2] * d_z,
         i_xx, -m_xx, -m_xz, m_xx, m_xz,
         B[0] - C[0] * m_xx - C[1] * m_zx, B[1] - C[0] * m_xz - C[1] * m_zz, B[2] - C[1] * m_xz - C[2] * m_zz,
     )  # fmt: skip
+    return found, (i_xz, -m_zx, -m_zz), rough
 
 
-@njit(cache=True, error_model="numpy")
-def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, stress, out):
+@njit(cache=True, inline="always")
+def _scale(T_x, T_z, G_x, G_z):
+    """Shear stress across the film, of either flow."""
+    return abs(T_x) + abs(T_z) + 1e-3 * (abs(G_x) + abs(G_z)) + 1e-300
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def _follow(S, G_x, G_z, oil, points, last):
+    """`Profile` from the last one, ``last`` (`LAST`,): along its derivatives if it is near, else where they lead to."""
+    dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
+    T_x, T_z = last[3], last[4]
+    by_x = last[5] * dS + last[6] * d_x + last[7] * d_z
+    by_z = last[8] * dS + last[9] * d_x + last[10] * d_z
+    scale, change = _scale(T_x, T_z, G_x, G_z), abs(by_x) + abs(by_z)
+    if change <= FAR * scale:
+        T_x, T_z = T_x + by_x, T_z + by_z
+    if change + abs(d_x) + abs(d_z) <= EXACT * scale and last[11] <= EXACT:
+        last[12] = 0.0
+        F_xs, F_zs, F_xx, F_xz, F_zz = last[15], last[16], last[17], last[18], last[19]
+        F_x = last[13] + F_xs * dS + F_xx * d_x + F_xz * d_z
+        F_z = last[14] + F_zs * dS + F_xz * d_x + F_zz * d_z
+        return Profile(T_x, T_z, F_x, F_z, last[5], last[6], last[7], F_xs, F_zs, F_xx, F_xz, F_zz)
+    p, others, rough = _profile(S, G_x, G_z, oil, points, T_x, T_z, LAST_STEP)
+    last[0], last[1], last[2], last[3], last[4] = S, G_x, G_z, p.T_x, p.T_z
+    last[5], last[6], last[7] = p.T_xs, p.T_xx, p.T_xz
+    last[8], last[9], last[10] = others
+    last[11], last[12], last[13], last[14] = rough, 0.0, p.F_x, p.F_z
+    last[15], last[16], last[17], last[18], last[19] = p.F_xs, p.F_zs, p.F_xx, p.F_xz, p.F_zz
+    return p
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def _slide(S, oil, last):
+    """Stress T of sliding alone, fluidity f and 2 f' T^2, from the last profile, which it becomes."""
+    t = last[3] + last[5] * (S - last[0])
+    for k in range(MOST_TRIALS):
+        f, f_s = _fluidity(t * t, oil.table)
+        f_s *= 2.0 * t * t
+        step = (S - f * t) / (f + f_s)
+        if abs(step) <= EXACT * abs(t):
+            break
+        t = t + step if k + 2 < MOST_TRIALS else couette_stress(S, oil)
+    last[:] = 0.0
+    last[0], last[3], last[5], last[11] = S, t + step, 1.0 / (f + f_s), 1.0
+    return t + step, f, f_s
+
+
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, last, out):
     """Pressure flow of links over that of an oil of constant viscosity.
 
     Parameters
@@ -195,10 +271,11 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, stress, ou
         ``k vx``, with k = 2 lambda R / c.
     axis : int
         0: links along the sliding, 1: across.
-    stress : (2, n, m) array
-        Mean stress of the last call, where this one starts.
+    last : (n, m, LAST) array
+        Profiles of the last call, where this one starts; zeros for none.
     out : (5, n, m) array
-        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``.
+        Ratio a; da/dH and da/dvx at fixed gradients; derivative of the flow to ``slope`` over a, and to ``cross``. As
+        the last call left it: places where nothing has changed keep theirs.
     """
     n, m = gap.shape
     wide = fluid.size > 1
@@ -208,19 +285,20 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, stress, ou
             S, per = speed / h, 6.0 * k * h * (fluid[i, j] if wide else fluid[0, 0])
             own, other = per * slope[i, j], per * cross[i, j]
             G_x, G_z = (own, other) if axis == 0 else (other, own)
+            known = last[i, j]
+            if known[12] == h and known[0] == S and known[1] == G_x and known[2] == G_z:
+                continue
             if own == 0.0 and other == 0.0:
                 # sliding alone: the same at every height
-                t = couette_stress(S, oil)
-                f, f_s = _fluidity(t * t, oil.table, oil.power)
-                stress[0, i, j], stress[1, i, j] = t, 0.0
-                out[0, i, j] = f + 2.0 * f_s * t * t if axis == 0 else f
+                _, f, more = _slide(S, oil, known)
+                known[12] = h
+                out[0, i, j] = f + more if axis == 0 else f
                 out[1, i, j] = out[2, i, j] = out[4, i, j] = 0.0
                 out[3, i, j] = 1.0
                 continue
-            p = profile(S, G_x, G_z, oil, points, stress[0, i, j], stress[1, i, j])
-            stress[0, i, j], stress[1, i, j] = p.T_x, p.T_z
+            p = _follow(S, G_x, G_z, oil, points, known)
             F, by_own, by_s = (p.F_x, p.F_xx, p.F_xs) if axis == 0 else (p.F_z, p.F_zz, p.F_zs)
-            if abs(own) <= SLIGHT * (abs(couette_stress(S, oil)) + 1.0):
+            if abs(own) <= SLIGHT * (abs(p.T_x) + abs(p.T_z) + 1.0):
                 a = 12.0 * by_own
                 out[1, i, j] = out[2, i, j] = 0.0
             else:
@@ -232,8 +310,8 @@ def thin_links(gap, slope, cross, fluid, speed, k, axis, oil, points, stress, ou
             out[4, i, j] = 12.0 * p.F_xz / a
 
 
-@njit(cache=True, error_model="numpy")
-def thin_shear(H, slopes, fluid, speed, k, oil, points, out):
+@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+def thin_shear(H, slopes, fluid, speed, k, oil, points, last, out):
     """Mean stress along the sliding over that of an oil of constant viscosity.
 
     ``slopes`` (2, n, m): scaled pressure gradients along and across the sliding at the vertices; the others as for
@@ -250,13 +328,18 @@ def thin_shear(H, slopes, fluid, speed, k, oil, points, out):
             least = STILL * (1.0 + abs(G_x) + abs(G_z))
             turns = abs(S) > least
             at = S if turns else least
-            p = profile(at, G_x, G_z, oil, points, couette_stress(at, oil), 0.0)
-            a = p.T_x / at
+            if G_x == 0.0 and G_z == 0.0:
+                a = _slide(at, oil, last[i, j])[0] / at
+                by_s = last[i, j, 5]
+                out[1, i, j] = out[3, i, j] = out[4, i, j] = 0.0
+            else:
+                p = _follow(at, G_x, G_z, oil, points, last[i, j])
+                a, by_s = p.T_x / at, p.T_xs
+                out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
+                out[3, i, j] = p.T_xx / at * per
+                out[4, i, j] = p.T_xz / at * per
             out[0, i, j] = a
-            out[1, i, j] = (p.T_xx * G_x + p.T_xz * G_z) / at / h
             out[2, i, j] = 0.0
             if turns:
-                out[1, i, j] += (a - p.T_xs) / h
-                out[2, i, j] = (p.T_xs - a) / S * k / h
-            out[3, i, j] = p.T_xx / at * per
-            out[4, i, j] = p.T_xz / at * per
+                out[1, i, j] += (a - by_s) / h
+                out[2, i, j] = (by_s - a) / S * k / h

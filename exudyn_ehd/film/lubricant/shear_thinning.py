@@ -30,6 +30,7 @@ from scipy.sparse import csr_matrix, diags, kron
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.shear_profile import (
     FLOW_POINTS,
+    LAST,
     STRESS_POINTS,
     fluidity_table,
     gauss_points,
@@ -121,7 +122,9 @@ class ShearThinning(FluxEffect):
 
     def place(self, grid: FilmGrid, flow_x: float) -> None:
         """Buffers on a grid; ``flow_x`` = 0 drops the circumferential pressure flow."""
-        self.slopes, self.cross, self.vertex, *self.stress = np.zeros((5, 2, *grid.shape))
+        self.slopes, self.cross, self.vertex = np.zeros((3, 2, *grid.shape))
+        # profiles of links in theta and z, and at vertices
+        self.last = np.zeros((3, *grid.shape, LAST))
         self.found = np.zeros((2, 5, *grid.shape))
         along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
         self.links = along, across
@@ -143,7 +146,7 @@ class ShearThinning(FluxEffect):
             found = self.found[axis]
             thin_links(
                 gap, self.slopes[axis], self.cross[axis], fluid, k * vx, k, axis, self.oil, self.flow_points,
-                self.stress[axis], found,
+                self.last[axis], found,
             )  # fmt: skip
             multiply(found, g, g_h, g_v)
 
@@ -164,7 +167,7 @@ class ShearThinning(FluxEffect):
         fluid = np.ones((1, 1)) if self.field is None else 1.0 / self.field.ratio
         out = np.empty((5, *H.shape))
         k = self.per_speed
-        thin_shear(H, self.vertex, fluid, k * vx, k, self.oil, self.stress_points, out)
+        thin_shear(H, self.vertex, fluid, k * vx, k, self.oil, self.stress_points, self.last[2], out)
         ratio_out[:], ratio_h_out[:], ratio_v_out[:] = out[:3]
         return out[3:]
 
