@@ -5,23 +5,13 @@ Of unequal roughness, and where a limiter leaves the film another gap than the s
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from exudyn_ehd.film.loads import drag_gap_slopes, drag_pose_gradient, drag_rhs, drag_sums
 from exudyn_ehd.film.reynolds.gap import contract_pose
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
+from exudyn_ehd.film.surfaces.closed_gap import closed_pose_gradient, closed_rhs, closed_sums
 from exudyn_ehd.joint.solved_film import FilmParts, LimiterFields, SolvedFilm
-
-
-class _Links(NamedTuple):
-    """Carriers and true gaps of the links in theta and z, (n, m) each."""
-
-    cx: np.ndarray
-    gap_x: np.ndarray
-    cz: np.ndarray
-    gap_z: np.ndarray
 
 
 def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
@@ -31,13 +21,23 @@ def pulls_unevenly(parts: FilmParts, limited: LimiterFields | None) -> bool:
 
 def drag_integrals(parts: FilmParts, limited: LimiterFields | None, P: np.ndarray) -> tuple[float, float]:
     """E_x and E_z of the film that ``parts.solver`` holds, with its pressure P (n, m)."""
-    return drag_sums(P, *_links(parts, limited), parts.grid.mesh)
+    f, mesh, closed = parts.solver.flux, parts.grid.mesh, _closed_gaps(parts, limited)
+    along = across = 0.0
+    if parts.uneven_drag and f is not None:
+        along, across = drag_sums(P, f.cx, f.gap_x, f.cz, f.gap_z, mesh)
+    if closed is None:
+        return along, across
+    x, z = closed_sums(P, *closed, mesh)
+    return along + x, across + z
 
 
 def add_drag_rows(film: SolvedFilm, rows: np.ndarray) -> None:
     """Add the weights of the unknown pressures in E_x and E_z to ``rows`` (2, count)."""
-    w = film.solver.work
-    drag_rhs(w.order, w.count, w.active, *_links(film.parts, film.limited), film.grid.mesh, rows)
+    w, f, mesh, closed = film.solver.work, film.solver.flux, film.grid.mesh, _closed_gaps(film.parts, film.limited)
+    if film.parts.uneven_drag and f is not None:
+        drag_rhs(w.order, w.count, w.active, f.cx, f.gap_x, f.cz, f.gap_z, mesh, rows)
+    if closed is not None:
+        closed_rhs(w.order, w.count, w.active, *closed, mesh, rows)
 
 
 def drag_by_gap(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:
@@ -66,29 +66,31 @@ def add_drag_by_pose(film: SolvedFilm, gradient: np.ndarray) -> None:
     drag_pose_gradient(film.oil.P, *_carrier_slopes(film), *_gap_slopes(film), g.mesh, g.directions, gradient)
 
 
+def add_closed_by_pose(
+    film: SolvedFilm, limited: LimiterFields, couette: np.ndarray, dc: np.ndarray, drag: np.ndarray
+) -> None:
+    """As `add_drag_by_pose` for a limited film of even carriers, to ``drag`` (2, 10); and to ``dc`` (10,) that of C.
+
+    ``couette`` (n, m) is dC/d(film gap).
+    """
+    g = film.grid
+    closed_pose_gradient(film.oil.P, limited.slope, limited.face_slope, couette, g.mesh, g.directions, dc, drag)
+
+
 def drag_by_deflection(film: SolvedFilm, liner: NonlinearFilmSolver) -> np.ndarray:
     """Gradients (2, n, m) of E_x and E_z to the unknown pressures through the gap that a liner leaves them."""
     face, cell = _slopes(film)
     return np.stack((_ends(face), cell)) * liner.deflection_by_pressure
 
 
-def _links(parts: FilmParts, limited: LimiterFields | None) -> _Links:
-    s, f = parts.solver, parts.solver.flux
-    cx, cz = (s.HF, _mean_along_z(s.H)) if f is None else (f.cx, f.cz)
+def _closed_gaps(parts: FilmParts, limited: LimiterFields | None) -> tuple[np.ndarray, ...] | None:
+    """Film's and true gap at the vertices, and on the links i -> i+1; None where they are the same."""
+    s, liner = parts.solver, parts.liner
     if limited is not None:
-        return _Links(cx, limited.link, cz, _mean_along_z(limited.gap))
-    if parts.liner is not None:
-        return _Links(cx, parts.liner.true_link, cz, _mean_along_z(parts.liner.true_gap))
-    assert f is not None
-    return _Links(cx, f.gap_x, cz, f.gap_z)
-
-
-def _mean_along_z(gap: np.ndarray) -> np.ndarray:
-    """Gap of the links j -> j+1 (n, m); the last column has no link."""
-    out = gap.copy()
-    out[:, :-1] += gap[:, 1:]
-    out *= 0.5
-    return out
+        return s.H, limited.gap, s.HF, limited.link
+    if liner is not None and liner.limited:
+        return s.H, liner.true_gap, s.HF, liner.true_link
+    return None
 
 
 def _carrier_slopes(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray]:

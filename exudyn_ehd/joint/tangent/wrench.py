@@ -22,7 +22,13 @@ from exudyn_ehd.film.surfaces.contact_wrench import (
     couette_gradient_ratio,
 )
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
-from exudyn_ehd.joint.tangent.drag import add_drag_by_pose, add_drag_rows, drag_by_deflection, pulls_unevenly
+from exudyn_ehd.joint.tangent.drag import (
+    add_closed_by_pose,
+    add_drag_by_pose,
+    add_drag_rows,
+    drag_by_deflection,
+    pulls_unevenly,
+)
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 
@@ -86,8 +92,12 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     """Gradients to (scaled pose, scaled rates, vx, vz) of the film's S (4, 10), C (10,), slopes' S (2, 10)."""
     shear = shear_needs_adjoint(film)
     dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
-    _add_couette_direct(film, dc)
+    couette = _couette_direct(film, dc)
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
+    if film.limited is not None and not film.parts.uneven_drag:
+        add_closed_by_pose(film, film.limited, couette[0], dc, extra)
+        return gradient[:4], dc, extra
+    _contract_couette(film, couette, dc)
     if pulls_unevenly(film.parts, film.limited):
         add_drag_by_pose(film, extra)
     return gradient[:4], dc, extra
@@ -201,8 +211,9 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
         _shear_row(film, rows[4])
     if has_extra_rows(film):
         extra = rows[own - 2 : own]
-        extra[:] = 0.0
-        if film.extra is not None:
+        if film.extra is None:
+            extra[:] = 0.0
+        else:
             slope_adjoint_rhs(w.order, w.count, g.weight, w.active, film.extra.slope_x, film.extra.slope_z, extra)
         uneven = pulls_unevenly(p, film.limited)
         if uneven:
@@ -236,8 +247,8 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
         row += by_others.reshape(-1)[w.order[: w.count]]
 
 
-def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:
-    """Add the direct gradient of C to the scaled pose and speeds, at fixed pressure and fill."""
+def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:
+    """dC/d(film gap) (1, n, m) at fixed pressure and fill; adds the direct gradient to the speeds to ``dc`` (10,)."""
     s, g, oil = film.solver, film.grid, film.oil
     gradient = np.empty((1, *g.shape))
     if oil.ratio is not None and oil.ratio_h is not None and oil.ratio_v is not None:
@@ -261,11 +272,11 @@ def _add_couette_direct(film: SolvedFilm, dc: np.ndarray) -> None:
         gradient[0] = -g.weight * s.fill / s.H**2
     else:
         couette_gradient(s.H, g.weight, s.work.active, g.fixed, s.closure.cavity_shear, gradient[0])
-    _contract_couette(film, gradient, dc)
+    return gradient
 
 
 def _contract_couette(film: SolvedFilm, gradient: np.ndarray, dc: np.ndarray) -> None:
-    """Add dC/dH (1, n, m) to the gradient of C to the scaled pose."""
+    """Add dC/d(film gap) (1, n, m) to the gradient of C to the scaled pose."""
     slope = _film_gap_slope(film)
     if slope is not None:
         gradient[0] *= slope
