@@ -33,7 +33,7 @@ EVALUATION_LIMITS = {
     "`PatirCheng`, unequally rough": 1.35,
     "`BarusPressure`": 1.2,
     "`RoelandsPressure`": 1.2,
-    "`CarreauShear`": 27.0,
+    "`CarreauShear`": 9.2,
     "`DowsonHigginson`": 1.5,
     "`DowsonHigginson`, `BarusPressure`": 1.5,
     "`ElrodAdams`, `DowsonHigginson`": 1.5,
@@ -44,7 +44,7 @@ EVALUATION_LIMITS = {
 STEP_LIMITS = {
     "`BarusPressure`": 1.25,
     "`RoelandsPressure`": 1.25,
-    "`CarreauShear`": 29.0,
+    "`CarreauShear`": 4.3,
     "`DowsonHigginson`": 1.5,
     "`DowsonHigginson`, `BarusPressure`": 1.5,
     "`LumpedThermal`": 1.05,

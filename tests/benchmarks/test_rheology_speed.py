@@ -19,7 +19,7 @@ ROELANDS, CARREAU = (
 CASES = {
     "barus": ({"pressure_law": ehd.BarusPressure(coefficient=1e-8)}, None, 1.25),
     "roelands": ({"pressure_law": ROELANDS}, None, 1.25),
-    "carreau": ({"shear_law": CARREAU}, None, 29.0),
+    "carreau": ({"shear_law": CARREAU}, None, 4.2),
     "density": ({"density_law": ehd.DowsonHigginson()}, None, 1.5),
     "density and barus": (
         {"density_law": ehd.DowsonHigginson(), "pressure_law": ehd.BarusPressure(coefficient=1e-8)},

@@ -98,24 +98,20 @@ def add_tangents(along, kx, kz, full, slopes):
                     slopes[2 * axis + 1, c] -= more
 
 
-@njit(cache=True, inline="always")
-def _add_flow(value, column, row_from, row_to, stride, low, up):
-    """Add to the balances of both ends of a link what its flow has by one unknown; rows or columns below 0: none."""
-    if column < 0:
+@njit(cache=True)
+def _add_flow(value, place, ends, places, full, stride, low, up):
+    """Add to the balances of both ``ends`` of a link what its flow has by the unknown at a place; below 0: none."""
+    column = places[place]
+    if column < 0 or not (full is None or full.reshape(-1)[place]):
         return
     c = _unsigned(column)
-    if row_from >= 0:
-        r = _unsigned(row_from)
-        if c >= r:
-            up[r * stride + (c - r)] += value
-        else:
-            low[c * stride + (r - c)] += value
-    if row_to >= 0:
-        r = _unsigned(row_to)
-        if c >= r:
-            up[r * stride + (c - r)] -= value
-        else:
-            low[c * stride + (r - c)] -= value
+    for row, share in ((ends[0], value), (ends[1], -value)):
+        if row >= 0:
+            r = _unsigned(row)
+            if c >= r:
+                up[r * stride + (c - r)] += share
+            else:
+                low[c * stride + (r - c)] += share
 
 
 @njit(cache=True)
@@ -138,36 +134,32 @@ def add_corners(across, weights, kx, kz, full, number, lower, upper):
     """
     n, m = kx.shape
     back_x, on_x, back_z, on_z = weights
-    low, up = lower.reshape(-1), upper.reshape(-1)
-    stride = _unsigned(lower.shape[1])
+    low, up, places = lower.reshape(-1), upper.reshape(-1), number.reshape(-1)
+    stride, rows = _unsigned(lower.shape[1]), _unsigned(m)
     for i in range(n):
-        nxt, prv = (i + 1 if i + 1 < n else 0), (i - 1 if i > 0 else n - 1)
+        on, back = _unsigned(i + 1 if i + 1 < n else 0) * rows, _unsigned(i - 1 if i > 0 else n - 1) * rows
         for j in range(m):
-            a, b = number[i, j], number[nxt, j]
+            c = _unsigned(i) * rows + _unsigned(j)
+            far = on + _unsigned(j)
+            a, b = places[c], places[far]
             k = -0.5 * kx[i, j] * across[0, i, j]
             if k != 0.0 and (a >= 0 or b >= 0):
-                for end in (i, nxt):
-                    own = 0.0
-                    if j > 0:
-                        own += k * back_z[j]
-                        if full is None or full[end, j - 1]:
-                            _add_flow(-k * back_z[j], number[end, j - 1], a, b, stride, low, up)
-                    if j + 1 < m:
-                        own -= k * on_z[j]
-                        if full is None or full[end, j + 1]:
-                            _add_flow(k * on_z[j], number[end, j + 1], a, b, stride, low, up)
-                    if own != 0.0 and (full is None or full[end, j]):
-                        _add_flow(own, number[end, j], a, b, stride, low, up)
+                before, behind = k * back_z[j] if j > 0 else 0.0, k * on_z[j] if j + 1 < m else 0.0
+                for end in (c, far):
+                    if before != 0.0:
+                        _add_flow(-before, end - _1, (a, b), places, full, stride, low, up)
+                    if behind != 0.0:
+                        _add_flow(behind, end + _1, (a, b), places, full, stride, low, up)
+                    if before != behind:
+                        _add_flow(before - behind, end, (a, b), places, full, stride, low, up)
             if j + 1 == m:
                 continue
-            b = number[i, j + 1]
+            b = places[c + _1]
             k = -0.5 * kz[i, j] * across[1, i, j]
             if k != 0.0 and (a >= 0 or b >= 0):
-                for row in (j, j + 1):
-                    if full is None or full[prv, row]:
-                        _add_flow(-k * back_x[i], number[prv, row], a, b, stride, low, up)
-                    if full is None or full[nxt, row]:
-                        _add_flow(k * on_x[i], number[nxt, row], a, b, stride, low, up)
-                    own = k * (back_x[i] - on_x[i])
-                    if own != 0.0 and (full is None or full[i, row]):
-                        _add_flow(own, number[i, row], a, b, stride, low, up)
+                before, behind = k * back_x[i], k * on_x[i]
+                for row in (_unsigned(j), _unsigned(j) + _1):
+                    _add_flow(-before, back + row, (a, b), places, full, stride, low, up)
+                    _add_flow(behind, on + row, (a, b), places, full, stride, low, up)
+                    if before != behind:
+                        _add_flow(before - behind, _unsigned(i) * rows + row, (a, b), places, full, stride, low, up)

@@ -51,7 +51,7 @@ SLIGHT = 1e-5
 # Rate of the sliding over that of the pressure flow below which the mean stress over the rate is that at this rate.
 STILL = 1e-3
 _BISECTIONS = 90
-_FUSE = {"contract"}
+_FUSE = {"contract", "arcp", "nsz"}
 
 
 class Profile(NamedTuple):
@@ -177,7 +177,7 @@ def profile(S, G_x, G_z, oil, points, T_x, T_z):
     return _profile(S, G_x, G_z, oil, points, T_x, T_z, EXACT)[0]
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
 def _profile(S, G_x, G_z, oil, points, T_x, T_z, last_step):
     """`Profile`; the mean stress's derivatives T_zs, T_zx, T_zz; the last step's share of the stress."""
     r, F, H, C, B = _moments(T_x, T_z, S, G_x, G_z, oil, points)
@@ -215,7 +215,7 @@ def _scale(T_x, T_z, G_x, G_z):
     return abs(T_x) + abs(T_z) + 1e-3 * (abs(G_x) + abs(G_z)) + 1e-300
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FUSE)
+@njit(cache=True, error_model="numpy", fastmath=_FUSE, inline="always")
 def _follow(S, G_x, G_z, oil, points, last):
     """`Profile` from the last one, ``last`` (`LAST`,): along its derivatives if it is near, else where they lead to."""
     dS, d_x, d_z = S - last[0], G_x - last[1], G_z - last[2]
