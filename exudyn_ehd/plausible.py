@@ -205,7 +205,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "ElrodAdams.cavity_pressure",
     ),
     "stress": ("SurfaceLoad.traction", "DeadPressure.pressure", "FollowerPressure.pressure"),
-    "wall pressure": ("RegularisedWall.pressure",),
+    "wall pressure": ("RegularisedWall.pressure", "LubricatedJoint.stop_at.pressure"),
     "modulus": (
         "SaintVenantKirchhoff.youngs_modulus",
         "NeoHooke.youngs_modulus",
@@ -247,6 +247,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "equilibrium.load",
         "stribeck.load",
         "LubricatedJoint.place_in_equilibrium.load",
+        "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),
     "heat conductance": ("LumpedThermal.housing_conductance",),

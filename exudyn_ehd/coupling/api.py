@@ -188,7 +188,7 @@ class LubricatedJoint(JointResults):
         """
         for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
             if value != math.inf:
-                require_number(f"LubricatedJoint.stop_at: {name}", value, unit, above=0.0)
+                require_number(f"LubricatedJoint.stop_at.{name}", value, unit, above=0.0)
         failures = self.element.failures
         failures.largest_force, failures.largest_pressure = force, pressure
 

@@ -39,7 +39,10 @@ def oil(**laws):
 # Modules that belong to an effect alone, and options that must call each of them.
 EFFECTS = {
     "contact": (("film.surfaces.wall",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
-    "contact loads": (("film.surfaces.contact_wrench",), {"contact": ehd.RegularisedWall(onset=0.9 * C)}),
+    "contact loads": (
+        ("film.surfaces.contact_wrench", "film.surfaces.closed_gap"),
+        {"contact": ehd.RegularisedWall(onset=0.9 * C)},
+    ),
     "asperity": (("film.surfaces.asperity", "film.surfaces.average_gap"), {"asperity": ASPERITY}),
     "roughness": (("film.surfaces.flow_factors",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
     "wear": (("film.surfaces.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),

@@ -236,10 +236,11 @@ def balance_error(model):
     else:
         flow = np.maximum(flow, np.abs(y.area * y.H_t))
     # a closure stops at pressures right to 1e-13 of the peak; where the gap is
-    # wide, that is a flow against which others vanish
+    # wide, that is a flow against which others vanish; where oil thins, 3e-8 of the peak
     wide = y.kx + np.roll(y.kx, 1, axis=0) + y.kz
     wide[:, 1:] += y.kz[:, :-1]
-    flow = np.maximum(flow, 1e-5 * wide * np.abs(P).max())
+    thins = model.bearing.lubricant.shear_law is not None
+    flow = np.maximum(flow, (0.3 if thins else 1e-5) * wide * np.abs(P).max())
     if model.parts.liner is not None:
         # pressures that deflect a liner by less than 1e-10 of the smallest gap count as none
         flow = np.maximum(flow, wide * (1e-10 * s.H.min() / model.parts.liner.beta / BALANCE))
