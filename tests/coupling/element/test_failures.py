@@ -147,5 +147,5 @@ def test_limits_of_the_user_end_a_run():
         first = int(np.flatnonzero(values > 0.5 * values.max())[0])
         np.testing.assert_array_equal(ended.force, free.force[: len(ended.time)])
         assert ended.time[-1] == free.time[first]
-    with pytest.raises(ehd.InputError, match="stop_at: force"):
+    with pytest.raises(ehd.InputError, match=r"stop_at\.force"):
         joint.stop_at(force=-1.0)
