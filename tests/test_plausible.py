@@ -30,7 +30,7 @@ PURE = {
     "add_bore_modes.axis", "add_bore_modes.tolerance", "add_bore_modes.radius_tolerance", "bearing_grid.stretch",
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
-    "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale",
+    "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {

@@ -9,11 +9,15 @@ Lengths are divided by the journal radius R (so that x = theta), gaps by the rad
   exactly by the scheme while the load near the ends is not. Integrals over z use Gregory's end weights 3/8, 7/6, 23/24
   in s (fourth order), corrected so that 1, z^2 and z^4 are integrated exactly: areas and the load of an axial parabola,
   aligned or tilted, then hold to rounding on any grid. Below four intervals: the trapezoidal rule.
+
+Where supply areas have edges along z, rows lie on them, and every part between two edges has stretched rows and weights
+of its own (`rows_between`).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -180,6 +184,27 @@ def axial_vertices(n_z: int, half_length: float, stretch: float) -> tuple[np.nda
     return half_length * z, half_length * weight
 
 
+def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices with one on every edge, ascending, ``counts`` intervals in the parts between them, and their weights.
+
+    Every part is integrated as by `axial_vertices` on its own, so that pressures may have kinks at the edges.
+    """
+    z, weight = np.empty(sum(counts) + 1), np.zeros(sum(counts) + 1)
+    first = 0
+    for k, count in enumerate(counts):
+        half = 0.5 * (edges[k + 1] - edges[k])
+        part, part_weight = axial_vertices(count, half, stretch)
+        if count == 3:
+            inner = half**3 / 1.5 / (half**2 - part[2] ** 2)  # Simpson's three-eighths rule on stretched vertices
+            part_weight = np.array([half - inner, inner, inner, half - inner])
+        z[first : first + count + 1] = edges[k] + half + part
+        weight[first : first + count + 1] += part_weight
+        first += count
+        z[first] = edges[k + 1]
+    z[0] = edges[0]
+    return z, weight
+
+
 def bearing_grid(
     radius: float,
     length: float,
@@ -189,6 +214,7 @@ def bearing_grid(
     stretch: float = 0.75,
     start_angle: float = 0.0,
     open_ring: bool = False,
+    rows: tuple[np.ndarray, np.ndarray] | None = None,
 ) -> FilmGrid:
     """Film grid of a journal bearing.
 
@@ -204,14 +230,16 @@ def bearing_grid(
         theta of the first column, rad.
     open_ring : bool
         True: the first column carries a prescribed pressure (the film starts there).
+    rows : tuple of (m,) arrays, optional
+        Axial vertices over R, from end to end, and their weights; they replace ``n_z`` and ``stretch``.
     """
     for name, value in (("radius", radius), ("length", length)):
         require_number(f"bearing_grid: {name}", value, "m", above=0.0)
     require_number("bearing_grid: start_angle", start_angle, "rad")
     step = 2.0 * math.pi / n_theta
     theta = start_angle + step * np.arange(n_theta)
-    z, weight_z = axial_vertices(n_z, 0.5 * length / radius, stretch)
-    fixed = np.zeros((n_theta, n_z + 1), dtype=np.bool_)
+    z, weight_z = axial_vertices(n_z, 0.5 * length / radius, stretch) if rows is None else rows
+    fixed = np.zeros((n_theta, z.size), dtype=np.bool_)
     fixed[:, 0] = fixed[:, -1] = True
     fixed[0, :] |= open_ring
     width = np.full(n_theta, step)

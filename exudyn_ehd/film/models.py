@@ -21,7 +21,7 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
-from exudyn_ehd.film.supply import AxialGroove, SupplyArea
+from exudyn_ehd.film.supply import AxialGroove, SupplyArea, supply_rows
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
 # Bytes of a film's banded matrix.
@@ -168,6 +168,11 @@ def check_film(
             f"JournalBearing.film=ClassicSOR(...) is the paper's scheme with the Gümbel condition, got "
             f"cavitation={closure!r}; use cavitation=Gumbel(), or film=FiniteLength(...) for every other closure."
         )
+    if isinstance(film, ClassicSOR) and supply:
+        raise InputError(
+            "JournalBearing.supply must be () with film=ClassicSOR(...), whose uniform grid has no rows on the edges "
+            "of supply areas; use film=FiniteLength(...)."
+        )
     if not isinstance(film, LongBearing):
         return
     if not open_ring and not supply:
@@ -188,12 +193,27 @@ def check_film(
         )
 
 
-def film_grid(film: Film, radius: float, length: float, *, start_angle: float, open_ring: bool) -> FilmGrid:
-    """Grid of a film model; parameters as for `bearing_grid`."""
+def film_grid(
+    film: Film,
+    radius: float,
+    length: float,
+    *,
+    start_angle: float,
+    open_ring: bool,
+    supply: tuple[SupplyArea, ...] = (),
+) -> FilmGrid:
+    """Grid of a film model with rows on the edges of supply areas; other parameters as for `bearing_grid`."""
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     return bearing_grid(
-        radius, length, film.n_theta, film.n_z, stretch=film.stretch, start_angle=start_angle, open_ring=open_ring
+        radius,
+        length,
+        film.n_theta,
+        film.n_z,
+        stretch=film.stretch,
+        start_angle=start_angle,
+        open_ring=open_ring,
+        rows=supply_rows(supply, radius, length, film.n_z, film.stretch),
     )
 
 

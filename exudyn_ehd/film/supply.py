@@ -1,10 +1,12 @@
 """Oil supply: grooves, holes and pockets in which the pressure is prescribed.
 
-A supply area is deep against the clearance, so that its pressure is uniform. On the grid, the vertices inside the area
-(its edges included) carry the supply pressure; the area thus reaches from the first to the last vertex inside and may
-be up to one cell narrower per edge than drawn. Choose a grid with vertices on the edges where that matters (edges at
-multiples of 2 pi / n_theta), or refine. The rows at the bearing's ends keep the end pressures: a groove up to the ends
-leaves one axial interval of land.
+A supply area is deep against the clearance, so that its pressure is uniform. Circumferential grooves have rows of the
+grid on their edges, and the lands beside them rows of their own.
+
+In other areas, the vertices inside (edges included) carry the supply pressure; the area thus reaches from the first to
+the last vertex inside and may be up to one cell narrower per edge than drawn. Choose a grid with vertices on the edges
+where that matters (edges at multiples of 2 pi / n_theta), or refine. The rows at the bearing's ends keep the end
+pressures: a groove up to the ends leaves one axial interval of land.
 
 With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
 pressure acts on the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams`
@@ -22,12 +24,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.grid import FilmGrid, axial_vertices
+from exudyn_ehd.film.grid import FilmGrid, axial_vertices, rows_between
 from exudyn_ehd.status import InputError, require_number
 
 # Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
 EDGE = 1e-9
 LARGEST_REFINEMENT = 64
+# Intervals of a land next to a circumferential groove, and its shortest length over the bearing's.
+LEAST_ON_LAND, SHORTEST_LAND = 4, 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +72,7 @@ class AxialGroove:
 
 @dataclass(frozen=True, kw_only=True)
 class CircumferentialGroove:
-    """Groove around the bearing; it parts the film.
+    """Groove around the bearing; it parts the film into lands, whose load is within 1 % on the default grid.
 
     Parameters
     ----------
@@ -211,14 +215,16 @@ def check_supply(
     supply: Sequence[SupplyArea], radius: float, length: float, n_theta: int, n_z: int, stretch: float
 ) -> None:
     """Raise `InputError` for areas without a vertex of the film grid, or that overlap at different pressures."""
-    masks = []
     for k, area in enumerate(supply):
         _check_extent(k, area, radius, length)
-        mask = _covered(area, radius, length, n_theta, n_z, stretch)
+    _check_lands(supply, length)
+    masks = []
+    for k, area in enumerate(supply):
+        mask = _covered(area, supply, radius, length, n_theta, n_z, stretch)
         if not mask.any():
             raise InputError(
                 f"JournalBearing.supply[{k}]: no vertex of the {n_theta} x {n_z} film grid lies inside {area!r}; "
-                f"{_grid_needed(area, radius, length, n_theta, n_z, stretch)}"
+                f"{_grid_needed(area, supply, radius, length, n_theta, n_z, stretch)}"
             )
         masks.append(mask)
     for k, area in enumerate(supply):
@@ -244,11 +250,58 @@ def _check_extent(k: int, area: SupplyArea, radius: float, length: float) -> Non
         )
 
 
-def _covered(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: int, stretch: float) -> np.ndarray:
+def supply_rows(
+    supply: Sequence[SupplyArea], radius: float, length: float, n_z: int, stretch: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Axial vertices over R with rows on the edges of circumferential grooves, and their weights; None without any.
+
+    The lands share ``n_z`` intervals and two more per groove by their lengths, but have at least `LEAST_ON_LAND` each.
+    """
+    spans = _groove_spans(supply)
+    if not spans:
+        return None
+    edges = [-0.5 * length, *(z for span in spans for z in span), 0.5 * length]
+    lands = np.diff(edges)[::2]
+    counts = [1] * (len(edges) - 1)
+    per_length = (n_z + 2 * len(spans)) / lands.sum()
+    counts[::2] = [max(LEAST_ON_LAND, math.ceil(per_length * land - EDGE)) for land in lands]
+    counts[1] += sum(counts) % 2  # an even number can be halved for a coarser grid
+    return rows_between([z / radius for z in edges], counts, stretch)
+
+
+def _groove_spans(supply: Sequence[SupplyArea]) -> list[tuple[float, float]]:
+    """Axial extents, m, of the circumferential grooves from end to end of the bearing."""
+    grooves = (a for a in supply if isinstance(a, CircumferentialGroove))
+    return sorted((a.z - 0.5 * a.width, a.z + 0.5 * a.width) for a in grooves)
+
+
+def _check_lands(supply: Sequence[SupplyArea], length: float) -> None:
+    """Refuse circumferential grooves that leave no film beside or between them."""
+    before = -0.5 * length
+    for low, high in [*_groove_spans(supply), (0.5 * length, math.inf)]:
+        if low - before < SHORTEST_LAND * length:
+            raise InputError(
+                f"JournalBearing.supply: the land from z = {before:g} to {low:g} m, next to a CircumferentialGroove, "
+                f"must be at least {SHORTEST_LAND:g} of the bearing's length {length:g} m; move the groove, make it "
+                "narrower, or give one groove in place of two."
+            )
+        before = high
+
+
+def _covered(
+    area: SupplyArea,
+    supply: Sequence[SupplyArea],
+    radius: float,
+    length: float,
+    n_theta: int,
+    n_z: int,
+    stretch: float,
+) -> np.ndarray:
     """Vertices inside (n, m), end rows excepted; a rotating area in its worst position between the vertices."""
     step = 2.0 * math.pi / n_theta
     theta = step * np.arange(n_theta)
-    z = axial_vertices(n_z, 0.5 * length, stretch)[0]
+    rows = supply_rows(supply, 1.0, length, n_z, stretch)
+    z = axial_vertices(n_z, 0.5 * length, stretch)[0] if rows is None else rows[0]
     mask = area.covers(theta, z, radius)
     mask[:, 0] = mask[:, -1] = False
     if not area.rotating:
@@ -257,10 +310,18 @@ def _covered(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: 
     return mask if all(position.any() for position in turned) else np.zeros_like(mask)
 
 
-def _grid_needed(area: SupplyArea, radius: float, length: float, n_theta: int, n_z: int, stretch: float) -> str:
+def _grid_needed(
+    area: SupplyArea,
+    supply: Sequence[SupplyArea],
+    radius: float,
+    length: float,
+    n_theta: int,
+    n_z: int,
+    stretch: float,
+) -> str:
     for k in range(2, LARGEST_REFINEMENT + 1):
         for around, along in ((k * n_theta, n_z), (n_theta, k * n_z), (k * n_theta, k * n_z)):
-            if _covered(area, radius, length, around, along, stretch).any():
+            if _covered(area, supply, radius, length, around, along, stretch).any():
                 return f"a grid of n_theta={around}, n_z={along} would do; or make the area larger."
     return "it lies outside the bearing or is far too small; check its position (m, rad) and size."
 

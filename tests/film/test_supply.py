@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.film.supply import SupplyMap, supply_rows
 
 RADIUS, LENGTH = 0.025, 0.05
 AREAS = [
@@ -65,6 +65,24 @@ def test_areas_in_the_journal_turn_with_it():
     np.testing.assert_array_equal(supply.masks[1], before[1])
 
 
+def test_rows_lie_on_the_edges_of_circumferential_grooves():
+    """Weights integrate every land's parabola and the grooves' pressures exactly."""
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        z, w = rng.uniform(-0.02, 0.02), LENGTH * rng.uniform(1e-4, 0.15)
+        grooves = (ehd.CircumferentialGroove(z=z, width=w), ehd.AxialGroove(angle=1.0, width_angle=0.5))
+        rows, weight = supply_rows(grooves, RADIUS, LENGTH, int(rng.integers(4, 16)), 0.75)
+        assert rows.size % 2 == 1 and np.all(np.diff(rows) > 0.0)
+        edges = np.array([-LENGTH / 2, z - w / 2, z + w / 2, LENGTH / 2]) / RADIUS
+        at = np.abs(rows[:, None] - edges).argmin(axis=0)
+        np.testing.assert_allclose(rows[at], edges, rtol=1e-15)
+        assert at[1] >= 4 and at[3] - at[2] >= 4
+        p = np.where(np.arange(rows.size) <= at[1], (rows - edges[0]) * (edges[1] - rows), 0.0)
+        assert weight @ p == pytest.approx((edges[1] - edges[0]) ** 3 / 6.0, rel=1e-12)
+        assert weight.sum() == pytest.approx(LENGTH / RADIUS, rel=1e-13)
+    assert supply_rows(AREAS[:2], RADIUS, LENGTH, 10, 0.75) is None
+
+
 def test_flows_count_a_shared_vertex_once():
     grid = ehd.bearing_grid(RADIUS, LENGTH, 64, 12)
     supply = SupplyMap((ehd.CircumferentialGroove(width=0.01), ehd.AxialGroove(angle=1.0, width_angle=0.5)), grid)
@@ -102,6 +120,16 @@ def _bearing(**options):
         ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "grid of n_theta=.*would do"),
         ({"supply": (ehd.Hole(angle=0.1, z=1.0, diameter=0.001),)}, "outside the bearing"),
         ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "no vertex"),
+        ({"supply": (ehd.CircumferentialGroove(z=0.02, width=0.01),)}, r"the land from z = 0.025 to 0.025 m"),
+        (
+            {
+                "supply": (
+                    ehd.CircumferentialGroove(z=0.002, width=0.01),
+                    ehd.CircumferentialGroove(z=-0.002, width=0.01, pressure=1e5),
+                )
+            },
+            "or give one groove in place of two",
+        ),
         (
             {
                 "supply": (

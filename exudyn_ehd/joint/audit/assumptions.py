@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
+from exudyn_ehd.film.supply import CircumferentialGroove
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
@@ -97,12 +98,13 @@ def grid_rows(case: Case) -> Finding | None:
 
 
 def supply_resolution(case: Case) -> Finding | None:
-    """Vertices on the areas of the supply."""
+    """Vertices on the areas of the supply; circumferential grooves have rows of their own."""
     b, film = case.bearing, case.bearing.film
-    if not b.supply or not isinstance(film, FiniteLength):
+    areas = [area for area in b.supply if not isinstance(area, CircumferentialGroove)]
+    if not areas or not isinstance(film, FiniteLength):
         return None
     grid = case.films.model.grid
-    masks = [area.covers(grid.x, grid.z * b.journal_radius, b.journal_radius) for area in b.supply]
+    masks = [area.covers(grid.x, grid.z * b.journal_radius, b.journal_radius) for area in areas]
     value = min(int(np.count_nonzero(mask.any(axis=axis))) for mask in masks for axis in (0, 1))
     n_theta, n_z = 2 * film.n_theta, 2 * film.n_z
     return finding(

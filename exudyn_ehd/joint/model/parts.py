@@ -18,7 +18,9 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     """Parts of the model of a bearing with its effects, on the grid that starts at ``start_angle``, rad."""
     R, c = bearing.journal_radius, bearing.radial_clearance
     open_ring = isinstance(bearing.inlet, MaximumGap)
-    grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring)
+    grid = film_grid(
+        bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring, supply=bearing.supply
+    )
     supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
     liner: NonlinearFilmSolver | None = None
     if effects.liner is not None:

@@ -32,7 +32,8 @@ def surface_effects(bearing: JournalBearing, start_angle: float) -> Effects:
     gap_terms: list[GapTerm] = []
     wear = None
     if bearing.profiles or bearing.wear is not None:
-        grid = film_grid(bearing.film, bearing.journal_radius, bearing.length, start_angle=start_angle, open_ring=False)
+        R, supply = bearing.journal_radius, bearing.supply
+        grid = film_grid(bearing.film, R, bearing.length, start_angle=start_angle, open_ring=False, supply=supply)
         if bearing.profiles:
             gap_terms.append(ProfileTerm(bearing.profiles, grid.x, grid.z * grid.reference_length, bearing.length, c))
         if bearing.wear is not None:

@@ -126,12 +126,17 @@ def test_depends_on_the_state_alone(make_bearing):
     np.testing.assert_array_equal(model.evaluate(MOTION).wrench, first)
 
 
-def test_equilibrium_and_supply(make_bearing, measured):
-    """It carries loads and grooves like the other films."""
+def test_supply_is_refused(make_bearing):
     groove = (ehd.AxialGroove(angle=1.5, width_angle=0.4, pressure=1e5),)
+    with pytest.raises(ehd.InputError, match=r"supply must be \(\) with film=ClassicSOR"):
+        make_bearing(film=ehd.ClassicSOR(), cavitation=ehd.Gumbel(), supply=groove)
+
+
+def test_equilibrium(make_bearing, measured):
+    """It carries loads like the other films."""
     results = []
     for film in (ehd.ClassicSOR(n_theta=128, n_z=32, tolerance=1e-9), ehd.FiniteLength(n_theta=128, n_z=16)):
-        bearing = make_bearing(film=film, cavitation=ehd.Gumbel(), supply=groove)
+        bearing = make_bearing(film=film, cavitation=ehd.Gumbel())
         results.append(ehd.equilibrium(bearing, speed=100.0, load=(0.0, -2000.0)))
     # Grid errors of both, 0.2 % of the load.
     measured("eccentricity ratio", abs(results[0].eccentricity_ratio - results[1].eccentricity_ratio), 2e-3)

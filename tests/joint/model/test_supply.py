@@ -87,6 +87,58 @@ def test_transient_oil_balance(make_bearing):
     assert abs(change - fed) < 1e-10 * (start + moved)
 
 
+def _between_grooves(make_bearing, grooves, film, state):
+    """Force on the journal and flow out of the grooves of a bearing whose lands are bearings of their own."""
+    edges = [(-0.025, 0.0), *((z, g.pressure) for g in grooves for z in (g.z - g.width / 2, g.z + g.width / 2))]
+    edges.append((0.025, 0.0))
+    force = np.zeros(2)
+    for (low, p_low), (high, p_high) in zip(edges[::2], edges[1::2], strict=True):
+        land = make_bearing((high - low) / 0.05, film=film, end_pressures=(p_low, p_high))
+        force += ehd.steady(land, **state).force[:2]
+    return force
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_lands_of_circumferential_grooves_are_bearings_of_their_own(make_bearing, measured, count):
+    """Against fine grids of separate lands: any width and place, grid lines or not."""
+    rng = np.random.default_rng(count)
+    for eps in (0.1, 0.5, 0.9):
+        places = (
+            [rng.uniform(-0.015, 0.015)] if count == 1 else [rng.uniform(-0.013, -0.006), rng.uniform(0.006, 0.013)]
+        )
+        widths = 0.05 * rng.uniform(0.02, 0.3 / count, count)
+        grooves = tuple(
+            ehd.CircumferentialGroove(z=z, width=w, pressure=p)
+            for z, w, p in zip(places, widths, rng.uniform(0.0, 5e5, count), strict=True)
+        )
+        state = {"speed": 150.0, "eccentricity_ratio": eps, "direction": rng.uniform(0.0, 6.0)}
+        film = ehd.steady(make_bearing(supply=grooves), **state)
+        exact = _between_grooves(make_bearing, grooves, ehd.FiniteLength(n_theta=96, n_z=20), state)
+        measured(f"{grooves}, {eps}: load", np.linalg.norm(film.force[:2] - exact) / np.linalg.norm(exact), 0.01)
+
+
+def test_load_falls_steadily_as_a_circumferential_groove_grows(make_bearing):
+    """No width is taken for another one: 40 of them from 0.1 to 40 % of the length."""
+    loads = [
+        ehd.steady(
+            make_bearing(film=GRID, supply=(ehd.CircumferentialGroove(width=w),)), speed=150.0, eccentricity_ratio=0.6
+        ).sommerfeld_number
+        for w in 0.05 * np.linspace(1e-3, 0.4, 40)
+    ]
+    fall = -np.diff(loads) / loads[0]
+    assert np.all(fall > 0.005) and np.all(fall < 0.03)
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
+def test_a_groove_off_the_middle_feeds_what_leaks(make_bearing, closure):
+    groove = ehd.CircumferentialGroove(z=0.0071, width=0.0013, pressure=2e5)
+    bearing = make_bearing(film=GRID, cavitation=closure, supply=(groove,))
+    film = ehd.steady(bearing, speed=150.0, eccentricity_ratio=0.7, direction=0.5, tilt=(1e-5, -2e-5))
+    if closure.conserves_mass:
+        assert film.supply_flows[0] == pytest.approx(film.leakage, rel=1e-10)
+    assert film.pressure[:, np.isin(film.z, (0.0071 - 0.00065, 0.0071 + 0.00065))] == pytest.approx(2e5, rel=1e-13)
+
+
 def test_areas_in_the_journal(make_bearing):
     """At a spin of k grid steps an area in the journal is the one in the housing k steps on, bit for bit."""
     step = 2.0 * math.pi / GRID.n_theta
