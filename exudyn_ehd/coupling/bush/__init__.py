@@ -3,6 +3,7 @@
 Module map
 ----------
 object     CreateFlexibleBush
+functions  what Exudyn asks of it
 equations  its forces, matrices and Jacobians
 rigid_part  what its housing has of it
 """

@@ -129,6 +129,10 @@ class BushEquations:
             own -= self.contained.matrix(self.carrier.side)
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
 
+    def rounding(self, reach: np.ndarray) -> float:
+        """What the rounding of coordinates up to a size (n,) makes of forces [N] at most, root of sum of squares."""
+        return self._rounding * float(reach[: self._count].max(initial=0.0))
+
     def require_upright(self, mbs: exu.MainSystem, item: int, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
@@ -187,6 +191,12 @@ class BushEquations:
     @cached_property
     def _spring(self) -> float:
         return HOLD * float(self.solid.tangent(np.zeros(self.held.shape)).diagonal().max())
+
+    @cached_property
+    def _rounding(self) -> float:
+        """Force [N] per displacement [m]: nodes that are off by their rounding, all to the worst."""
+        rows = abs(self.solid.tangent(np.zeros(self.held.shape))).sum(axis=1)
+        return float(np.finfo(float).eps * np.linalg.norm(rows))
 
     @cached_property
     def _moving_mass(self) -> csr_matrix:

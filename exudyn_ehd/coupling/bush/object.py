@@ -16,6 +16,7 @@ import numpy as np
 from exudyn import itemInterface as items
 
 from exudyn_ehd.coupling.bush.equations import BushEquations
+from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
 from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
@@ -368,36 +369,17 @@ def _add_object(
     show: bool,
     color: Sequence[float],
 ) -> FlexibleBush:
-    watched: list[float] = []
-
-    def force(mbs, t, itemNumber, q, q_t):
-        start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
-        if not watched or watched[0] != start:
-            watched[:] = [start]
-            equations.require_upright(mbs, itemNumber, start, name)
-        return equations.force(t, np.array(q), np.array(q_t))
-
-    def jacobian(mbs, t, itemNumber, q, q_t, fODE2, fODE2_t):
-        return equations.jacobian(t, np.array(q), np.array(q_t), fODE2, fODE2_t)
-
-    weighed: list[bool] = []
-
-    def mass(mbs, t, itemNumber, q, q_t):
-        if not weighed:
-            weighed.append(True)
-            equations.warn_if_light(mbs, name.removesuffix(" bush"), np.array(q))
-        return equations.mass(np.array(q))
-
+    functions = BushFunctions(equations, name)
     nodes = [NodeIndex(int(i)) for i in numbers[numbers >= 0]]
     carrier = equations.carrier
-    arguments: dict = {"forceUserFunction": force, "jacobianUserFunction": jacobian}
+    arguments: dict = {"forceUserFunction": functions.force, "jacobianUserFunction": functions.jacobian}
     if carrier is None:
         container = exu.MatrixContainer()
         container.SetWithSparseMatrix(equations.mass(None), useDenseMatrix=False)
         arguments["massMatrix"] = container
     else:
         nodes += carrier.side.nodes
-        arguments["massMatrixUserFunction"] = mass
+        arguments["massMatrixUserFunction"] = functions.mass
     picture = items.VObjectGenericODE2(
         show=show, color=list(color), triangleMesh=_triangles(mesh, numbers), showNodes=False
     )

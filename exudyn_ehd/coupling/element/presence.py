@@ -39,7 +39,7 @@ class Presence:
         """Number of the joint's object in the system; None if it is not there."""
         count = mbs.systemData.NumberOfObjects()
         for number in (self.number, *range(count)):
-            if number < count and _owner(mbs, number) is self.owner():
+            if number < count and force_owner(mbs, number) is self.owner():
                 return number
         return None
 
@@ -63,7 +63,8 @@ class Presence:
         )
 
 
-def _owner(mbs: exu.MainSystem, number: int) -> object:
+def force_owner(mbs: exu.MainSystem, number: int) -> object:
+    """Whose method is the force function of an object; None if it has no such function."""
     item = ObjectIndex(number)
     # only some objects have a force function
     if mbs.GetObject(item)["objectType"] != "GenericODE2":

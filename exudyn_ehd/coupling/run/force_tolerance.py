@@ -1,10 +1,11 @@
-"""Newton's absolute tolerance in the measure of the films' forces.
+"""Newton's absolute tolerance in the measure of the films' and bushes' forces.
 
 Exudyn's Newton method ends where the residual is a share of the step's first one, or below an absolute tolerance. A
 start close to the solution makes the first residual so small that a share of it is below what positions resolve: metres
 from the origin, or under meganewtons, a film's force has the rounding of the position times its stiffness, 1e-9 of
 itself and more. The step would be halved for nothing. From Exudyn's own start the first residual is about as large as
-the forces, so that its tolerance is a share of these; here too, with a tenth of it.
+the forces, so that its tolerance is a share of these; here too, with a tenth of it. The forces within a nodal bush, in
+a film or not, have the rounding of its displacements times the stiffness of its elements.
 """
 
 from __future__ import annotations
@@ -13,7 +14,11 @@ import math
 from collections.abc import Sequence
 from typing import Any, Protocol
 
-from exudyn_ehd.coupling.contract import Trial
+import exudyn as exu
+
+from exudyn_ehd.coupling.bush.functions import BushFunctions
+from exudyn_ehd.coupling.contract import ObjectIndex, Trial
+from exudyn_ehd.coupling.element.presence import force_owner
 from exudyn_ehd.status import Status
 
 # Share of the relative tolerance times the films' forces.
@@ -35,22 +40,39 @@ class ForceTolerance:
     ----------
     films : sequence of Film
         Elements of all joints of a system.
+
+    Attributes
+    ----------
+    bushes : list
+        Nodal bushes of the system with the places of their coordinates in its vectors; known from the first step on.
     """
 
     def __init__(self, films: Sequence[Film]) -> None:
         self.films = films
+        self.bushes: list[tuple[BushFunctions, list[int]]] = []
         self.given: float | None = None
 
-    def set(self, solver: Any) -> None:
+    def set(self, mbs: exu.MainSystem, solver: Any) -> None:
         """At the start of a step, where the films were evaluated last at the end of the step before."""
         newton = solver.newton
         if self.given is None:
             self.given = newton.absoluteTolerance
+            self.bushes = _bushes(mbs)
         # mode 1 measures coordinates
         if newton.residualMode == 0:
             forces = [force for film in self.films for force in _force(film.last)]
-            level = math.hypot(*forces) / solver.conv.errorCoordinateFactor
-            newton.absoluteTolerance = max(self.given, SHARE * newton.relativeTolerance * level)
+            level = SHARE * newton.relativeTolerance * math.hypot(*forces)
+            if self.bushes:
+                state = mbs.systemData.GetSystemStateDict(exu.ConfigurationType.StartOfStep, True)
+                reach = abs(state["ODE2Coords"]) + solver.it.currentStepSize * abs(state["ODE2Coords_t"])
+                level = max(level, math.hypot(*(bush.equations.rounding(reach[at]) for bush, at in self.bushes)))
+            newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
+
+
+def _bushes(mbs: exu.MainSystem) -> list[tuple[BushFunctions, list[int]]]:
+    owners = ((force_owner(mbs, number), number) for number in range(mbs.systemData.NumberOfObjects()))
+    data = mbs.systemData
+    return [(o, data.GetObjectLTGODE2(ObjectIndex(n))) for o, n in owners if isinstance(o, BushFunctions)]
 
 
 def _force(trial: Trial | None) -> list[float]:

@@ -99,7 +99,7 @@ class StartGuess:
             expected = lasting(self.past, self.groups)
             self.guess = None if expected is None else expected * self.additive
             self.start, self.attempts = start, 0
-            self.tolerance.set(solver)
+            self.tolerance.set(mbs, solver)
         self.attempts += 1
         # a step that was refused is tried from Exudyn's start and from this one in turns
         if self.guess is None or self.attempts % 2 == 0:

@@ -72,3 +72,27 @@ def test_tolerance_is_a_share_of_the_forces_or_what_the_user_has_set():
     assert each == pytest.approx(level / math.sqrt(7.0), rel=0.3)
     # a residual in coordinates
     assert rotor((0, 0, 0), ehd.SolveDynamic, residualMode=1)[1].newton.absoluteTolerance == 1e-8
+
+
+@pytest.mark.parametrize("solve", [ehd.SolveDynamic, ehd.SolveDynamicSparse])
+def test_a_steel_ring_that_flies_without_a_joint_halves_no_step(solve):
+    """Rounding of places that have moved by decimetres makes forces of 1e-6 N."""
+    mbs, steps, step = scenes.new_system(), 8, 2e-3
+    mesh = ehd.HollowCylinder(inner_radius=0.03, thickness=0.012, length=0.03, axial=1, radial=1, circumferential=8)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
+    ring = ehd.CreateFlexibleBush(
+        mbs,
+        bush=ehd.ANCFBush(mesh=mesh, material=steel),
+        outer=ehd.FreeOuter(),
+        loads=[ehd.Gravity(acceleration=(0.0, -9.81, 0.0))],
+        initialVelocity=(50.0, 0.0, 0.0),
+    )
+    mbs.Assemble()
+    settings = ehd.ConfigureSolver(scenes.settings(steps * step, steps), relativeTolerance=1e-10)
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    times = []
+    mbs.SetPostStepUserFunction(lambda mbs, t: not times.append(t))
+    solve(mbs, settings)
+    assert len(times) == 1 + steps
+    falls = np.array([50.0, -9.81 * steps * step, 0.0])
+    assert np.abs(ring.velocities() - falls).max() < 1e-7

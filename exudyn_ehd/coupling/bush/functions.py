@@ -1,0 +1,46 @@
+"""User functions of a nodal bush's object."""
+
+from __future__ import annotations
+
+import exudyn as exu
+import numpy as np
+from scipy.sparse import csr_matrix
+
+from exudyn_ehd.coupling.bush.equations import BushEquations
+
+
+class BushFunctions:
+    """What Exudyn asks of a nodal bush.
+
+    Parameters
+    ----------
+    equations : BushEquations
+    name : str
+        Of the object, for messages.
+    """
+
+    def __init__(self, equations: BushEquations, name: str) -> None:
+        self.equations, self.name = equations, name
+        self._watched = np.nan
+        self._weighed = False
+
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """Generalised force (n,); raises where an element of the last accepted state is inside out."""
+        start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+        if start != self._watched:
+            self._watched = start
+            self.equations.require_upright(mbs, item, start, self.name)
+        return self.equations.force(t, np.array(q), np.array(q_t))
+
+    def jacobian(
+        self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
+    ) -> csr_matrix:
+        """Derivative (n, n) of minus the force, weighted for coordinates and rates."""
+        return self.equations.jacobian(t, np.array(q), np.array(q_t), f_q, f_qt)
+
+    def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> csr_matrix:
+        """Mass (n, n) of a bush on a carrier."""
+        if not self._weighed:
+            self._weighed = True
+            self.equations.warn_if_light(mbs, self.name.removesuffix(" bush"), np.array(q))
+        return self.equations.mass(np.array(q))
