@@ -34,6 +34,7 @@ UNITS = {
     "contact_torque": "N m",
     "power_loss": "W",
     "stored_power": "W",
+    "step_error": "-",
     "leakage": "m3/s",
     "supply_flow": "m3/s",
     "contact_load": "N",

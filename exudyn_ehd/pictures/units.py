@@ -53,6 +53,7 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "friction_torque": ("friction torque", "torque"),
     "power_loss": ("power loss", "power"),
     "stored_power": ("stored power", "power"),
+    "step_error": ("error of the\ntime steps", "ratio"),
     "leakage": ("leakage", "flow"),
     "contact_load": ("contact load", "force"),
     "contact_torque": ("contact torque", "torque"),

@@ -115,6 +115,8 @@ class AcceptedSteps:
         Whether one of this package's calls of a solver is under way.
     unseen : int
         Steps in a row that no solver known has taken.
+    tangent : (6, 10) array or None
+        Of the film's wrench, as Newton's method of an implicit run has asked for it last.
     """
 
     def __init__(self, film: Film) -> None:
@@ -136,6 +138,7 @@ class AcceptedSteps:
         self._turning: turning_meshes.TurnWatch | None = None
         self._uses_memory = self._may_starve = self.in_own_run = False
         self.unseen = 0
+        self.tangent: np.ndarray | None = None
         self._thin = -np.inf
         self._told = True
         self._overloaded = False
@@ -222,6 +225,7 @@ class AcceptedSteps:
         # the time of a static solve is a load parameter: the film is the steady one
         self._uses_memory = film.model.remembers and not static
         self._may_starve = self._uses_memory and lacks_oil(bearing)
+        self.tangent = None
         self._thin, self._told, self._overloaded = thin_films.limit(bearing), False, False
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory

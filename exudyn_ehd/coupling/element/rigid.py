@@ -210,6 +210,8 @@ class FilmElement:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """dQ/dq and dQ/dq_t (n, n) of the two sides for a tangent (6, 10), and the motion's derivatives (10, n)."""
         assert trial.evaluation is not None
+        if solver_state.is_implicit(self.steps.solver):
+            self.steps.tangent = tangent
         housing, journal = self.sides
         n_h, n, loads = housing.size, housing.size + journal.size, self._loads
         q, q_t = np.array(trial.q[:n]), np.array(trial.q_t[:n])
@@ -276,7 +278,8 @@ class FilmElement:
             return None
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
-        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, self._quantities(trial.evaluation))
+        quantities = self._quantities(trial.evaluation)
+        return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, self.steps.tangent)
 
     def fields(
         self, mbs: exu.MainSystem, time: float, trial: Trial, configuration: exu.ConfigurationType

@@ -14,6 +14,8 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.step_error import BLOCKS, step_errors
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
 from exudyn_ehd.status import InputError
@@ -38,11 +40,13 @@ _SCALARS = (
     "stored_power",
 )
 _TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
-_WIDTH = _FIRST_SCALAR + len(_SCALARS)
+_FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
+_WIDTH = _FIRST_BLOCK + BLOCKS.size
+_BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-_FORMAT = "exudyn_ehd JointHistory 3"
+_FORMAT = "exudyn_ehd JointHistory 4"
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
     "force": ("force_x", "force_y", "force_z"),
@@ -87,6 +91,8 @@ _COLUMNS: dict[str, int | slice] = {
     "moment": slice(_WRENCH + 3, _WRENCH + 6),
     **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
 }
+# What a history has for every step.
+_NAMES = (*_COLUMNS, "step_error")
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -121,6 +127,9 @@ class JointHistory(History, HistoryPictures):
         Largest displacement of a liner or of a flexible bore [m].
     stored_power : ndarray (n,)
         Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
+    step_error : ndarray (n,)
+        Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
+        implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
     """
@@ -143,6 +152,7 @@ class JointHistory(History, HistoryPictures):
     peak_angle: np.ndarray
     bore_displacement: np.ndarray
     stored_power: np.ndarray
+    step_error: np.ndarray
     journal_radius: float
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
@@ -151,7 +161,7 @@ class JointHistory(History, HistoryPictures):
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
         slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
         kept = (self.time >= start - slack) & (self.time <= end + slack)
-        columns = {name: getattr(self, name)[kept] for name in _COLUMNS}
+        columns = {name: getattr(self, name)[kept] for name in _NAMES}
         return dataclasses.replace(self, **columns)
 
     def save(self, path: str | pathlib.Path) -> None:
@@ -170,7 +180,7 @@ class JointHistory(History, HistoryPictures):
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write all columns as text, names and SI units in the first line; vectors by their components."""
         columns: dict[str, np.ndarray] = {}
-        for name in _COLUMNS:
+        for name in _NAMES:
             values = getattr(self, name)
             # the eccentricity is the motion's x and y
             if name in _PARTS:
@@ -241,8 +251,9 @@ def make_row(
     ratios: tuple[float, float],
     wrench: np.ndarray,
     quantities: Mapping[str, float],
+    tangent: np.ndarray | None = None,
 ) -> np.ndarray:
-    """One row of the record."""
+    """One row of the record; estimates of step errors need the ``tangent`` (6, 10)."""
     row = np.empty(_WIDTH)
     row[_TIME] = time
     row[_MOTION : _MOTION + 10] = motion
@@ -251,6 +262,7 @@ def make_row(
     row[_WRENCH : _WRENCH + 6] = wrench
     for i, name in enumerate(_SCALARS):
         row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
+    row[_FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
     return row
 
 
@@ -266,6 +278,7 @@ class Record:
         self._dimensions: dict[str, Any] = {
             name: float(getattr(bearing, name)) for name in ("radial_clearance", "journal_radius", "length")
         }
+        self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
         self._rows = np.empty((64, _WIDTH))
         self._count = 0
 
@@ -310,4 +323,18 @@ class Record:
         if final is not None:
             rows = np.concatenate([rows, final[None]])
         columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
-        return JointHistory(**columns, **self._dimensions)
+        return JointHistory(**columns, step_error=self._step_errors(rows, columns), **self._dimensions)
+
+    def _step_errors(self, rows: np.ndarray, columns: dict[str, np.ndarray]) -> np.ndarray:
+        peak, deflection = columns["peak_angle"], None
+        if self._lags:
+            deflection = columns["bore_displacement"][:, None] * np.stack((np.cos(peak), np.sin(peak)), axis=1)
+        return step_errors(
+            columns["time"],
+            columns["motion"],
+            rows[:, _FIRST_BLOCK:].reshape(-1, *BLOCKS.shape),
+            columns["minimum_gap"],
+            self._dimensions["radial_clearance"],
+            self._dimensions["length"],
+            deflection,
+        )

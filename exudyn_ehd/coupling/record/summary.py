@@ -13,13 +13,13 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.joint.audit.findings import LIMITS
-from exudyn_ehd.joint.audit.samples import largest_advance
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_ROUGHNESS,
     TYPICAL_SHEAR_ONSET,
     TYPICAL_TEMPERATURE_COEFFICIENT,
 )
+from exudyn_ehd.joint.step_error import enough_steps
 
 LOGGER = logging.getLogger("exudyn_ehd")
 # Young's modulus of steel, Pa: a rigid bore is taken for a ring of it about half a radius thick.
@@ -67,9 +67,13 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
     halved = _halved(time) if in_time else 0
     text += f", {halved} halved steps" if halved else ""
-    crossed = largest_advance(h.motion, h.minimum_gap, bearing.length) if in_time else 0.0
-    if crossed > LIMITS["time step"].value:
-        text += f", {100.0 * crossed:.0f} % of the film crossed in one step: take more steps"
+    error = float(np.nanmax(h.step_error, initial=0.0))
+    if error > LIMITS["time step"].value:
+        k = int(np.nanargmax(h.step_error))
+        text += (
+            f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
+            f"{enough_steps(time, h.motion[:, 8], h.step_error)}"
+        )
     doubts = worth_an_audit(bearing, history)
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 

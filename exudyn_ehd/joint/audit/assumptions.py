@@ -13,8 +13,8 @@ from exudyn_ehd.film.supply import CircumferentialGroove
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.samples import largest_advance
 from exudyn_ehd.joint.audit.switches import refined
+from exudyn_ehd.joint.step_error import enough_steps
 
 # Grids this many times finer than needed cost time for nothing.
 TOO_FINE = 6.0
@@ -119,15 +119,17 @@ def supply_resolution(case: Case) -> Finding | None:
 
 
 def time_step(case: Case) -> Finding | None:
-    """Motion per accepted step against the gap."""
-    if case.record is None:
+    """Estimated error of the steps against the gap; None for a record that does not know it."""
+    record = case.record
+    if record is None or not np.any(np.isfinite(record.step_error)):
         return None
+    needed = enough_steps(record.time, record.motion[:, 8], record.step_error)
     return finding(
         "time step",
-        "motion in a step / minimum film thickness",
-        largest_advance(case.record.motion, case.record.minimum_gap, case.bearing.length),
+        "estimated error of the gap / minimum film thickness",
+        float(np.nanmax(record.step_error)),
         None,
-        mattering="the journal crosses much of its gap in one step: take smaller steps.",
+        mattering=f"the steps are too coarse for the film: take {needed}.",
     )
 
 

@@ -46,7 +46,7 @@ LIMITS = {
     "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
     "grid along": Limit(3.0, "intervals: as around", below=True),
     "supply resolution": Limit(3.0, "intervals across the narrowest area", below=True),
-    "time step": Limit(0.2, "of the minimum film thickness"),
+    "time step": Limit(0.05, "of the minimum film thickness"),
     "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
 }
 

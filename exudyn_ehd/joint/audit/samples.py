@@ -33,6 +33,8 @@ class RecordedSteps:
         N, on the journal.
     minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature, bore_displacement : (n,) arrays
         m, Pa, W, m3/s, N, K, m.
+    step_error : (n,) array
+        Estimated error of the gap that the time steps have made, over the minimum film thickness.
     """
 
     time: np.ndarray
@@ -45,6 +47,7 @@ class RecordedSteps:
     contact_load: np.ndarray
     film_temperature: np.ndarray
     bore_displacement: np.ndarray
+    step_error: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
         """Steps, sorted, in which something is worst.
@@ -59,26 +62,6 @@ class RecordedSteps:
         loss = np.abs(self.power_loss)
         keys = (-self.minimum_gap, self.peak_pressure, loss, self.contact_load, tilt, squeeze, speed, deflected)
         return sorted({int(np.nanargmax(key)) for key in keys if np.any(np.isfinite(key))})
-
-
-def largest_advance(motion: np.ndarray, minimum_gap: np.ndarray, length: float) -> float:
-    """Largest motion of the journal's axis at a bearing's end within a step, over the smaller of its two gaps.
-
-    Parameters
-    ----------
-    motion : (n, 10 or more) array
-        Of the accepted steps.
-    minimum_gap : (n,) array
-        m.
-    length : float
-        m.
-    """
-    if len(motion) < 2:
-        return 0.0
-    ends = [motion[:, :2] + s * 0.5 * length * motion[:, 2:4] for s in (-1.0, 1.0)]
-    moved = np.max([np.hypot(*np.diff(e, axis=0).T) for e in ends], axis=0)
-    gap = np.minimum(minimum_gap[1:], minimum_gap[:-1])
-    return float(np.max(moved / np.maximum(gap, 1e-3 * np.abs(minimum_gap).max() + 1e-300)))
 
 
 @dataclass(frozen=True, eq=False)

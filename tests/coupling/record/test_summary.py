@@ -1,6 +1,6 @@
 """A run ends with one line per joint: what was thinnest and highest, when, and what was left out."""
 
-import copy
+import dataclasses
 import logging
 import subprocess
 import sys
@@ -12,7 +12,7 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record import summary
-from exudyn_ehd.joint.audit.samples import largest_advance
+from exudyn_ehd.joint.step_error import enough_steps
 
 
 @pytest.fixture
@@ -120,22 +120,28 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
     assert [name for name in absent if name in line] == []
 
 
-def test_steps_that_cross_much_of_the_film_are_named():
-    """By the audit's measure of a run, and of every twentieth of its steps."""
+def test_steps_that_are_too_coarse_are_named(lines):
+    """From 5 % of the film on, with a number of steps that would do; the audit says the same."""
     mbs, joint = scene(30e3)
     ehd.SolveDynamic(mbs, scenes.settings(0.02, 400, tolerance=1e-8))
-    (fine,) = [f for f in joint.audit().findings if f.effect == "time step"]
-    coarse = copy.copy(joint.history)
-    for name, values in vars(coarse).items():
-        if isinstance(values, np.ndarray) and len(values) == 401:
-            object.__setattr__(coarse, name, values[::20])
-    bearing = joint.bearing
-    crossed = largest_advance(coarse.motion, coarse.minimum_gap, bearing.length)
-    assert crossed > fine.threshold > fine.value
-    named = f"{100.0 * crossed:.0f} % of the film crossed in one step: take more steps"
-    assert named in summary.line("bearing", bearing, coarse, in_time=True)
-    assert "crossed" not in summary.line("bearing", bearing, coarse, in_time=False)
-    assert "crossed" not in summary.line("bearing", bearing, joint.history, in_time=True)
+    history = joint.history
+    assert np.nanmax(history.step_error) < 0.05 and "time steps" not in lines[0]
+    assert not joint.audit()["time step"].matters
+    coarse = dataclasses.replace(history, step_error=history.step_error.copy())
+    coarse.step_error[40] = 0.08
+    needed = enough_steps(coarse.time, coarse.motion[:, 8], coarse.step_error)
+    said = f"error of the time steps 8 % of the minimum film thickness at {history.time[40]:.6g} s: take {needed}"
+    assert said in summary.line("bearing", joint.bearing, coarse, in_time=True)
+
+
+@pytest.mark.parametrize(("spin", "needed"), [(0.0, "800 steps in all"), (-20.0 * np.pi, "400 steps per turn")])
+def test_number_of_steps_that_would_do(spin, needed):
+    """Of 400 equal steps in 0.2 s: 2 % from 8 % take twice as many, here two turns."""
+    error = np.full(401, np.nan)
+    error[3:] = 0.01
+    error[200] = 0.08
+    found = enough_steps(np.linspace(0.0, 0.2, 401), np.full(401, spin), error)
+    assert found.startswith(needed)
 
 
 def test_one_switch_turns_the_lines_off(lines):
@@ -151,7 +157,6 @@ import logging, sys
 if "configured" in sys.argv:
     logging.basicConfig(stream=sys.stdout, level=logging.INFO, format="own %(message)s")
 from exudyn_ehd.coupling.record import summary
-from exudyn_ehd.joint.audit.samples import largest_advance
 if "off" in sys.argv:
     logging.getLogger("exudyn_ehd").setLevel("WARNING")
 if summary.is_on():
