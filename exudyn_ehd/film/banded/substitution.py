@@ -52,10 +52,7 @@ def _solve_rows(forward, backward, scale_forth, scale_back, inverse, count, widt
     fours = x.shape[0] - x.shape[0] % 4
     for k in range(0, fours, 4):
         _solve_four(forward, backward, scale_forth, scale_back, inverse, count, width, x[k : k + 4])
-    pairs = x.shape[0] - x.shape[0] % 2
-    for k in range(fours, pairs, 2):
-        _solve_two(forward, backward, scale_forth, scale_back, inverse, count, width, x[k], x[k + 1])
-    for k in range(pairs, x.shape[0]):
+    for k in range(fours, x.shape[0]):
         _solve_one(forward, backward, scale_forth, scale_back, inverse, count, width, x[k])
 
 
@@ -112,71 +109,6 @@ def _solve_one(forward, backward, scale_forth, scale_back, inverse, count, width
         s1 = (s1 - row[row1 + _2] * s2) * i1
         s0 = (s0 - row[row0 + _2] * s2 - row[row0 + _1] * s1) * i0
         x[r], x[r + _1], x[r + _2] = s0, s1, s2
-
-
-@njit(cache=True, fastmath=_KEEP_ORDER)
-def _solve_two(forward, backward, scale_forth, scale_back, inverse, count, width, x, y):
-    """As `_solve_one` for two right-hand sides x, y (count,) at once."""
-    col, row = forward.reshape(-1), backward.reshape(-1)
-    stride = _unsigned(forward.shape[1])
-    along = stride - _1
-    w, size = _unsigned(width), _unsigned(count)
-    whole = size - size % _3
-    i0 = i1 = i2 = 1.0
-    for panel in range(whole // _3):
-        r = _3 * panel
-        reach = min(w, r)
-        k = r - reach
-        own = r * stride
-        at = own - reach * along
-        s0, s1, s2, t0, t1, t2 = x[r], x[r + _1], x[r + _2], y[r], y[r + _1], y[r + _2]
-        for _ in range(reach):
-            f, g = x[k], y[k]
-            s0 -= col[at] * f
-            t0 -= col[at] * g
-            s1 -= col[at + _1] * f
-            t1 -= col[at + _1] * g
-            s2 -= col[at + _2] * f
-            t2 -= col[at + _2] * g
-            at += along
-            k += _1
-        if scale_forth:
-            i0, i1, i2 = inverse[r], inverse[r + _1], inverse[r + _2]
-        a, b, c = col[own + _1], col[own + _2], col[own + stride + _1]
-        s0, t0 = s0 * i0, t0 * i0
-        s1, t1 = (s1 - a * s0) * i1, (t1 - a * t0) * i1
-        s2, t2 = (s2 - b * s0 - c * s1) * i2, (t2 - b * t0 - c * t1) * i2
-        x[r], x[r + _1], x[r + _2], y[r], y[r + _1], y[r + _2] = s0, s1, s2, t0, t1, t2
-    for side in (x, y):
-        _solve_rest(col, row, stride, scale_forth, scale_back, inverse, whole, size, w, side)
-    i0 = i1 = i2 = d0 = d1 = d2 = 1.0
-    for panel in range(whole // _3):
-        r = whole - _3 * panel - _3
-        row0 = r * stride
-        row1 = row0 + along
-        row2 = row1 + along
-        if scale_back:
-            i0, i1, i2 = inverse[r], inverse[r + _1], inverse[r + _2]
-            if scale_forth:
-                d0, d1, d2 = row[row0], row[row1 + _1], row[row2 + _2]
-        s0, s1, s2 = d0 * x[r], d1 * x[r + _1], d2 * x[r + _2]
-        t0, t1, t2 = d0 * y[r], d1 * y[r + _1], d2 * y[r + _2]
-        reach = min(w, size - r - _3)
-        d = _2 + reach
-        for _ in range(reach):
-            f, g = x[r + d], y[r + d]
-            s0 -= row[row0 + d] * f
-            t0 -= row[row0 + d] * g
-            s1 -= row[row1 + d] * f
-            t1 -= row[row1 + d] * g
-            s2 -= row[row2 + d] * f
-            t2 -= row[row2 + d] * g
-            d -= _1
-        a, b, c = row[row1 + _2], row[row0 + _2], row[row0 + _1]
-        s2, t2 = s2 * i2, t2 * i2
-        s1, t1 = (s1 - a * s2) * i1, (t1 - a * t2) * i1
-        s0, t0 = (s0 - b * s2 - c * s1) * i0, (t0 - b * t2 - c * t1) * i0
-        x[r], x[r + _1], x[r + _2], y[r], y[r + _1], y[r + _2] = s0, s1, s2, t0, t1, t2
 
 
 @njit(cache=True, fastmath=_KEEP_ORDER)

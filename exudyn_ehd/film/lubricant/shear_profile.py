@@ -19,6 +19,7 @@ Symbols: x along the sliding, z across; _s derivative to S (which has no part ac
 
 from __future__ import annotations
 
+import functools
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,6 +80,7 @@ class Oil(NamedTuple):
     residual: float
 
 
+@functools.lru_cache(maxsize=16)
 def fluidity_table(exponent: float, residual: float) -> Oil:
     """Fluidity ``f(s)``, s = |T|^2, of ``T = Gamma (r + (1 - r) (1 + Gamma^2)^((n - 1) / 2))`` as cubics in s.
 
@@ -107,6 +109,7 @@ def fluidity_table(exponent: float, residual: float) -> Oil:
     return Oil(np.append(table, [f[-1], 0.0, 0.0, 0.0]), exponent, residual)
 
 
+@functools.lru_cache(maxsize=16)
 def gauss_points(count: int) -> np.ndarray:
     """Heights zeta across the film, and weights times 1, zeta .. zeta^4: (6, count)."""
     zeta, weight = 0.5 * np.array(np.polynomial.legendre.leggauss(count))

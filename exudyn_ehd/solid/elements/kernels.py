@@ -94,7 +94,7 @@ def _second_piola(H, Ht, law, S_out):
         S_out[i, i] += pressure
 
 
-@njit(cache=True, fastmath=FAST, inline="always")
+@njit(cache=True, fastmath=FAST)
 def _element_force(G, w, nodes, size, u, v, law, work, f_out):
     """Add f_a = sum_q w P G_a of one element to f_out; G (nq, 3, n), work (9 n + 45,)."""
     n = len(size)
@@ -136,7 +136,7 @@ def _element_force(G, w, nodes, size, u, v, law, work, f_out):
             f_out[nodes[a], i] += fe[i, a]
 
 
-@njit(cache=True, fastmath=FAST, inline="always")
+@njit(cache=True, fastmath=FAST)
 def _element_tangent(G, w, nodes, size, u, v, law, geometric, material, work, K):
     """Six blocks 00, 11, 22, 01, 02, 12 of the element tangent into K (6, n, n).
 

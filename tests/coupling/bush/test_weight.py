@@ -13,6 +13,7 @@ from exudyn.utilities import InertiaCylinder, RigidBodyInertia
 from rods import ARM, RING
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 from tests.solid_tetrahedra import tet_mesh
 
 TETS = tet_mesh(dataclasses.replace(RING, circumferential=12))
@@ -88,7 +89,11 @@ def fall(mbs, steps=5, step=2e-5):
     return steps * step
 
 
-@pytest.mark.parametrize(("kind", "node"), [(kind, "Rxyz") for kind in BUSHES if kind != "dynamic"] + [("nodal", "2D")])
+FALLING = [(kind, "Rxyz") for kind in ("rigid", "liner", "modal", "nodal")] + [("nodal", "2D")]
+ON_TETRAHEDRA = [(kind, "Rxyz") for kind in BUSHES if kind.endswith("tetrahedra")]
+
+
+@pytest.mark.parametrize(("kind", "node"), FALLING + sample(ON_TETRAHEDRA))
 def test_everything_falls_with_g_whatever_the_bush_is_made_of(kind, node, measured):
     mbs, joint, bodies, gravity = pair(BUSHES[kind], node)
     t = fall(mbs)

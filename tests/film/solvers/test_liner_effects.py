@@ -317,6 +317,8 @@ CASES = [
     for t, e in EVERY_EFFECT
     if (c.conserves_mass or (t, e) != ("none", "none")) and (t, e) not in (("wall", "barus"), ("wall", "carreau"))
 ]
+# a third of them; of those with shear thinning, which take the longest, one
+QUICK = [k for k, case in enumerate(CASES) if k % 3 == 0 and (case[2] != "carreau" or case[0] == ehd.SwiftStieber())]
 
 
 def pressures(solver):
@@ -328,7 +330,7 @@ def pressures(solver):
 @pytest.mark.parametrize("motion", ["steady", "step"])
 @pytest.mark.parametrize(
     ("closure", "contact", "effect"),
-    sample(CASES, *range(0, len(CASES), 3)),
+    sample(CASES, *QUICK),
     ids=lambda v: v if isinstance(v, str) else type(v).__name__,
 )
 def test_scipy_finds_the_same_film(closure, contact, effect, motion):
