@@ -13,6 +13,11 @@ the smallest s of all films and ends. Coordinates, velocities and accelerations 
 after a part of a step too: the solution stays what it is. Rotations of Lie groups don't add up, and keep their step.
 Films thinner than a thousandth of the clearance, on a contact, are left alone. Flexible bores are judged as undeformed:
 a journal that presses into one is free beyond the clearance, and on the way there the steps are a few more or fewer.
+
+With a pressure law a film has another end: velocities v of the journal's axis at which no finite pressure carries it.
+The law's line behind that end is flatter than the law in front of it, so that Newton's method may jump from one side to
+the other and back for ever. Where it was behind the end, at v_b, and has come back to v, a step goes no more than half
+of the way there, d (v_b - v) <= |v_b - v|^2 / 2: a bisection, until Newton's method converges.
 """
 
 from __future__ import annotations
@@ -28,6 +33,7 @@ from exudyn_ehd.coupling.contract import JointModel, Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import eccentricity_ratios
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
+from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 # Share of a film's gap that a step of Newton's method may close.
@@ -65,10 +71,13 @@ class GapLimit:
         self.films = films
         self.bores = {film: BoreGap(film.model.bearing) for film in films}
         self.before: list[np.ndarray] = []
+        # last motions behind the end of the films' pressure laws
+        self.behind: dict[Film, np.ndarray] = {}
 
     def start(self, mbs: exu.MainSystem) -> None:
         """Remember where Newton's method starts."""
         self.before = [values.copy() for values in _state(mbs)]
+        self.behind.clear()
 
     def shorten(self, mbs: exu.MainSystem, additive: np.ndarray) -> None:
         """Shorten the step that Newton's method has taken, where it closes a film by more than `SHARE`.
@@ -90,7 +99,7 @@ class GapLimit:
                     allowed = _allowed_in_profile(bore, last.bodies, after)
                 else:
                     allowed = allowed_part(last.bodies, after, bearing.radial_clearance, bearing.length)
-                part = min(part, allowed)
+                part = min(part, allowed, self._allowed_at_end(film, last, after))
         state = _state(mbs)
         if part < 1.0:
             kept = np.where(additive, 1.0 - part, 0.0)
@@ -98,6 +107,15 @@ class GapLimit:
                 new += share * (old - new)
         for old, new in zip(self.before, state, strict=True):
             old[:] = new
+
+    def _allowed_at_end(self, film: Film, last: Trial, after: np.ndarray) -> float:
+        """Part of a step from in front of the end of a film's law that goes half of the way back behind it."""
+        bearing = film.model.bearing
+        if last.status == Status.NO_PRESSURE and bearing.bush is None:
+            self.behind[film] = last.bodies
+        elif film in self.behind:
+            return _allowed_towards(self.behind[film], last.bodies, after, 0.5 * bearing.length)
+        return 1.0
 
 
 def allowed_part(before: np.ndarray, after: np.ndarray, clearance: float, length: float) -> float:
@@ -134,6 +152,14 @@ def _allowed_in_profile(bore: BoreGap, before: np.ndarray, after: np.ndarray) ->
         return 1.0
     beyond = ends < SHARE * smallest
     return float(np.min((gaps - SHARE * smallest)[beyond] / (gaps - ends)[beyond], initial=1.0))
+
+
+def _allowed_towards(other: np.ndarray, before: np.ndarray, after: np.ndarray, lever: float) -> float:
+    """Part of a step between two motions that goes half of the way to the velocities of a third one, 1 if none does."""
+    levers = np.array([1.0, 1.0, lever, lever])
+    way, step = levers * (other - before)[4:8], levers * (after - before)[4:8]
+    half, along = 0.5 * float(way @ way), float(way @ step)
+    return half / along if along > half else 1.0
 
 
 def _state(mbs: exu.MainSystem) -> list[np.ndarray]:

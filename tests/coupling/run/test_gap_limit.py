@@ -80,3 +80,30 @@ def test_steps_are_not_halved_for_newtons_method(planar_rotor, monkeypatch):
     # 200 steps; without the limit sixty are added
     assert coarse.time.size < 225 < 250 < halved.time.size
     assert np.array_equal(fine.force, same.force)
+
+
+def test_newtons_method_does_not_swing_about_the_end_of_a_pressure_law(planar_rotor):
+    """A journal pressed with nearly all that a film of Roelands' oil carries: no step is halved, and none stops."""
+    bearing = ehd.JournalBearing(
+        journal_radius=0.01,
+        length=0.022,
+        radial_clearance=1e-5,
+        lubricant=ehd.Lubricant(viscosity=0.0087, pressure_law=ehd.RoelandsPressure(coefficient=1.5e-8)),
+        film=ehd.FiniteLength(n_theta=48, n_z=6),
+    )
+    time, load, steps = 5e-3, 30e3, 100
+    rotor = planar_rotor(
+        bearing,
+        mass=0.5,
+        speed=(lambda t: 20.0 * t, lambda t: 20.0),
+        position=(3e-7, -3e-6),
+        load=lambda t: (0.0, -load * math.sin(math.pi * t / time) ** 2),
+    )
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = time, steps
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    ehd.SolveDynamic(rotor.mbs, ehd.ConfigureSolver(settings))
+    history = rotor.joint.history
+    assert history.time.size == steps + 1
+    assert np.linalg.norm(history.force, axis=1).max() == pytest.approx(load, rel=1e-3)
