@@ -144,6 +144,7 @@ class JournalBearing:
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
+        _check_line(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -264,6 +265,25 @@ def advice(status: Status, bearing: object) -> str:
             f"approach (initial velocities), check the law's coefficient, {barus}or name an elastic liner or bush."
         )
     return status.advice
+
+
+def _check_line(bearing: JournalBearing) -> None:
+    """Refuse a rupture line inside the cells with what does not know it yet."""
+    if not bearing.cavitation.line_in_cells:
+        return
+    film, oil = type(bearing.film).__name__, bearing.lubricant
+    others = {
+        f"film={film}(...)": not isinstance(bearing.film, (FiniteLength, LongBearing)),
+        "an ElasticLiner": isinstance(bearing.bush, ElasticLiner),
+        "Lubricant.density_law": oil.density_law is not None,
+        "Lubricant.shear_law": oil.shear_law is not None,
+    }
+    for other, there in others.items():
+        if there:
+            raise InputError(
+                f"SwiftStieber.line_in_cells=True does not go with {other} yet; use SwiftStieber(), with its line on "
+                "the grid, or leave the other out."
+            )
 
 
 _OPTIONS: dict[str, tuple[type, ...]] = {

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.film.cavitation.closures import Gumbel
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients
 from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -149,6 +150,13 @@ class LongSolver(FilmSolver):
         """As `FilmSolver.link_derivatives`, with no flow by vz."""
         out = super().link_derivatives(rho)
         out[3] = 0.0
+        return out
+
+    def line_gradients(self) -> LineGradients | None:
+        """As `FilmSolver.line_gradients`, with no flow by vz."""
+        out = super().line_gradients()
+        if out is not None:
+            out.by[7] = 0.0
         return out
 
 

@@ -101,6 +101,10 @@ EFFECTS = {
         ("film.solvers.impedance_map", "joint.model.impedance"),
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
+    "line": (
+        ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
+        {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
+    ),
     "mass conservation": (
         ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),
         {"cavitation": CLOSURES["elrod"]},

@@ -14,6 +14,7 @@ BUSHES = {
 }
 OPTIONS = {
     "swift": {},
+    "line in its cells": {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
     "gumbel": {"cavitation": ehd.Gumbel(cavity_shear=0.3)},
     "full": {"cavitation": ehd.FullSommerfeld()},
     "elrod": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},

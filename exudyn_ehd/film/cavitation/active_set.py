@@ -17,6 +17,7 @@ from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
+from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import Coefficients
 
@@ -50,6 +51,8 @@ class FilmSystem:
         Couette flows take ``prompt fill + late`` along, of `exudyn_ehd.film.cavitation.lagging_void`; 1 and 0 without.
     inverse_step : float
         1 / time step since ``mass_old``, 1/s; 0: steady.
+    line : RuptureLine or None
+        Where the film's edge lies inside its cells; None: on vertices.
     """
 
     def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
@@ -68,6 +71,7 @@ class FilmSystem:
         empty = np.ones(shape) if fills else np.ones((0, 0))
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
+        self.line: RuptureLine | None = None
 
     @property
     def coefficients(self) -> Coefficients:
@@ -204,3 +208,17 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
             else:
                 P_out[i, j] = pc
                 active_out[i, j] = False
+
+
+@njit(cache=True)
+def prolong_set(coarse, fixed, fine_out):
+    """Active set of a grid from that of every second vertex: active if a coarse vertex next to it is."""
+    n, m = fine_out.shape
+    nc = coarse.shape[0]
+    for i in range(n):
+        a = i // 2
+        b = (a + i % 2) % nc
+        for j in range(m):
+            c = j // 2
+            d = c + j % 2
+            fine_out[i, j] = (coarse[a, c] or coarse[a, d] or coarse[b, c] or coarse[b, d]) and not fixed[i, j]

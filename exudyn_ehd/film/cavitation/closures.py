@@ -24,11 +24,14 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, clip_pressure, solve_active_set, solve_on_active
-from exudyn_ehd.status import Status, require_number
+from exudyn_ehd.film.cavitation.line_newton import solve_with_line
+from exudyn_ehd.status import Status, require_bool, require_number
 
 
 class SymmetricClosure:
     """Closures whose last solution has a symmetric factor."""
+
+    line_in_cells = False
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
@@ -106,21 +109,29 @@ class SwiftStieber(SymmetricClosure):
         Gauge pressure of the cavity, Pa.
     cavity_shear : float
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
+    line_in_cells : bool
+        True: the rupture line lies where it is, inside the cells of the grid (order two in stiffness and damping); see
+        `exudyn_ehd.film.cavitation.rupture_line`. False: on its vertices.
     """
 
     cavity_pressure: float = 0.0
     cavity_shear: float = 1.0
+    line_in_cells: bool = False
 
     conserves_mass = False
     clips = False
 
     def __post_init__(self) -> None:
         _check_closure(self)
+        object.__setattr__(self, "line_in_cells", require_bool("SwiftStieber.line_in_cells", self.line_in_cells))
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Primal-dual active set from ``work.active``, or from all free vertices if ``work.warm`` is False."""
         if not work.warm:
             np.logical_not(system.fixed, out=work.active)
+        if system.line is not None:
+            work.warm, steps = solve_with_line(system, system.line, work)
+            return (Status.CONVERGED if work.warm else Status.NOT_CONVERGED), steps
         ok, steps, count, width = solve_active_set(
             system.kx,
             system.kz,

@@ -77,6 +77,7 @@ class ElrodAdams:
     cavity_shear = 1.0
     conserves_mass = True
     clips = False
+    line_in_cells = False
 
     def __post_init__(self) -> None:
         require_number("ElrodAdams.cavity_pressure", self.cavity_pressure, "Pa")

@@ -12,6 +12,7 @@ link carries of a full film's Couette flow.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -120,6 +121,26 @@ def link_derivatives(P, H, HF, slopes, by_speed, fill, rho, couette, vx, vz, flo
                 SX[i, j] -= by_speed[0][i, j] * (lx * (P[nxt, j] - P[i, j])) * width_z[j]
             for j in range(m - 1):
                 SZX[i, j] = -by_speed[1][i, j] * (link_z[j] * (P[i, j + 1] - P[i, j])) * wx
+
+
+@dataclass(eq=False)
+class Sensitivities:
+    """Gradients of k adjoint functionals.
+
+    Attributes
+    ----------
+    cell, face : (k, n, m) arrays
+        With respect to the gap at vertices and on the links i -> i+1.
+    rate : (k, n, m) array
+        With respect to the gap's rate at vertices.
+    speed : (k, 2) array
+        With respect to (vx, vz).
+    """
+
+    cell: np.ndarray
+    face: np.ndarray
+    rate: np.ndarray
+    speed: np.ndarray
 
 
 def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -5,20 +5,20 @@ The straight line gap -> coefficients -> pressure -> sensitivities.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import FilmSystem
+from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
 from exudyn_ehd.film.cavitation.elrod_adams import film_terms
 from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
+from exudyn_ehd.film.cavitation.line_newton import refine_factor
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import contract_links, link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
     link_flux,
@@ -49,6 +49,9 @@ class Closure(Protocol):
     @property
     def clips(self) -> bool: ...
 
+    @property
+    def line_in_cells(self) -> bool: ...
+
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
@@ -56,26 +59,6 @@ class Closure(Protocol):
     def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
     def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
-
-
-@dataclass(eq=False)
-class Sensitivities:
-    """Gradients of k adjoint functionals.
-
-    Attributes
-    ----------
-    cell, face : (k, n, m) arrays
-        With respect to the gap at vertices and on the links i -> i+1.
-    rate : (k, n, m) array
-        With respect to the gap's rate at vertices.
-    speed : (k, 2) array
-        With respect to (vx, vz).
-    """
-
-    cell: np.ndarray
-    face: np.ndarray
-    rate: np.ndarray
-    speed: np.ndarray
 
 
 class FilmSolver:
@@ -122,6 +105,7 @@ class FilmSolver:
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
+        self.line = self.system.line = RuptureLine(shape) if closure.line_in_cells else None
         self.work = Workspace(*shape)
         self.flux_effects = flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
@@ -302,6 +286,13 @@ class FilmSolver:
             self.work.warm = True
         return steps
 
+    @property
+    def _factored(self) -> Workspace:
+        """The workspace, with the factor of the last solution itself."""
+        if self.line is not None:
+            refine_factor(self.system, self.line, self.work)
+        return self.work
+
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
         """Solve ``A^T lam = rhs`` with the stored factor; rhs (k, count) is overwritten, fields (k, n, m) come back."""
         w = self.work
@@ -312,22 +303,36 @@ class FilmSolver:
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
-        self.closure.adjoint(self.system, self.work, rhs)
+        self.closure.adjoint(self.system, self._factored, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""
-        self.closure.direct(self.work, rhs)
+        self.closure.direct(self._factored, rhs)
 
     def adjoint_columns(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        self.closure.adjoint_columns(self.work, rhs)
+        self.closure.adjoint_columns(self._factored, rhs)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m)."""
         by_rate, by_gap = self.storage_weights()
         cell, face, speed = contract_links(lam, self.link_derivatives())
         cell -= lam * by_gap
-        return Sensitivities(cell, face, -lam * by_rate, speed)
+        rate = -lam * by_rate
+        contract_line(lam, self.line_gradients(), cell, face, rate, speed)
+        return Sensitivities(cell, face, rate, speed)
+
+    def line_gradients(self) -> LineGradients | None:
+        """What the rupture line inside its cells adds to the derivatives of the balances; None where it has no share.
+
+        For the last solution, at fixed pressure.
+        """
+        if self.line is None:
+            return None
+        v = self.vx, self.vz
+        return self.line.gradients(
+            self.work, (self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh
+        )
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""
@@ -381,17 +386,3 @@ class FilmSolver:
         else:
             vertex_balance(s.pressure, s.kx, s.kz, s.b, balance)
         return np.where(self.grid.fixed, balance, 0.0)
-
-
-@njit(cache=True)
-def prolong_set(coarse, fixed, fine_out):
-    """Active set of a grid from that of every second vertex: active if a coarse vertex next to it is."""
-    n, m = fine_out.shape
-    nc = coarse.shape[0]
-    for i in range(n):
-        a = i // 2
-        b = (a + i % 2) % nc
-        for j in range(m):
-            c = j // 2
-            d = c + j % 2
-            fine_out[i, j] = (coarse[a, c] or coarse[a, d] or coarse[b, c] or coarse[b, d]) and not fixed[i, j]

@@ -116,6 +116,8 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
             y.coefficients,
             cavity,
         )
+        if s.line is not None:
+            work += float(np.sum((film.oil.P - cavity) * s.line.found()))
     power = film.scales.pressure * film.parts.flow_scale
     return sliding_power(film) + power * (work + _end_work(film)), leaving
 

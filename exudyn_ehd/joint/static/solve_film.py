@@ -156,6 +156,10 @@ def _any_gap_solver(
     effects = () if steps is None else (steps,)
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
+    if closure.line_in_cells:
+        raise InputError(
+            "solve_film: SwiftStieber.line_in_cells=True does not go with Lubricant.density_law; use SwiftStieber()."
+        )
     solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
     return solver

@@ -22,6 +22,7 @@ import functools
 import numpy as np
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, add_line_stencil
 from exudyn_ehd.film.loads import couette_gradient, unknown_weights
 from exudyn_ehd.film.sensitivity.bore_stencil import (
     balance_change,
@@ -33,7 +34,13 @@ from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
-from exudyn_ehd.joint.tangent.wrench import adjoint_rows, gap_derivatives, shear_needs_adjoint, wrench_tangent
+from exudyn_ehd.joint.tangent.wrench import (
+    adjoint_rows,
+    gap_derivatives,
+    shear_needs_adjoint,
+    true_line,
+    wrench_tangent,
+)
 
 # Columns of the weights of all integrals where pressure and fill don't enter the Couette shear.
 _WITHOUT_SHEAR = np.array([0, 1, 2, 3, 5, 6])
@@ -104,6 +111,9 @@ class Balances:
         motion_columns(
             self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
         )
+        self.line = true_line(film)
+        if self.line is not None:
+            add_line_columns(self.line, p.grid.directions, self.motion)
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""
@@ -125,6 +135,8 @@ class Balances:
             weight,
             vertices,
         )
+        if self.line is not None:
+            add_line_stencil(self.line, by_place / c, by_rate / c, weight)
         return weight, vertices
 
 

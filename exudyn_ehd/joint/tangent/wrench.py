@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import functional_gradients, integral_weights, motion_columns, wrench_gradient
-from exudyn_ehd.film.solvers.linear import Sensitivities
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.surfaces.contact_wrench import (
     chain_links,
@@ -129,7 +130,16 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         film.parts.liner.motion_columns(at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
+        line = true_line(film)
+        if line is not None:
+            add_line_columns(line, at, out)
     return out
+
+
+def true_line(film: SolvedFilm) -> LineGradients | None:
+    """The rupture line's part of the balances' derivatives, to the true gap; None without."""
+    line, f = film.solver.line_gradients(), film.limited
+    return line if line is None or f is None else to_true_gap(line, f.slope, f.bend, f.face_slope)
 
 
 def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

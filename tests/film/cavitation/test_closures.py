@@ -7,8 +7,8 @@ import pytest
 
 from exudyn_ehd import FullSommerfeld, Gumbel, InputError, Status, SwiftStieber, bearing_grid
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.active_set import clip_pressure, solve_active_set, update_active_set
-from exudyn_ehd.film.solvers.linear import FilmSolver, prolong_set
+from exudyn_ehd.film.cavitation.active_set import clip_pressure, prolong_set, solve_active_set, update_active_set
+from exudyn_ehd.film.solvers.linear import FilmSolver
 
 
 def _random_gaps(solver, rng):

@@ -16,6 +16,7 @@ CLOSURES = {
     "swift, partly sheared": ehd.SwiftStieber(cavity_shear=0.3),
     "gumbel, cavity below ambient": ehd.Gumbel(cavity_pressure=-5e4),
     "swift, cavity below ambient": ehd.SwiftStieber(cavity_pressure=-5e4),
+    "swift, line in its cells": ehd.SwiftStieber(cavity_pressure=-5e4, line_in_cells=True),
 }
 STATES = {
     "steady": {"eccentricity": (0.5, 0.2)},
@@ -84,6 +85,10 @@ OPTIONS = {
     "short, Gumbel": {"film": ehd.ShortBearing(n_theta=48, n_z=8), "cavitation": ehd.Gumbel()},
     "wall": {"contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7)},
     "wall, Gumbel": {"contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7), "cavitation": ehd.Gumbel()},
+    "wall, line in its cells": {
+        "contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7),
+        "cavitation": ehd.SwiftStieber(line_in_cells=True),
+    },
     "wall, end pressures": {
         "contact": ehd.RegularisedWall(onset=10e-6, pressure=2e7),
         "end_pressures": (2e5, 5e4),

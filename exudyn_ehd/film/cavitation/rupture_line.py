@@ -1,0 +1,219 @@
+"""Swift-Stieber's rupture line inside a cell: the film's balance as it is where its edge lies between two vertices.
+
+Where the film ends its pressure is a parabola, ``p = q d^2 / 2`` with the distance d to the line. Of a vertex let ``f``
+be what wedge and squeeze take away (minus the right-hand side of `exudyn_ehd.film.reynolds.links`) and ``k`` the mean
+conductance of its two links in theta, so that ``q = f / (k h^2)`` with the distance h of two columns. If the line lies
+s cells beyond a vertex, 0 < s < 1, then ``p = q h^2 s^2 / 2`` there. The parabola, continued beyond the line, meets
+the scheme's balance exactly; but the scheme has the cavity's pressure at the next vertex, not the parabola's value
+``q h^2 (1 - s)^2 / 2``. So the true film leaves in the balance of the last vertex
+
+    N = f (1 - s)^2 / 2,    s = sqrt(2 k p / f),    for 0 < s < 1, else nothing,
+
+and the film solves ``A P - b - N(P) = 0`` where it is not ruptured. A vertex joins at s = 0 when its own balance falls
+below f / 2. The matrix stays symmetric, and an M-matrix, since
+
+    -dN/dp = k (1 - s) / s,    dN/df = (1 - s) / 2,    dN/dk = -f s (1 - s) / (2 k),
+
+the first of which makes the outer link as long as it is, s h. N falls with p and is convex, so that there is one
+solution. Pressures are continuous in the motion, and forces have continuous derivatives.
+
+N is zero where the wedge builds pressure up (f <= 0), in films at rest, without pressure flow in theta, and next to
+columns with prescribed pressure, in which no line is to be looked for.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.workspace import Workspace
+from exudyn_ehd.film.grid import Directions, Mesh
+from exudyn_ehd.film.reynolds.links import LinkFlux
+
+
+class LineGradients(NamedTuple):
+    """Derivatives of what N, f and k add to the balances of c unknowns, at fixed pressure.
+
+    Attributes
+    ----------
+    rows, places : (c,) int arrays
+        Unknowns and their flat vertices.
+    by : (8, c) array
+        To the gap on the links behind and before it in theta, to the gap at the vertex itself and at those behind and
+        before it in z, to the vertex' own rate, to vx and vz.
+    """
+
+    rows: np.ndarray
+    places: np.ndarray
+    by: np.ndarray
+
+
+class RuptureLine:
+    """The rupture line of one film.
+
+    Attributes
+    ----------
+    f, k, s : (n, m) arrays
+        Symbols of the module; f is 0 where there can be no line, s is 1 where there is none.
+    shift, share : (n m,) arrays
+        The line's share of the unknowns' diagonals, in the factor and of the present film.
+    exact : bool
+        Whether the factor is that of the last solution.
+    """
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        self.f, self.k, self.s = np.zeros(shape), np.zeros(shape), np.ones(shape)
+        self.shift, self.share = np.zeros((2, shape[0] * shape[1]))
+        self.exact = False
+
+    @property
+    def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """These arrays as kernels take them."""
+        return self.f, self.k, self.s, self.shift, self.share
+
+    def found(self) -> np.ndarray:
+        """N (n, m) of the last solution: the oil that appears where the line crosses a cell, a scaled flow."""
+        return np.where(self.s < 1.0, 0.5 * self.f * (1.0 - self.s) ** 2, 0.0)
+
+    def gradients(
+        self,
+        work: Workspace,
+        gaps: tuple[np.ndarray, np.ndarray],
+        flux: LinkFlux | None,
+        speeds: tuple[float, float],
+        flow_x: float,
+        squeeze: bool,
+        mesh: tuple[np.ndarray, ...],
+    ) -> LineGradients:
+        """`LineGradients` of the last solution, to the film's ``gaps`` at vertices and links."""
+        rows, by = np.empty(work.count, dtype=np.int64), np.empty((8, work.count))
+        slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
+        count = line_gradients(
+            work.order, work.count, self.fields, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, rows, by
+        )
+        return LineGradients(rows[:count], work.order[rows[:count]], by[:, :count])
+
+
+@njit(cache=True)
+def line_terms(kx, b, fixed, f_out, k_out):
+    """f and k of all vertices (n, m)."""
+    n, m = b.shape
+    for i in range(n):
+        prv = i - 1 if i > 0 else n - 1
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            before, behind = kx[prv, j], kx[i, j]
+            known = fixed[i, j] or fixed[prv, j] or fixed[nxt, j] or not min(before, behind) > 0.0
+            f_out[i, j] = 0.0 if known else max(-b[i, j], 0.0)
+            k_out[i, j] = 0.5 * (before + behind)
+
+
+@njit(cache=True)
+def line_gradients(order, count, line, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, rows, by):
+    """`LineGradients` of the last solution; returns their number.
+
+    ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
+    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`; ``rows`` (n m,), ``by`` (8, n m).
+    """
+    f, k, s, _, _ = line
+    mesh = Mesh(*mesh)
+    n, m = f.shape
+    found = 0
+    for r in range(count):
+        i = order[r] // m
+        j = order[r] - i * m
+        if s[i, j] >= 1.0:
+            continue
+        prv = i - 1 if i > 0 else n - 1
+        # of the balance to the sources b and to the mean conductance
+        source = 0.5 * (1.0 - s[i, j])
+        conduct = source * f[i, j] * s[i, j] / k[i, j]
+        wx, wz = mesh.width_x[i], mesh.width_z[j]
+        rows[found] = r
+        by[:, found] = 0.0
+        for q, face, side in ((0, i, -1.0), (1, prv, 1.0)):
+            half = 0.5 * conduct * mesh.link_x[face] * flow_x * wz
+            if slopes is None:
+                h = HF[face, j]
+                by[q, found] = side * source * vx * wz + half * 3.0 * h * h
+                by[6, found] += side * source * h * wz
+            else:
+                by[q, found] = side * source * vx * wz * slopes[4][face, j] + half * slopes[0][face, j]
+                by[6, found] += side * source * slopes[2][face, j] * wz
+            if by_speed is not None:
+                by[6, found] += half * by_speed[0][face, j]
+        for q, face, side in ((3, j, -1.0), (4, j - 1, 1.0)):
+            if 0 <= face < m - 1:
+                carrier, carrier_h = 0.5 * (H[i, face] + H[i, face + 1]), 1.0
+                if slopes is not None:
+                    carrier, carrier_h = slopes[3][i, face], slopes[5][i, face]
+                across = 0.5 * side * source * vz * wx * carrier_h
+                by[2, found] += across
+                by[q, found] = across
+                by[7, found] += side * source * wx * carrier
+        if squeeze:
+            by[5, found] = -source * wx * wz
+        found += 1
+    return found
+
+
+def contract_line(
+    lam: np.ndarray, line: LineGradients | None, cell: np.ndarray, face: np.ndarray, rate: np.ndarray, speed: np.ndarray
+) -> None:
+    """Add the line's part of ``-lam . dr`` for adjoints lam (k, n, m) to the film's gradients (k, n, m) and (k, 2)."""
+    if line is None:
+        return
+    n, m = lam.shape[1:]
+    i, j = np.divmod(line.places, m)
+    weights = -lam[:, i, j]
+    # no two of the vertices share a place; what wraps around in z has no weight
+    for field, at, row, by in (
+        (face, i, j, 0), (face, (i - 1) % n, j, 1), (cell, i, j, 2), (cell, i, (j + 1) % m, 3),
+        (cell, i, (j - 1) % m, 4), (rate, i, j, 5),
+    ):  # fmt: skip
+        field[:, at, row] += weights * line.by[by]
+    speed += weights @ line.by[6:].T
+
+
+def add_line_columns(line: LineGradients, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
+    """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
+
+    As `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
+    """
+    at = Directions(*at)
+    n, m = at.cos_x.size, at.z.size
+    i, j = np.divmod(line.places, m)
+    z, by = at.z[j], line.by
+    on, back = at.z[(j + 1) % m], at.z[(j - 1) % m]
+    whole, tilted = by[2] + by[3] + by[4], by[2] * z + by[3] * on + by[4] * back
+    for q, faces, cells in ((0, at.cos_f, at.cos_x), (1, at.sin_f, at.sin_x)):
+        along = by[0] * faces[i] + by[1] * faces[(i - 1) % n]
+        out[q, line.rows] -= along + whole * cells[i]
+        out[2 + q, line.rows] -= along * z + tilted * cells[i]
+        out[4 + q, line.rows] -= by[5] * cells[i]
+        out[6 + q, line.rows] -= by[5] * cells[i] * z
+    out[8:, line.rows] += by[6:]
+
+
+def add_line_stencil(line: LineGradients, by_gap: float, by_rate: float, weight: np.ndarray) -> None:
+    """Add the line's part to the weights (count, 5) of `exudyn_ehd.film.sensitivity.bore_stencil.gap_stencil`."""
+    by = line.by
+    half_on, half_back = 0.5 * by[0], 0.5 * by[1]
+    own = by_gap * (half_on + half_back + by[2]) + by_rate * by[5]
+    weight[line.rows] += np.column_stack((own, *(by_gap * part for part in (half_on, half_back, by[3], by[4]))))
+
+
+def to_true_gap(line: LineGradients, slope: np.ndarray, bend: np.ndarray, face_slope: np.ndarray) -> LineGradients:
+    """From the film's gap to the true one, by what a gap limiter returns (n, m)."""
+    n, m = slope.shape
+    i, j = np.divmod(line.places, m)
+    by = line.by.copy()
+    by[0] *= face_slope[i, j]
+    by[1] *= face_slope[(i - 1) % n, j]
+    by[2] = by[2] * slope[i, j] + by[5] * bend[i, j]
+    by[3] *= slope[i, (j + 1) % m]
+    by[4] *= slope[i, (j - 1) % m]
+    by[5] *= slope[i, j]
+    return line._replace(by=by)
