@@ -80,7 +80,7 @@ def overview(joint: ehd.LubricatedJoint, path: pathlib.Path) -> None:
         joint.plot_pressure(ax=figure.add_subplot(grid[1, :3]))
         traces = grid[1, 3:].subgridspec(2, 1)
         axes = [figure.add_subplot(traces[0]), figure.add_subplot(traces[1])]
-        joint.plot_traces(angle=SPEED * history.time, angle_text="shaft angle", axes=axes)
+        joint.plot_traces(angle=SPEED * history.time, angle_text="shaft angle", ax=axes)
         axes[0].tick_params(labelbottom=False)
         figure.align_ylabels(axes)
         figure.savefig(path, dpi=110)

@@ -22,8 +22,9 @@ the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2
 moments are taken about the joint's origin.
 """
 
+import difflib
 import importlib
-from typing import Any
+from typing import TYPE_CHECKING
 
 # first of all: it finds a folder for compiled kernels
 import exudyn_ehd.storage  # noqa: F401
@@ -78,7 +79,7 @@ _LAZY = {
     "Free": "coupling.api",
     "Held": "coupling.api",
     "JointHistory": "coupling.record.history",
-    "LubricatedJoint": "coupling.api",
+    "LubricatedJoint": "coupling.handle",
     "Quantity": "coupling.record.history",
     "Revolutions": "coupling.record.revolutions",
     "load_history": "coupling.record.history",
@@ -125,10 +126,47 @@ _LAZY = {
 }
 
 
-def __getattr__(name: str) -> Any:
-    if name in _LAZY:
-        return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
-    raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}")
+if TYPE_CHECKING:
+    from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
+    from exudyn_ehd.coupling.bush.object import (
+        CarriedOuter,
+        CreateFlexibleBush,
+        FixedOuter,
+        FlexibleBush,
+        FreeOuter,
+        Support,
+    )
+    from exudyn_ehd.coupling.handle import LubricatedJoint
+    from exudyn_ehd.coupling.record.history import JointHistory, Quantity, load_history
+    from exudyn_ehd.coupling.record.revolutions import Revolutions
+    from exudyn_ehd.coupling.run.joint_state import JointState
+    from exudyn_ehd.coupling.run.restart import SystemState
+    from exudyn_ehd.coupling.run.settings import ConfigureSolver
+    from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
+    from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
+    from exudyn_ehd.coupling.watch.step_control import StepControl
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
+    from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
+    from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
+    from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
+    from exudyn_ehd.solid.mesh_files import mesh_from_file
+    from exudyn_ehd.solid.mesh_import import OnCylinder, OnPlane, mesh_from_arrays, mesh_from_fem
+    from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff
+    from exudyn_ehd.studies.parameters import EquilibriumPoint, StudyTable, parameter_study, varied
+    from exudyn_ehd.studies.recommend import Recommendation, recommend
+else:
+
+    def __getattr__(name):
+        if name in _LAZY:
+            return getattr(importlib.import_module(f"exudyn_ehd.{_LAZY[name]}"), name)
+        near = {known.lower(): known for known in __all__}
+        found = difflib.get_close_matches(name.lower(), near, n=1)
+        hint = f"; did you mean {near[found[0]]!r}?" if found else ""
+        raise AttributeError(f"module 'exudyn_ehd' has no attribute {name!r}{hint}")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
 
 
 __all__ = [

@@ -2,7 +2,8 @@
 
 Module map
 ----------
-api         `CreateLubricatedJoint`, the handle `LubricatedJoint`, axial options `Free` and `Held`
+api         `CreateLubricatedJoint`, axial options `Free` and `Held`
+handle      `LubricatedJoint`: what a user has of a joint
 run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings
 element     the film as an object of Exudyn: user functions, accepted steps, failures
 bush        nodal bush as an object of a model
@@ -13,7 +14,8 @@ kinematics  poses, rates and exact variations of the two frames, as kernels
 contract    what the coupling asks of a film and of a side; names for Exudyn's types
 """
 
-from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held, LubricatedJoint
+from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
+from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.run.settings import ConfigureSolver
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import math
+import warnings
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal, cast, overload
 
@@ -17,25 +17,20 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index, JointModel, Side
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.axial import hold_axially
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
-from exudyn_ehd.coupling.record.history import JointHistory, Quantity
-from exudyn_ehd.coupling.record.results import JointResults
-from exudyn_ehd.coupling.record.sensors import add_sensor
-from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
 if TYPE_CHECKING:
-    from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-    from exudyn_ehd.joint.audit.audit import Audit
-    from exudyn_ehd.joint.static.equilibrium import EquilibriumResult
+    pass
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -54,222 +49,6 @@ class Held:
     """
 
 
-class LubricatedJoint(JointResults):
-    """Handle of one lubricated joint.
-
-    Attributes
-    ----------
-    name : str
-        Its name.
-    mbs : exudyn.MainSystem
-        The system it belongs to.
-    bearing : object
-        What was given as bearing.
-    objectNumber : exudyn.ObjectIndex
-        The film element.
-    constraintNumber : exudyn.ObjectIndex or None
-        The axial constraint, if `Held`.
-    element : FilmElement
-        The film between the two frames.
-    display : FilmDisplay
-        The film in Exudyn's renderer.
-    bush : FlexibleBush or None
-        The nodal bush, if the bearing has one.
-    """
-
-    def __init__(
-        self,
-        mbs: exu.MainSystem,
-        name: str,
-        element: FilmElement,
-        display: FilmDisplay,
-        numbers: tuple[Index, Index | None],
-    ) -> None:
-        self.mbs = mbs
-        self.name = name
-        self.element: FilmElement = element
-        self.display = display
-        self.bearing = element.model.bearing
-        self.objectNumber, self.constraintNumber = numbers
-        bush = getattr(element, "bush", None)
-        # the element's own does not keep the system alive
-        self.bush = None if bush is None else dataclasses.replace(bush, mbs=mbs)
-
-    @property
-    def history(self) -> JointHistory:
-        """All accepted steps up to now as NumPy arrays; a rejected step leaves nothing behind.
-
-        Read it before the system's state is changed (another solve, a linearisation, Assemble): the last row is the
-        current state, completed at this moment (during a run it is the start of the current step). A run that starts at
-        the end of the record goes on with it, e.g. after ``SolveDynamic(..., updateInitialValues=True)``; any other
-        starts a new one, also a run at that time from the old initial values. A last state without a film is left out,
-        and a warning says why.
-
-        What the film remembers follows the state, not the record: see `forget`.
-        """
-        return self.element.steps.history(self.mbs, complete=self.element.presence.found(self.mbs) is not None)
-
-    def place_in_equilibrium(
-        self, *, load: Sequence[float] | np.ndarray, speed: float | None = None
-    ) -> EquilibriumResult:
-        """Let the next run start where the film carries a steady load, with the film in its steady state.
-
-        The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing except for
-        its spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and
-        loads that depend on the place, settle in a static solve (`SolveStatic`) or a ramp of the load.
-
-        Parameters
-        ----------
-        load : (2,) [N]
-            Force on the journal in the joint's x and y that the film has to carry: what acts on its body, with inertia.
-        speed : float, optional
-            Relative spin, rad/s; by default that of the initial state.
-
-        Returns
-        -------
-        EquilibriumResult
-
-        Raises
-        ------
-        InputError
-            For a joint that does not turn, without a system assembled, or a journal that is not a rigid body.
-        FilmError
-            If no equilibrium was found.
-        """
-        from exudyn_ehd.coupling.run.equilibrium_start import place
-
-        self.element.require_items(self.mbs)
-        return place(self.mbs, self.element, self.name, load, speed)
-
-    def state(self) -> JointState:
-        """What the joint knows besides Exudyn's coordinates at the last accepted state: memory of the film, and record.
-
-        See `SaveState` for the whole system.
-        """
-        if not self.mbs.systemIsConsistent:
-            raise InputError(
-                f"LubricatedJoint.state: the system of joint '{self.name}' is not assembled; call mbs.Assemble() first."
-            )
-        self.element.require_items(self.mbs)
-        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
-        return JointState(
-            name=self.name,
-            bearing=digest(self.bearing),
-            time=time,
-            memory=memory,
-            rows=rows,
-            begin=begin,
-            modes=bore_modes_of(self.element),
-        )
-
-    def forget(self) -> None:
-        """Let the next run start with a new record and a new film: full of oil, not worn, at its first temperature.
-
-        Without it what a film remembers follows the state: a run that starts where the last one has ended goes on with
-        the film of its end, at whatever time and with static solves in between; a run that starts where the last one
-        has started has the film of its start. At any other state the film of the last end goes on, with a
-        `MemoryWarning`.
-        """
-        self.element.steps.forget()
-
-    def stop_at(self, *, force: float = math.inf, pressure: float = math.inf) -> None:
-        """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
-
-        Without it runs end where the film is none: peak pressures beyond 90 GPa, rigid surfaces pressed through each
-        other by more than the clearance, forces that alternate at many times what they move and carry. Steps beyond 3
-        GPa, or 1 GPa on the projected area, give an `OverloadWarning`.
-
-        Parameters
-        ----------
-        force : float
-            Largest force of film and contact, N.
-        pressure : float
-            Largest peak pressure of the film, Pa.
-        """
-        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
-            if value != math.inf:
-                require_number(f"LubricatedJoint.stop_at.{name}", value, unit, above=0.0)
-        failures = self.element.failures
-        failures.largest_force, failures.largest_pressure = force, pressure
-
-    def restore_state(self, state: JointState) -> None:
-        """Let the next run go on with the memory of a state, and with its record if it starts at its time.
-
-        `SolveDynamic` does it with ``restart``.
-
-        Raises
-        ------
-        InputError
-            If the state is of another joint or bearing.
-        """
-        check_owner(self, state)
-        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
-
-    def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
-        """Which effects mattered in the accepted steps, which were left out, which were without effect.
-
-        The films at the worst recorded states (minimum film thickness, highest pressure, loss, speed, tilt, squeeze)
-        are evaluated again, on a model of their own: the joint is not touched. What the record holds counts as
-        recorded; what it takes a field for (cavitated share, grid, heat of a field) is that of a flexible bore settled
-        under the film.
-
-        Parameters
-        ----------
-        liner : ElasticLiner, optional
-            Of which to say whether its elasticity would matter; for bearings without one.
-        measure_time : bool
-            Measure the share of the time that every effect takes which is on.
-
-        Returns
-        -------
-        Audit
-            Print it for a table; ``neglected`` and ``unneeded`` hold what to change.
-
-        Raises
-        ------
-        InputError
-            Before anything was recorded.
-        """
-        history = self.history
-        if history.time.size == 0:
-            raise InputError(
-                f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
-            )
-        from exudyn_ehd.joint.audit.audit import audit_record
-        from exudyn_ehd.joint.audit.samples import RecordedSteps
-
-        names = [field.name for field in dataclasses.fields(RecordedSteps)]
-        record = RecordedSteps(**{name: getattr(history, name) for name in names})
-        return audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
-
-    def AddSensor(
-        self, quantity: Quantity, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
-    ) -> Index:
-        """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
-
-        Parameters
-        ----------
-        quantity : Quantity
-            What to record; vectors are in the joint frame, loads act on the journal.
-        fileName : str
-            File to write to, as in Exudyn's sensors.
-        name : str
-            Name of the sensor; by default joint and quantity.
-        writeToFile : bool, optional
-            By default whether a file name is given; the values are stored in the sensor in any case.
-
-        Returns
-        -------
-        exudyn.SensorIndex
-        """
-        if not isinstance(quantity, Quantity):
-            raise InputError(f"LubricatedJoint.AddSensor: quantity must be a member of Quantity, got {quantity!r}.")
-        write = bool(fileName) if writeToFile is None else writeToFile
-        self.element.require_items(self.mbs)
-        label = name or f"{self.name} {quantity.value}"
-        return add_sensor(self.mbs, self.element, quantity, label, fileName, write)
-
-
 @overload
 def CreateLubricatedJoint(
     mbs: exu.MainSystem,
@@ -284,7 +63,10 @@ def CreateLubricatedJoint(
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
+    axisRadius: float = 0.1,
+    axisLength: float = 0.4,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: Literal[False] = False,
 ) -> LubricatedJoint: ...
 @overload
@@ -301,7 +83,10 @@ def CreateLubricatedJoint(
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
+    axisRadius: float = 0.1,
+    axisLength: float = 0.4,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    bodyNumbers: Sequence[Index | None] | None = None,
     *,
     returnDict: Literal[True],
 ) -> dict[str, object]: ...
@@ -318,7 +103,10 @@ def CreateLubricatedJoint(
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
     show: bool = True,
+    axisRadius: float = 0.1,
+    axisLength: float = 0.4,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+    bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: bool = False,
 ) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
@@ -365,8 +153,13 @@ def CreateLubricatedJoint(
         See position, axis, rotationMatrixAxes.
     show : bool
         Draw the film in Exudyn's renderer: the pressure of the last accepted step in colours on the bore.
+    axisRadius, axisLength : float
+        As ``mbs.CreateRevoluteJoint`` has them, so that its calls can be taken over; without effect: the film is drawn
+        in the bearing's own size.
     color : (4,)
         Of the film element's nodes, RGBA; Exudyn's default for -1.
+    bodyNumbers : sequence of two, optional
+        The name that ``itemNumbers`` had in older calls of Exudyn; a DeprecationWarning says so.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
 
@@ -387,14 +180,12 @@ def CreateLubricatedJoint(
         require_bool(f"{_WHERE}.{argument}", value)
     require_type(f"{_WHERE}.axial", axial, Free, Held)
     require_type(f"{_WHERE}.stepControl", stepControl, StepControl, type(None))
-    if not isinstance(name, str):
-        raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
-    if name in {joint.name for joint in joints_of(mbs)}:
-        raise InputError(
-            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
-            "choose another."
-        )
+    _check_name(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
+    for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
+        require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
+    if bodyNumbers is not None:
+        itemNumbers = _items_of_older_calls(itemNumbers, bodyNumbers)
     gravity = None if bushGravity is None else require_vector(f"{_WHERE}.bushGravity", bushGravity, 3, "m/s^2")
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
@@ -422,6 +213,25 @@ def CreateLubricatedJoint(
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
+
+
+def _check_name(mbs: exu.MainSystem, name: str) -> None:
+    if not isinstance(name, str):
+        raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
+    if name in {joint.name for joint in joints_of(mbs)}:
+        raise InputError(
+            f"{_WHERE}.name '{name}' is taken by another lubricated joint of the system; names are for messages: "
+            "choose another."
+        )
+
+
+def _items_of_older_calls(
+    itemNumbers: Sequence[Index | None], bodyNumbers: Sequence[Index | None]
+) -> Sequence[Index | None]:
+    if any(item is not None for item in itemNumbers):
+        raise InputError(f"{_WHERE}: give itemNumbers or bodyNumbers, its older name, not both.")
+    warnings.warn(f"{_WHERE}.bodyNumbers is now called itemNumbers.", DeprecationWarning, stacklevel=3)
+    return bodyNumbers
 
 
 def attach(

@@ -145,12 +145,12 @@ def _freest(angle: np.ndarray) -> float:
 
 def plot_traces(
     history: History,
-    quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"),
+    quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"),
     *,
     angle: np.ndarray | None = None,
     angle_text: str = "angle",
     text: str = "",
-    axes: Sequence[Axes] | np.ndarray | None = None,
+    ax: Axes | Sequence[Axes] | np.ndarray | None = None,
     path: Target = None,
 ) -> Figure:
     """Draw quantities below each other over the time, or over an angle.
@@ -158,7 +158,7 @@ def plot_traces(
     Parameters
     ----------
     history : History
-    quantities : sequence of Quantity or str
+    quantities : Quantity or str, or a sequence of them
         Scalars of the history.
     angle : (n,) array, optional
         Drawn along in place of the time, rad; for instance a crank angle, ``speed * history.time``.
@@ -166,7 +166,7 @@ def plot_traces(
         What the angle is.
     text : str
         Name in the legend.
-    axes : sequence of matplotlib Axes, optional
+    ax : matplotlib Axes or a sequence of them, optional
         One for every quantity.
     path : path, optional
 
@@ -179,11 +179,10 @@ def plot_traces(
     InputError
         For quantities that are no scalars of a history, or that the film does not provide.
     """
-    names = [_checked(history, q) for q in quantities]
-    if not names or (axes is not None and np.size(np.asarray(axes, dtype=object)) != len(names)):
-        raise InputError(
-            f"plot_traces: axes must be as many as the quantities ({len(names)}, at least 1), got {axes!r}."
-        )
+    names = [_checked(history, q) for q in ([quantities] if isinstance(quantities, (str, Enum)) else quantities)]
+    given = None if ax is None else np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
+    if not names or (given is not None and given.size != len(names)):
+        raise InputError(f"plot_traces: ax must be as many axes as quantities ({len(names)}, at least 1), got {ax!r}.")
     if angle is not None and np.shape(angle) != history.time.shape:
         raise InputError(
             f"plot_traces: angle must have shape {history.time.shape} as history.time, got {np.shape(angle)}."
@@ -191,33 +190,33 @@ def plot_traces(
     along = history.time if angle is None else np.asarray(angle, dtype=float)
     unit = unit_for("time" if angle is None else "angle", along)
     with styled():
-        if axes is None:
+        if given is None:
             width = 0.62 * PAGE if len(names) > 1 else COLUMN
             figure = Figure(figsize=(width, MARGIN + PANEL * len(names)), layout="constrained")
             panels = list(figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0])
         else:
-            panels = list(np.atleast_1d(np.asarray(axes, dtype=object)))
+            panels = list(given)
             figure = panels[0].figure
-        for ax, name in zip(panels, names, strict=True):
+        for panel, name in zip(panels, names, strict=True):
             words, kind = QUANTITIES[name]
             values = getattr(history, name)
             shown = unit_for(kind, values)
-            ax.plot(unit(along), shown(values), label=text or None)
-            ax.set_ylabel(label(words, shown))
-            if axes is None:
-                style_ticks(ax)
-                ax.grid(True, lw=0.4, color="#D0D0D0")
-                ax.margins(x=0.0)
+            panel.plot(unit(along), shown(values), label=text or None)
+            panel.set_ylabel(label(words, shown))
+            if given is None:
+                style_ticks(panel)
+                panel.grid(True, lw=0.4, color="#D0D0D0")
+                panel.margins(x=0.0)
             if kind in ("length", "ratio"):
                 largest = float(np.nanmax(shown(values)))
-                ax.set_ylim(0.0, max(ax.get_ylim()[1], 1.08 * largest))
+                panel.set_ylim(0.0, max(panel.get_ylim()[1], 1.08 * largest))
             if text:
-                ax.legend()
+                panel.legend()
         if angle is not None:
             # at most nine ticks on fractions or multiples of a turn
             span = float(np.ptp(unit(along))) if along.size else 0.0
             panels[-1].xaxis.set_major_locator(MultipleLocator(next(b for b in _TICKS if span <= 8.0 * b)))
-        if axes is None:
+        if given is None:
             figure.align_ylabels(panels)
         panels[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
         return finish(figure, path)

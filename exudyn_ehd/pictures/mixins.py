@@ -83,7 +83,7 @@ class HistoryPictures:
         return plot_load(self._history(), text=text, ax=ax, path=path)
 
     def plot_traces(
-        self, quantities: Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
+        self, quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
     ) -> Figure:
         """Quantities over time, or over an ``angle``; options as in `pictures.histories.plot_traces`."""
         from exudyn_ehd.pictures.histories import plot_traces

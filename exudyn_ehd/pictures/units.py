@@ -75,6 +75,12 @@ def unit_for(kind: str, values: np.ndarray | float) -> Unit:
     return next(unit for limit, unit in units if largest >= limit)
 
 
+def shown(kind: str, value: float) -> str:
+    """A value (SI) with its unit, three digits."""
+    unit = unit_for(kind, value)
+    return f"{float(unit(value)):.3g} {unit.symbol}"
+
+
 def label(text: str, unit: Unit) -> str:
     """Axis label: text [unit]."""
     return f"{text} [{unit.symbol}]"

@@ -79,6 +79,10 @@ class StudyTable:
         """Write the table: a header of names with units, a row per combination, the reason of a failure last."""
         write_csv(path, self.columns, more=self.units, remarks={"error": self.errors})
 
+    def __repr__(self) -> str:
+        names, failed = ", ".join(self.parameters), sum(map(bool, self.errors))
+        return f"<StudyTable over {names}: {len(self)} rows, {failed} failed; print it for a table>"
+
     def __str__(self) -> str:
         return text_table(self.columns, more=self.units, remarks=self.errors)
 

@@ -70,8 +70,8 @@ def test_traces_refuse_what_can_not_be_drawn(history):
         plot_traces(history, ["supply_flow"])
     with pytest.raises(InputError, match=r"shape \(41,\) as history.time, got \(3,\)"):
         plot_traces(history, angle=np.zeros(3))
-    with pytest.raises(InputError, match="as many as the quantities"):
-        plot_traces(history, axes=[Figure().add_subplot()])
+    with pytest.raises(InputError, match="as many axes as quantities"):
+        plot_traces(history, ax=[Figure().add_subplot()])
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import BLOCKS, step_errors
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
+from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import write_csv
@@ -154,6 +155,15 @@ class JointHistory(History, HistoryPictures):
     stored_power: np.ndarray
     step_error: np.ndarray
     journal_radius: float
+
+    def __repr__(self) -> str:
+        if not self.time.size:
+            return "<JointHistory without steps>"
+        gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
+        return (
+            f"<JointHistory of {self.time.size} steps from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
+            f"minimum film thickness {shown('length', gap)}, peak pressure {shown('pressure', peak)}>"
+        )
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
         """The steps with ``start <= time <= end`` (s), to rounding: a billionth of the record's length."""

@@ -60,6 +60,9 @@ class Revolutions:
     def _columns(self) -> dict[str, np.ndarray]:
         return {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
 
+    def __repr__(self) -> str:
+        return f"<Revolutions: {len(self)}, print them for a table>"
+
     def __str__(self) -> str:
         return text_table(self._columns(), more=_UNITS)
 

@@ -51,6 +51,9 @@ class JointState:
     begin: StepStart | None = None
     modes: np.ndarray | None = None
 
+    def __repr__(self) -> str:
+        return f"<JointState of '{self.name}' at {self.time:.6g} s, {len(self.rows)} steps recorded>"
+
 
 class Joint(Protocol):
     """What runs ask of a lubricated joint."""

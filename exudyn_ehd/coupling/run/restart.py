@@ -50,6 +50,10 @@ class SystemState:
     algorithmic: np.ndarray | None
     joints: tuple[JointState, ...]
 
+    def __repr__(self) -> str:
+        names = ", ".join(repr(joint.name) for joint in self.joints)
+        return f"<SystemState at {self.time:.6g} s, with the joints {names}>"
+
     @classmethod
     def of(cls, mbs: exu.MainSystem, joints: Sequence[Joint]) -> SystemState:
         """Take the last accepted state of a system and its joints after a run."""

@@ -68,6 +68,14 @@ class Audit:
                 return finding
         raise KeyError(f"Audit: no finding about {effect!r}; there are {', '.join(f.effect for f in self.findings)}.")
 
+    def __repr__(self) -> str:
+        said = [
+            f"{what} {', '.join(f.effect for f in found)}"
+            for what, found in (("neglected", self.neglected), ("unneeded", self.unneeded))
+            if found
+        ]
+        return f"<Audit of {len(self.findings)} effects and assumptions: {'; '.join(said) or 'nothing to change'}>"
+
     def __str__(self) -> str:
         rows: list[tuple[str, ...]] = [("effect", "", "change", "value", "limit", "time", "verdict", "indicator")]
         rows += [_row(finding) for finding in self.findings]

@@ -9,6 +9,7 @@ from exudyn_ehd.joint.model.surfaces import worn_depth
 from exudyn_ehd.joint.solved_film import SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film, JointFilm
+from exudyn_ehd.pictures.units import shown
 
 
 class FilmFields(JointFilm, FilmPictures):
@@ -43,6 +44,10 @@ class FilmFields(JointFilm, FilmPictures):
     bush_displacement : (k, 3) array or None
         Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
     """
+
+    def __repr__(self) -> str:
+        gap, peak = shown("length", float(self.gap.min())), shown("pressure", float(self.pressure.max()))
+        return f"<FilmFields at {shown('time', self.time)}: minimum film thickness {gap}, peak pressure {peak}>"
 
 
 def film_record(film: SolvedFilm) -> Film:

@@ -17,6 +17,7 @@ from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
+from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_vector
 
 # Of the difference quotients between settled films, as a share of the minimum film thickness.
@@ -68,6 +69,11 @@ class EquilibriumResult:
     film: SteadyResult = field(repr=False)
     frequency: float = 0.0
     response: FilmResponse | None = field(default=None, repr=False)
+
+    def __repr__(self) -> str:
+        angle, mass = shown("angle", self.attitude_angle), f"{self.critical_mass:.3g} kg"
+        place = f"eccentricity ratio {self.eccentricity_ratio:.4f}, attitude angle {angle}"
+        return f"<EquilibriumResult: {place}, critical mass {mass}, film {self.film!r}>"
 
     @cached_property
     def settled_stiffness(self) -> np.ndarray:

@@ -15,6 +15,7 @@ from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
+from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import FilmError, InputError, Status, require_number, require_plausible, require_vector
 
 
@@ -53,6 +54,10 @@ class FilmResult:
     load: float
     fill: np.ndarray
     content: np.ndarray
+
+    def __repr__(self) -> str:
+        load, peak = shown("force", self.load), shown("pressure", float(self.pressure.max()))
+        return f"<FilmResult {self.status.name}: load {load}, peak pressure {peak}>"
 
 
 def solve_film(

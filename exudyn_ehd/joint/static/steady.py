@@ -22,6 +22,7 @@ from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
+from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, Status, StrainWarning, require_number, require_size, require_vector, warn_user
 
 # Of a linear bush, displacement over thickness: above, its displacement is off by more than one per cent.
@@ -92,6 +93,12 @@ class SteadyResult(Film, FilmPictures):
     status: Status
     iterations: int
     bore_coordinates: np.ndarray | None = None
+
+    def __repr__(self) -> str:
+        load = shown("force", float(np.hypot(*self.force[:2])))
+        gap, peak = shown("length", self.minimum_gap), shown("pressure", self.peak_pressure)
+        loss = shown("power", self.power_loss)
+        return f"<SteadyResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
 
     def audit(self, *, liner: ElasticLiner | None = None, measure_time: bool = False) -> Audit:
         """Which effects matter at this position, are left out, or take time without need; print it for a table.

@@ -64,6 +64,10 @@ class StribeckResult:
     bore_displacement: np.ndarray
     position: np.ndarray
 
+    def __repr__(self) -> str:
+        speed, friction = self.lowest_friction
+        return f"<StribeckResult at {self.speeds.size} speeds: lowest friction {friction:.3g} at {speed:.4g} rad/s>"
+
     @property
     def lowest_friction(self) -> tuple[float, float]:
         """Speed and friction coefficient at the curve's minimum, among the speeds computed."""

@@ -14,7 +14,8 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.api import CreateLubricatedJoint, LubricatedJoint
+from exudyn_ehd.coupling.api import CreateLubricatedJoint
+from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.joint.static.equilibrium import equilibrium
 
 Built = tuple[Any, LubricatedJoint]
