@@ -81,6 +81,8 @@ _LAZY = {
     "JointHistory": "coupling.record.history",
     "LubricatedJoint": "coupling.handle",
     "Quantity": "coupling.record.history",
+    "ReplaceJoint": "coupling.replace",
+    "ReplaceJoints": "coupling.replace",
     "Revolutions": "coupling.record.revolutions",
     "load_history": "coupling.record.history",
     "StepControl": "coupling.watch.step_control",
@@ -139,6 +141,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.handle import LubricatedJoint
     from exudyn_ehd.coupling.record.history import JointHistory, Quantity, load_history
     from exudyn_ehd.coupling.record.revolutions import Revolutions
+    from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
@@ -241,6 +244,8 @@ __all__ = [
     "Rayleigh",
     "Recommendation",
     "RegularisedWall",
+    "ReplaceJoint",
+    "ReplaceJoints",
     "Revolutions",
     "ReynoldsTemperature",
     "RingingWarning",

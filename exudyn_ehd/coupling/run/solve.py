@@ -10,6 +10,7 @@ from typing import Any
 import exudyn as exu
 import numpy as np
 
+from exudyn_ehd.coupling.contract import ObjectIndex
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
@@ -122,6 +123,7 @@ def SolveDynamic(
         for joint in joints_of(mbs):
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
+        _refuse_inactive(mbs)
     with going_on, _better_start(mbs), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
 
@@ -151,6 +153,19 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     require_items(mbs)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **_stored(options)))
+
+
+def _refuse_inactive(mbs: exu.MainSystem) -> None:
+    """Name the joint that Exudyn's explicit solvers end at by its number alone."""
+    for k in range(mbs.systemData.NumberOfObjects()):
+        data = mbs.GetObject(ObjectIndex(k))
+        if "Joint" in data["objectType"] and not data.get("activeConnector", True):
+            raise InputError(
+                f"SolveDynamic: explicit solvers refuse constraints, also inactive ones like object {k} "
+                f"'{data['name']}' "
+                "(ReplaceJoint switches joints off and leaves them in the model); take an implicit solver, or a model "
+                "without that joint and CreateLubricatedJoint."
+            )
 
 
 def _stored(options: dict[str, object]) -> dict[str, object]:

@@ -1,0 +1,202 @@
+"""`ReplaceJoint`: a film in the place of a joint that a model already has.
+
+A joint of two markers with the frames A R (A of the marker, R the joint's ``rotationMarker``) gives all that
+`CreateLubricatedJoint` asks for: the markers are the two sides, the frame of the first with z along the free rotation
+is the joint's. The joint itself stays, inactive and hidden, since deleting it would renumber all that comes after it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
+from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex
+from exudyn_ehd.coupling.handle import LubricatedJoint
+from exudyn_ehd.coupling.items.markers import marker_item
+from exudyn_ehd.status import InputError, require_type
+
+TYPES = ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
+# Sine of the angle between the axes of the two markers up to which they count as one.
+PARALLEL = 1e-9
+
+
+def ReplaceJoint(
+    mbs: exu.MainSystem,
+    objectNumber: Index,
+    *,
+    bearing: JournalBearing,
+    name: str = "",
+    journal: int = 1,
+    **options: Any,
+) -> LubricatedJoint:
+    """Put a film in the place of a revolute or cylindrical joint of a model; before Assemble.
+
+    The joint is switched off and hidden (``activeConnector=False``), so that every number of the model stays valid. It
+    holds the journal along the axis (`Held`) if the joint did. Explicit solvers of Exudyn refuse systems with
+    constraints, also inactive ones.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system.
+    objectNumber : exudyn.ObjectIndex
+        A joint as ``mbs.CreateRevoluteJoint`` and ``mbs.CreateGenericJoint`` make it, ObjectJointRevoluteZ,
+        ObjectJointGeneric or ObjectJointRevolute2D.
+    bearing : JournalBearing
+        Geometry, lubricant, film and effects.
+    name : str
+        Of the film; by default that of the joint, with "film of" before it.
+    journal : int
+        Which of the joint's markers is on the journal, 0 or 1; the other is on the housing.
+    options
+        Further arguments of `CreateLubricatedJoint`: axial, stepControl, bushGravity, show.
+
+    Returns
+    -------
+    LubricatedJoint
+
+    Raises
+    ------
+    InputError
+        For an object that is no such joint, that does not leave one rotation free and hold the journal across it, that
+        has an offset function or is read by a sensor, and as `CreateLubricatedJoint`.
+    """
+    joint, where = _joint(mbs, objectNumber)
+    if journal not in (0, 1):
+        raise InputError(f"ReplaceJoint.journal must be 0 or 1, the place of its marker in the joint, got {journal!r}.")
+    free, held = _freedom(joint, where)
+    for k in range(mbs.systemData.NumberOfSensors()):
+        sensor = mbs.GetSensor(k)
+        if int(sensor.get("objectNumber", -1)) == int(objectNumber):
+            raise InputError(
+                f"{where} is read by sensor {k} '{sensor['name']}', which would find nothing there; make the sensor by "
+                "AddSensor of the film."
+            )
+    markers, frames = zip(*(_side(mbs, joint, k, where) for k in (0, 1)), strict=True)
+    axes = [frame[:, free] for frame in frames]
+    if np.linalg.norm(np.cross(*axes)) > PARALLEL or axes[0] @ axes[1] < 0.0:
+        raise InputError(f"{where}: the axes of its two markers, {axes[0]} and {axes[1]}, must be the same.")
+    rotation = np.roll(frames[1 - journal], 2 - free, axis=1)
+    film = CreateLubricatedJoint(
+        mbs,
+        name or f"film of {joint['name']}",
+        [markers[1 - journal], markers[journal]],
+        rotationMatrixAxes=rotation,
+        bearing=bearing,
+        **({"axial": Held() if held else Free()} | options),
+    )
+    mbs.SetObjectParameter(objectNumber, "activeConnector", False)
+    mbs.SetObjectParameter(objectNumber, "Vshow", False)
+    return film
+
+
+def ReplaceJoints(
+    mbs: exu.MainSystem,
+    *,
+    bearing: JournalBearing | Callable[[int], JournalBearing | None],
+    types: Sequence[str] = TYPES,
+    **options: Any,
+) -> dict[int, LubricatedJoint]:
+    """`ReplaceJoint` for all active joints of a model that leave one rotation free.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system, before Assemble.
+    bearing : JournalBearing or function
+        The same for all, or a function of the joint's object number; None of it leaves that joint as it is.
+    types : sequence of str
+        Exudyn's object types that count.
+    options
+        As for `ReplaceJoint`.
+
+    Returns
+    -------
+    dict
+        Films by the object numbers of the joints that they replace.
+    """
+    unknown = [kind for kind in types if kind not in TYPES]
+    if isinstance(types, str) or unknown:
+        raise InputError(f"ReplaceJoints.types must be some of {', '.join(TYPES)}, got {types!r}.")
+    films: dict[int, LubricatedJoint] = {}
+    for k in range(mbs.systemData.NumberOfObjects()):
+        number = ObjectIndex(k)
+        joint = mbs.GetObject(number)
+        if joint["objectType"] not in types or not joint["activeConnector"] or not _turns(joint):
+            continue
+        own = bearing if isinstance(bearing, JournalBearing) else bearing(k)
+        if own is not None:
+            films[k] = ReplaceJoint(mbs, number, bearing=own, **options)
+    return films
+
+
+def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:
+    """Data of the joint, and how messages call it."""
+    require_type("ReplaceJoint.objectNumber", number, ObjectIndex)
+    if not 0 <= int(number) < mbs.systemData.NumberOfObjects():
+        raise InputError(f"ReplaceJoint.objectNumber: the system has no object {int(number)}.")
+    if mbs.systemIsConsistent:
+        raise InputError("ReplaceJoint: the system is assembled already; replace joints before mbs.Assemble().")
+    joint = mbs.GetObject(number)
+    kind = joint["objectType"]
+    where = f"ReplaceJoint: object {int(number)} '{joint['name']}' ({kind})"
+    if kind not in TYPES:
+        raise InputError(f"{where} is none of the joints that a film can replace: {', '.join(TYPES)}.")
+    if not joint["activeConnector"]:
+        raise InputError(f"{where} is inactive; a film would act where the model has no joint.")
+    return joint, where
+
+
+def _turns(joint: Data) -> bool:
+    """Whether a joint leaves one rotation free."""
+    return joint["objectType"] != "JointGeneric" or sum(not held for held in joint["constrainedAxes"][3:]) == 1
+
+
+def _freedom(joint: Data, where: str) -> tuple[int, bool]:
+    """Axis of the free rotation in the joint's frame, and whether the joint holds the journal along it."""
+    if joint["objectType"] != "JointGeneric":
+        return 2, True
+    if joint["offsetUserFunction"] != 0 or joint["offsetUserFunction_t"] != 0:
+        raise InputError(f"{where} has an offset function, which moves the joint; a film can't follow it.")
+    if np.any(joint["offsetUserFunctionParameters"]):
+        raise InputError(f"{where} has offsets, which a film can't have; move the markers instead.")
+    held = [bool(axis) for axis in joint["constrainedAxes"]]
+    if not _turns(joint):
+        raise InputError(
+            f"{where} has constrainedAxes={joint['constrainedAxes']}; of the last three, rotations, exactly one must "
+            "be free for a film."
+        )
+    free = held[3:].index(False)
+    if not (held[free - 1] and held[free - 2]):
+        raise InputError(
+            f"{where} has constrainedAxes={joint['constrainedAxes']}, which leaves the journal free across the axis "
+            "of its rotation; a film would hold it there."
+        )
+    return free, held[free]
+
+
+def _side(mbs: exu.MainSystem, joint: Data, place: int, where: str) -> tuple[Index, np.ndarray]:
+    """Rigid marker of a side, and the joint's frame (3, 3) on it in the reference configuration."""
+    number = MarkerIndex(int(joint["markerNumbers"][place]))
+    data = mbs.GetMarker(number)
+    if joint["objectType"] == "JointRevolute2D":
+        # such joints take positions; a film takes frames
+        show = {"show": False}
+        if data["markerType"] == "BodyPosition":
+            number = mbs.AddMarker(
+                eii.MarkerBodyRigid(
+                    bodyNumber=data["bodyNumber"], localPosition=data["localPosition"], visualization=show
+                )
+            )
+        elif data["markerType"] == "NodePosition":
+            number = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=data["nodeNumber"], visualization=show))
+        marker_item(mbs, f"{where}, markerNumbers[{place}]", number)
+        return number, np.eye(3)
+    item = marker_item(mbs, f"{where}, markerNumbers[{place}]", number)
+    return number, item.rotation @ np.array(joint[f"rotationMarker{place}"], dtype=float)
