@@ -42,7 +42,7 @@ from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature,
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
-from exudyn_ehd.film.supply import AxialGroove, CircumferentialGroove, Hole, Pocket
+from exudyn_ehd.film.supply.areas import AxialGroove, CircumferentialGroove, Hole, Pocket
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp, composite_modulus
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng

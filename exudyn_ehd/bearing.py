@@ -15,7 +15,8 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
 from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
-from exudyn_ehd.film.supply import SupplyArea, check_supply, require_areas
+from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
+from exudyn_ehd.film.supply.checks import check_supply
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
@@ -188,8 +189,8 @@ class JournalBearing:
     def _check_supply(self) -> None:
         if not self.supply:
             return
-        film = self.film
-        check_supply(self.supply, self.journal_radius, self.length, film.n_theta, film.n_z, film.stretch)
+        ends = None if isinstance(self.film, LongBearing) else self.end_pressures
+        check_supply(self.supply, self.journal_radius, self.length, self.film.n_theta, ends)
         if isinstance(self.inlet, MaximumGap):
             raise InputError(
                 "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "

@@ -72,6 +72,9 @@ class FilmGrid:
         Vertices with prescribed pressure.
     reference_length : float
         R in m.
+    cuts : (2, n, m) array or None
+        What links in theta and z conduct over what they would along ``link_x`` and ``link_z``, because they end at the
+        edge of a supply area; None: nowhere.
     """
 
     x: np.ndarray
@@ -84,6 +87,7 @@ class FilmGrid:
     weight: np.ndarray
     fixed: np.ndarray
     reference_length: float
+    cuts: np.ndarray | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -104,6 +108,12 @@ class FilmGrid:
     def directions(self) -> tuple[np.ndarray, ...]:
         """Normals of a bearing, whose x is the angle theta, for kernels, as in `Directions`."""
         return np.cos(self.x), np.sin(self.x), np.cos(self.x_face), np.sin(self.x_face), self.z
+
+    def cut(self, kx: np.ndarray, kz: np.ndarray) -> None:
+        """Multiply conductances (n, m) by ``cuts``, in place."""
+        if self.cuts is not None:
+            kx *= self.cuts[0]
+            kz *= self.cuts[1]
 
     def coarser(self) -> FilmGrid | None:
         """Grid with every second vertex, or None if it can't be halved; only used to guess active sets."""
@@ -178,10 +188,14 @@ def axial_vertices(n_z: int, half_length: float, stretch: float) -> tuple[np.nda
         weight[-3:] *= 23 / 24, 7 / 6, 3 / 8
     else:
         weight[0], weight[-1] = 0.5 * weight[0], 0.5 * weight[-1]
-    moments = np.array([np.ones_like(z), z**2, z**4])
-    missing = np.array([2.0, 2.0 / 3.0, 2.0 / 5.0]) - moments @ weight
-    weight *= 1.0 + moments.T @ np.linalg.solve((moments * weight) @ moments.T, missing)
-    return half_length * z, half_length * weight
+    return half_length * z, half_length * _exact(z, weight, 4)
+
+
+def _exact(z: np.ndarray, weight: np.ndarray, power: int) -> np.ndarray:
+    """Weights in [-1, 1] corrected to integrate even powers of z up to this one."""
+    moments = np.array([z**k for k in range(0, power + 1, 2)])
+    missing = np.array([2.0 / (k + 1) for k in range(0, power + 1, 2)]) - moments @ weight
+    return weight * (1.0 + moments.T @ np.linalg.solve((moments * weight) @ moments.T, missing))
 
 
 def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) -> tuple[np.ndarray, np.ndarray]:
@@ -194,9 +208,8 @@ def rows_between(edges: Sequence[float], counts: Sequence[int], stretch: float) 
     for k, count in enumerate(counts):
         half = 0.5 * (edges[k + 1] - edges[k])
         part, part_weight = axial_vertices(count, half, stretch)
-        if count == 3:
-            inner = half**3 / 1.5 / (half**2 - part[2] ** 2)  # Simpson's three-eighths rule on stretched vertices
-            part_weight = np.array([half - inner, inner, inner, half - inner])
+        if count in (2, 3):
+            part_weight = half * _exact(part / half, part_weight / half, 2)
         z[first : first + count + 1] = edges[k] + half + part
         weight[first : first + count + 1] += part_weight
         first += count

@@ -22,7 +22,8 @@ from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
-from exudyn_ehd.film.supply import AxialGroove, SupplyArea, supply_rows
+from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
+from exudyn_ehd.film.supply.rows import supply_rows
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
 # Bytes of a film's banded matrix.
@@ -221,7 +222,7 @@ def film_grid(
         stretch=film.stretch,
         start_angle=start_angle,
         open_ring=open_ring,
-        rows=supply_rows(supply, radius, length, film.n_z, film.stretch),
+        rows=supply_rows(placed(supply, length), radius, length, film.n_z, film.stretch),
     )
 
 

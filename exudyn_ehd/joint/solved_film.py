@@ -30,7 +30,7 @@ from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.film.supply.cuts import SupplyMap
 
 # Entries of the motion of two rigid surfaces; the coordinates and rates of a flexible bore follow them.
 MOTION_SIZE = 10

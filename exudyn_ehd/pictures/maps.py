@@ -11,6 +11,7 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
 
+from exudyn_ehd.film.supply.areas import placed
 from exudyn_ehd.pictures.records import Film, Target
 from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import Unit, label, unit_for
@@ -208,7 +209,7 @@ def _draw_supply(ax: Axes, film: Film) -> None:
     """Outlines of the supply areas that lie in the housing."""
     theta = np.linspace(0.0, TURN, FINE[0])
     z = np.linspace(film.z[0], film.z[-1], FINE[1])
-    for area in film.bearing.supply:
+    for area in placed(film.bearing.supply, film.bearing.length):
         if area.rotating:
             continue
         inside = area.covers(theta, z, film.bearing.journal_radius).astype(float)

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.supply import SupplyMap, supply_rows
+from exudyn_ehd.film.supply.areas import placed
+from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.supply.rows import supply_rows
 
 RADIUS, LENGTH = 0.025, 0.05
 AREAS = [
@@ -31,7 +33,7 @@ def _inside(area, theta, z):
         return abs(z - area.z) <= 0.5 * area.width
     if abs(d) > 0.5 * area.width_angle:
         return False
-    return area.length is None or abs(z - getattr(area, "z", 0.0)) <= 0.5 * area.length
+    return abs(z - getattr(area, "z", 0.0)) <= 0.5 * (area.length or 0.875 * LENGTH)
 
 
 @pytest.mark.parametrize("area", AREAS, ids=lambda a: type(a).__name__)
@@ -70,7 +72,7 @@ def test_rows_lie_on_the_edges_of_circumferential_grooves():
     rng = np.random.default_rng(3)
     for _ in range(20):
         z, w = rng.uniform(-0.02, 0.02), LENGTH * rng.uniform(1e-4, 0.15)
-        grooves = (ehd.CircumferentialGroove(z=z, width=w), ehd.AxialGroove(angle=1.0, width_angle=0.5))
+        grooves = (ehd.CircumferentialGroove(z=z, width=w),)
         rows, weight = supply_rows(grooves, RADIUS, LENGTH, int(rng.integers(4, 16)), 0.75)
         assert rows.size % 2 == 1 and np.all(np.diff(rows) > 0.0)
         edges = np.array([-LENGTH / 2, z - w / 2, z + w / 2, LENGTH / 2]) / RADIUS
@@ -80,7 +82,26 @@ def test_rows_lie_on_the_edges_of_circumferential_grooves():
         p = np.where(np.arange(rows.size) <= at[1], (rows - edges[0]) * (edges[1] - rows), 0.0)
         assert weight @ p == pytest.approx((edges[1] - edges[0]) ** 3 / 6.0, rel=1e-12)
         assert weight.sum() == pytest.approx(LENGTH / RADIUS, rel=1e-13)
-    assert supply_rows(AREAS[:2], RADIUS, LENGTH, 10, 0.75) is None
+    assert supply_rows((), RADIUS, LENGTH, 10, 0.75) is None
+
+
+def test_rows_lie_on_the_edges_of_any_areas():
+    """With four intervals at least beside them, not many more than asked for; a smooth field is integrated as such."""
+    rng = np.random.default_rng(4)
+    for _ in range(30):
+        z, length = rng.uniform(-0.015, 0.015), LENGTH * rng.uniform(0.01, 0.35)
+        areas = [ehd.Pocket(angle=1.0, width_angle=0.5, z=z, length=length), AREAS[0], AREAS[4]]
+        areas = placed(tuple(areas[: rng.integers(1, 4)]), LENGTH)
+        n_z = int(rng.integers(6, 16))
+        rows, weight = supply_rows(areas, RADIUS, LENGTH, n_z, 0.75)
+        assert np.all(np.diff(rows) > 0.0) and rows.size % 2 == 1 and rows.size <= max(n_z, 8) + 16
+        for edge in (z - length / 2, z + length / 2):
+            assert np.abs(rows * RADIUS - edge).min() < 1e-15
+        outside = np.flatnonzero(
+            rows * RADIUS < min(z - length / 2, -0.4375 * LENGTH if len(areas) > 1 else 1.0) - 1e-12
+        )
+        assert outside.size >= 4
+        assert weight @ np.cos(2.0 * rows) == pytest.approx(np.sin(2.0), rel=5e-3)
 
 
 def test_flows_count_a_shared_vertex_once():
@@ -117,9 +138,19 @@ def _bearing(**options):
             "must not exceed the ambient pressure",
         ),
         ({"end_pressures": ("1", "2")}, "JournalBearing.end_pressures must be 2 finite numbers"),
-        ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "grid of n_theta=.*would do"),
+        ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "n_theta=158 would do"),
         ({"supply": (ehd.Hole(angle=0.1, z=1.0, diameter=0.001),)}, "outside the bearing"),
-        ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "no vertex"),
+        ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "n_theta=629 would do"),
+        ({"supply": (ehd.AxialGroove(angle=0.1, width_angle=0.01),)}, "lies between two columns"),
+        (
+            {"supply": (ehd.Pocket(angle=1.0, z=0.02, width_angle=0.5, length=0.02, pressure=1e5),)},
+            "and the bearing's end",
+        ),
+        ({"supply": (ehd.AxialGroove(angle=1.0, width_angle=6.2),)}, r"beside AxialGroove.* n_theta=2\d\d would do"),
+        (
+            {"supply": tuple(ehd.AxialGroove(angle=a, width_angle=0.3) for a in (1.0, 1.4))},
+            r"supply\[0\] and \[1\]: the film between them spans 0.1 rad, .* n_theta=189 would do",
+        ),
         ({"supply": (ehd.CircumferentialGroove(z=0.02, width=0.01),)}, r"the land from z = 0.025 to 0.025 m"),
         (
             {
@@ -181,9 +212,29 @@ def test_refused_areas(kind, values, message):
 
 
 def test_the_named_grid_does():
-    area = ehd.Hole(angle=0.1, z=0.003, diameter=0.001)
-    with pytest.raises(ehd.InputError) as error:
-        _bearing(supply=(area,))
-    n_theta = int(str(error.value).split("n_theta=")[1].split(",")[0])
-    n_z = int(str(error.value).split("n_z=")[1].split()[0])
-    _bearing(supply=(area,), film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
+    rng = np.random.default_rng(2)
+    for _ in range(20):
+        area = ehd.AxialGroove(angle=rng.uniform(0.0, 6.0), width_angle=rng.uniform(0.01, 0.06), rotating=True)
+        with pytest.raises(ehd.InputError) as error:
+            _bearing(supply=(area,))
+        n_theta = int(str(error.value).split("n_theta=")[1].split()[0])
+        _bearing(supply=(area,), film=ehd.FiniteLength(n_theta=n_theta))
+
+
+def test_cuts_keep_areas_and_their_middles():
+    """Weights add up to the bearing's surface and to the middles of areas; links end at the edges."""
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        angle, width = rng.uniform(0.0, 6.0), rng.uniform(0.3, 1.5)
+        area = ehd.Pocket(angle=angle, width_angle=width, length=0.02, rotating=True)
+        supply = SupplyMap((area,), ehd.bearing_grid(RADIUS, LENGTH, 64, 12))
+        grid, spin = supply.grid, rng.uniform(-10.0, 10.0)
+        assert supply.turn(spin)
+        assert grid.weight.sum() == pytest.approx(2.0 * math.pi * LENGTH / RADIUS, rel=1e-13)
+        x = (grid.x - angle - spin + math.pi) % (2.0 * math.pi) - math.pi
+        assert abs((grid.weight - supply.plain_weight)[:, 6] @ x) < 1e-12
+        step = 2.0 * math.pi / 64
+        inside, link = np.abs(x) <= width / 2, grid.cuts[0][:, 6]
+        for i in np.flatnonzero(inside & ~np.roll(inside, -1)):
+            assert step / link[i] == pytest.approx(max(x[i] + step - width / 2, 1e-4 * step), rel=1e-9)
+        assert np.count_nonzero(link != 1.0) == 2 and np.all(grid.cuts[0][:, 0] == 1.0)

@@ -127,6 +127,7 @@ class ShearThinning(FluxEffect):
         self.last = np.zeros((3, *grid.shape, LAST))
         self.found = np.zeros((2, 5, *grid.shape))
         along, across = flow_x * grid.link_x, np.append(grid.link_z, 0.0)
+        self.cuts = grid.cuts
         self.links = along, across
         self.weights = *_central(along), *_central(across)
         self.lengths = [np.divide(1.0, s, out=np.zeros_like(s), where=s != 0.0) for s in self.links]
@@ -134,6 +135,8 @@ class ShearThinning(FluxEffect):
     def see(self, P: np.ndarray) -> None:
         """Take the gradients of the film's unknown P (n, m)."""
         gradients(P, self.links, self.weights, self.slopes, self.vertex, self.cross)
+        if self.cuts is not None:
+            self.slopes *= self.cuts
 
     def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
         """Multiply the conductances of the links by the thin oil's, at the gradients last seen."""
@@ -155,6 +158,8 @@ class ShearThinning(FluxEffect):
         along, across = self.found[:, 3].copy(), self.found[:, 4].copy()
         across[0] *= self.lengths[0][:, None]
         across[1] *= self.lengths[1]
+        if self.cuts is not None:
+            across /= self.cuts
         return (along, across, *self.weights)
 
     def factor(

@@ -143,6 +143,32 @@ class Sensitivities:
     speed: np.ndarray
 
 
+@njit(cache=True)
+def add_cuts(P, H, HF, flow, slopes, by_speed, cuts, kx, kz, out):
+    """Add to `link_derivatives` what links conduct more because they end at an edge.
+
+    ``cuts`` (2, n, m): `FilmGrid.cuts`, which kx and kz (n, m) contain; ``flow``: `LinkFlux.flow`; the rest as there.
+    """
+    n, m = H.shape
+    DX, DZ, SX, _, SZX = derivatives_of(out)
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            if cuts[0, i, j] != 1.0:
+                more = kx[i, j] * (1.0 - 1.0 / cuts[0, i, j]) * (P[nxt, j] - P[i, j])
+                DX[i, j] -= more * (3.0 / HF[i, j] if slopes is None else slopes[0][i, j] / flow[0][i, j])
+                if by_speed is not None:
+                    SX[i, j] -= more * by_speed[0][i, j] / flow[0][i, j]
+        for j in range(m - 1):
+            if cuts[1, i, j] != 1.0:
+                more = kz[i, j] * (1.0 - 1.0 / cuts[1, i, j]) * (P[i, j + 1] - P[i, j])
+                DZ[i, j] -= more * (
+                    6.0 / (H[i, j] + H[i, j + 1]) if slopes is None else slopes[1][i, j] / flow[1][i, j]
+                )
+                if by_speed is not None:
+                    SZX[i, j] -= more * by_speed[1][i, j] / flow[1][i, j]
+
+
 def contract_links(lam: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Gradients of ``-lam . r``, storage apart, for k adjoints lam (k, n, m) and `LinkDerivatives` d (5, n, m).
 

@@ -18,7 +18,7 @@ from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, 
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
 from exudyn_ehd.film.reynolds.balance import film_balance
-from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, contract_links, link_derivatives
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
     link_flux,
@@ -209,6 +209,7 @@ class FilmSolver:
                 effect.apply(f, self.HF, f.gap_z, self.vx, self.vz)
         H_t, flow = self.H_t if self.squeeze else None, None if f is None else f.flow
         set_links(self.H, self.HF, H_t, flow, self.vx, self.vz, self.flow_x, mesh, s.kx, s.kz, s.fx, s.fz, s.b)
+        self.grid.cut(s.kx, s.kz)
 
     def _set_storage(self, mass_old: np.ndarray | None, step: float) -> None:
         s = self.system
@@ -362,6 +363,9 @@ class FilmSolver:
             self.grid.mesh,
             self.link_fields,
         )
+        if self.grid.cuts is not None:
+            flow, P = None if f is None else f.flow, s.linear_pressure
+            add_cuts(P, self.H, self.HF, flow, slopes, by_speed, self.grid.cuts, s.kx, s.kz, self.link_fields)
         return self.link_fields
 
     def storage_weights(self, rho: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:

@@ -298,8 +298,8 @@ class NonlinearFilmSolver(FilmSolver):
         self.system.inverse_step = mass
 
     def refresh_fixed(self) -> None:
-        """Another set of prescribed vertices: the last factor is of no use."""
-        self.elements.reusable = False
+        """Other prescribed vertices and cuts: the last factor is of no use."""
+        self.elements.cut_links()
 
     def _finish(self) -> None:
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.supply import CircumferentialGroove
+from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.joint.audit.changes import MATTERS
 from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
@@ -98,19 +98,17 @@ def grid_rows(case: Case) -> Finding | None:
 
 
 def supply_resolution(case: Case) -> Finding | None:
-    """Vertices on the areas of the supply; circumferential grooves have rows of their own."""
+    """Intervals on the narrowest area of supply, and what twice as many change; circumferential grooves have rows."""
     b, film = case.bearing, case.bearing.film
     areas = [area for area in b.supply if not isinstance(area, CircumferentialGroove)]
     if not areas or not isinstance(film, FiniteLength):
         return None
-    grid = case.films.model.grid
-    masks = [area.covers(grid.x, grid.z * b.journal_radius, b.journal_radius) for area in areas]
-    value = min(int(np.count_nonzero(mask.any(axis=axis))) for mask in masks for axis in (0, 1))
+    widths = [a.diameter / b.journal_radius if isinstance(a, Hole) else a.width_angle for a in areas]
     n_theta, n_z = 2 * film.n_theta, 2 * film.n_z
     return finding(
         "supply resolution",
-        "columns or rows of vertices on the smallest area of supply",
-        float(value),
+        "intervals around on the narrowest area of supply",
+        min(widths) * film.n_theta / (2.0 * math.pi),
         None,
         mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
         change=case.films.change(refined(n_theta, n_z)),

@@ -45,7 +45,7 @@ LIMITS = {
     "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
     "grid around": Limit(4.0, "intervals: 1 % of the load, 3 to 6 % of the peak pressure", below=True),
     "grid along": Limit(3.0, "intervals: as around", below=True),
-    "supply resolution": Limit(3.0, "intervals across the narrowest area", below=True),
+    "supply resolution": Limit(1.0, "interval across the narrowest area, whose edges act where they are", below=True),
     "time step": Limit(0.05, "of the minimum film thickness"),
     "ringing": Limit(LIMIT - 1.0, "bursts of `exudyn_ehd.joint.audit.ringing`, which warns from four on"),
 }

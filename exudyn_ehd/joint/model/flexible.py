@@ -234,7 +234,6 @@ class ElasticBearingModel(BearingModel):
         self._coordinates = np.zeros(self.bore.size)
         self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
         self._end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
-        self._area = self.grid.weight * self.grid.reference_length**2
 
     @cached_property
     def bore_forces(self) -> BoreForces:
@@ -276,11 +275,12 @@ class ElasticBearingModel(BearingModel):
 
     def _pressure_field(self, oil: OilFields, pressing: ContactFields | None) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""
-        field = oil.P * self._area
+        area = self.grid.weight * self.grid.reference_length**2
+        field = oil.P * area
         field *= self.scales.pressure
         if pressing is not None:
             for P in pressing.P:
-                field += P * self._area
+                field += P * area
         return field
 
     def _result(

@@ -9,7 +9,7 @@ from exudyn_ehd.film.grid import Directions
 from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
-from exudyn_ehd.film.supply import SupplyMap
+from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, LimiterFields
 
@@ -22,6 +22,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
         bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring, supply=bearing.supply
     )
     supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
+    grid = grid if supply is None else supply.grid
     liner: NonlinearFilmSolver | None = None
     if effects.liner is not None:
         liner = NonlinearFilmSolver(

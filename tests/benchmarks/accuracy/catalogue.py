@@ -12,7 +12,7 @@ from exudyn_ehd.film.cavitation.closures import Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.solvers.sor import ClassicSOR
-from exudyn_ehd.film.supply import AxialGroove
+from exudyn_ehd.film.supply.areas import AxialGroove
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.errors import ladders

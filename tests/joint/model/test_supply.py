@@ -243,3 +243,56 @@ def test_pressures_beyond_any_bearing_are_refused_by_name(make_bearing):
         make_bearing(end_pressures=(0.0, 1e300))
     with pytest.raises(ehd.InputError, match=r"Hole\.pressure must be within"):
         ehd.Hole(angle=0.0, diameter=2e-3, pressure=1e300)
+
+
+def _random_area(rng, rotating=False):
+    width, length = rng.uniform(0.1, 0.6), 0.05 * rng.uniform(0.15, 0.8)
+    at = {"angle": rng.uniform(0.0, 6.0), "width_angle": width, "length": length, "rotating": rotating}
+    pressure = rng.choice([0.0, 1e5, 5e5])
+    if rng.uniform() < 0.5:
+        return ehd.AxialGroove(pressure=pressure, **at)
+    return ehd.Pocket(z=rng.uniform(-0.4, 0.4) * (0.05 - length), pressure=pressure, **at)
+
+
+def test_areas_of_any_size_and_place_against_fine_grids(make_bearing, measured):
+    rng = np.random.default_rng(11)
+    for _ in range(6):
+        areas = (_random_area(rng),)
+        state = {"speed": 150.0, "eccentricity_ratio": rng.uniform(0.1, 0.9), "direction": rng.uniform(0.0, 6.0)}
+        film = ehd.steady(make_bearing(supply=areas), **state)
+        fine = ehd.steady(make_bearing(supply=areas, film=ehd.FiniteLength(n_theta=288, n_z=28)), **state)
+        measured(f"{areas}", np.linalg.norm(film.force[:2] - fine.force[:2]) / np.linalg.norm(fine.force[:2]), 0.02)
+
+
+def test_no_size_of_a_groove_is_taken_for_another(make_bearing):
+    """Load and flow over 40 widths within three of the grid's intervals."""
+    flows, loads = [], []
+    for width in np.radians(np.linspace(5.0, 16.0, 40)):
+        groove = ehd.AxialGroove(angle=2.0, width_angle=width, pressure=3e5)
+        film = ehd.steady(make_bearing(supply=(groove,)), speed=150.0, eccentricity_ratio=0.4, direction=0.3)
+        flows.append(film.supply_flows[0])
+        loads.append(film.sommerfeld_number)
+    for values in (np.array(flows), np.array(loads)):
+        steps = np.diff(values)
+        assert np.all(steps * np.sign(steps[0]) > 0.0)
+        assert np.abs(steps).max() < 3.0 * np.abs(steps).min()
+
+
+@pytest.mark.parametrize("closure", CLOSURES, ids=_ids)
+def test_areas_turn_over_the_grid_without_steps(make_bearing, closure):
+    """Force and flow over two of the grid's intervals: half the angle, half the largest change.
+
+    Of `Gumbel` the force: what is cut off next to an area is no pressure that a flow follows.
+    """
+    rng = np.random.default_rng(7)
+    model = build_model(make_bearing(film=GRID, cavitation=closure, supply=(_random_area(rng, True),)))
+    history = model.initial_history(MOTION)
+    changes = []
+    for count in (100, 200):
+        values = []
+        for spin in np.linspace(0.0, 4.0 * math.pi / GRID.n_theta, count + 1):
+            evaluation = model.evaluate(MOTION, history, 1e-3, spin)
+            flow = 0.0 if closure.clips else 3e8 * evaluation.quantities()["supply_flow"]
+            values.append([*evaluation.wrench[:2], flow])
+        changes.append(np.linalg.norm(np.diff(values, axis=0), axis=1).max())
+    assert changes[1] < 0.6 * changes[0] < 6e-3 * np.linalg.norm(values, axis=1).max()

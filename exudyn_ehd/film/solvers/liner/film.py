@@ -93,6 +93,8 @@ class LinerFilm:
         across = np.append(g.link_z, 0.0)
         x, z = (g.link_x, g.width_x, g.link_x != 0.0, g.width_x), (g.width_z, across, g.width_z, across != 0.0)
         self.metric = np.stack([np.outer(a, b) for a, b in zip(x, z, strict=True)])
+        self.uncut = self.metric[:2].copy()
+        self.cut_links()
         self.residual = np.zeros(shape)
         self.by = np.zeros((4, film.work.order.size))
         fill = s.fill if closure.conserves_mass else np.ones(shape)
@@ -101,6 +103,12 @@ class LinerFilm:
         # whether only the liner depends on the film; with effects on the links it does not stay so
         self.plain = contact is None and limiter is None and oil is None and not film.flux_effects
         self.smallest = 1.0
+
+    def cut_links(self) -> None:
+        """Take the grid's cuts; the last factor is of no use."""
+        self.reusable = False
+        self.metric[:2] = self.uncut
+        self.film.grid.cut(*self.metric[:2])
 
     def take_rigid(self, squeeze: bool) -> None:
         """Keep the undeformed gaps and their rate, and what the film would see of them."""

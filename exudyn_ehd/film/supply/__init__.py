@@ -1,0 +1,9 @@
+"""Oil supply: areas in which the pressure is prescribed, with edges anywhere on the film's grid.
+
+Module map
+----------
+areas    what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
+rows     rows of the grid on the areas' axial edges
+cuts     prescribed vertices, and links that end at an edge between two columns
+checks   what is refused
+"""

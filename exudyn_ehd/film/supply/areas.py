@@ -1,0 +1,215 @@
+"""Areas of supply: grooves, holes and pockets, deep against the clearance, so that their pressure is uniform.
+
+Their edges act where they are (see `exudyn_ehd.film.supply.rows` and `exudyn_ehd.film.supply.cuts`), for areas in the
+housing and, with ``rotating=True``, in the journal; those need the spin angle of the journal.
+
+With `ElrodAdams` a supply area is full of oil (fill = 1): it feeds starved parts even at the cavity pressure. Its
+pressure acts on the journal; its shear counts as that of the land. What flows out of it is reported; with `ElrodAdams`
+supply, leakage and the film's change of content balance to rounding, the other closures lose oil at the film's rupture.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from exudyn_ehd.status import InputError, require_number
+
+# Vertices on an edge count as inside: share of the area's width, far above rounding and far below a cell.
+EDGE = 1e-9
+# Length of an axial groove without one, over the bearing's.
+WHOLE_GROOVE = 0.875
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxialGroove:
+    """Groove along the axis, centred at mid-plane.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    width_angle : float
+        Angle that it spans, rad, below 2 pi.
+    length : float or None
+        Axial length, m; None: seven eighths of the bearing's, in a `LongBearing` the whole.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    width_angle: float
+    length: float | None = None
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad")
+        _check_width(self)
+        if self.length is not None:
+            require_number("AxialGroove.length", self.length, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        half = math.inf if self.length is None else 0.5 * self.length
+        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, 0.0, half)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CircumferentialGroove:
+    """Groove around the bearing; it parts the film into lands, whose load is within 1 % on the default grid.
+
+    Parameters
+    ----------
+    z : float
+        Axial position of its centre, m.
+    width : float
+        Axial width, m.
+    pressure : float
+        Gauge pressure, Pa.
+    """
+
+    z: float = 0.0
+    width: float
+    pressure: float = 0.0
+
+    rotating = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, z="m")
+        require_number("CircumferentialGroove.width", self.width, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        return _rectangle(theta, z, 0.0, math.pi, self.z, 0.5 * self.width)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hole:
+    """Round hole.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    z : float
+        Axial position of its centre, m.
+    diameter : float
+        m.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    z: float = 0.0
+    diameter: float
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad", z="m")
+        require_number("Hole.diameter", self.diameter, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        x = radius * _turn(theta - self.angle)
+        return x[:, None] ** 2 + (z - self.z) ** 2 <= (0.5 * self.diameter * (1.0 + EDGE)) ** 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pocket:
+    """Rectangular pocket.
+
+    Parameters
+    ----------
+    angle : float
+        theta of its centre, rad (with ``rotating``: in the journal).
+    z : float
+        Axial position of its centre, m.
+    width_angle : float
+        Angle that it spans, rad, below 2 pi.
+    length : float
+        Axial length, m.
+    pressure : float
+        Gauge pressure, Pa.
+    rotating : bool
+        True: in the journal, turning with its spin.
+    """
+
+    angle: float
+    z: float = 0.0
+    width_angle: float
+    length: float
+    pressure: float = 0.0
+    rotating: bool = False
+
+    def __post_init__(self) -> None:
+        _check_area(self, angle="rad", z="m")
+        _check_width(self)
+        require_number("Pocket.length", self.length, "m", above=0.0)
+
+    def covers(self, theta: np.ndarray, z: np.ndarray, radius: float) -> np.ndarray:
+        """Vertices inside, (n, m) bool; theta (n,) in rad, z (m,) in m."""
+        return _rectangle(theta, z, self.angle, 0.5 * self.width_angle, self.z, 0.5 * self.length)
+
+
+SupplyArea = AxialGroove | CircumferentialGroove | Hole | Pocket
+
+
+def _check_area(area: SupplyArea, **units: str) -> None:
+    for argument, unit in {"pressure": "Pa", **units}.items():
+        require_number(f"{type(area).__name__}.{argument}", getattr(area, argument), unit)
+    if not isinstance(area.rotating, bool):
+        raise InputError(
+            f"{type(area).__name__}.rotating must be True (in the journal) or False (in the housing), got "
+            f"{area.rotating!r}."
+        )
+
+
+def _check_width(area: AxialGroove | Pocket) -> None:
+    hint = "if yours is in degrees, use math.radians; a groove all around is a CircumferentialGroove."
+    where = f"{type(area).__name__}.width_angle"
+    require_number(where, area.width_angle, "rad", above=0.0, below=2.0 * math.pi, hint=hint)
+
+
+def _turn(angle: np.ndarray) -> np.ndarray:
+    """Angles brought to -pi .. pi."""
+    return (angle + math.pi) % (2.0 * math.pi) - math.pi
+
+
+def _rectangle(
+    theta: np.ndarray, z: np.ndarray, angle: float, half_angle: float, center: float, half_length: float
+) -> np.ndarray:
+    inside_theta = np.abs(_turn(theta - angle)) <= half_angle * (1.0 + EDGE)
+    inside_z = np.abs(z - center) <= half_length * (1.0 + EDGE)
+    return np.outer(inside_theta, inside_z)
+
+
+def require_areas(supply: object) -> None:
+    """Raise `InputError` for anything but a tuple of supply areas."""
+    if not isinstance(supply, tuple) or not all(isinstance(a, SupplyArea) for a in supply):
+        raise InputError(
+            f"JournalBearing.supply must be a tuple of AxialGroove(...), CircumferentialGroove(...), Hole(...) or "
+            f"Pocket(...), got {supply!r}; for a single one write supply=(AxialGroove(...),)."
+        )
+
+
+def placed(supply: tuple[SupplyArea, ...], length: float) -> tuple[SupplyArea, ...]:
+    """Areas with the lengths that they have in a bearing of this length, m."""
+    whole = WHOLE_GROOVE * length
+    return tuple(replace(a, length=whole) if isinstance(a, AxialGroove) and a.length is None else a for a in supply)
+
+
+def axial_span(area: SupplyArea) -> tuple[float, float]:
+    """Axial positions of an area's ends, m."""
+    if isinstance(area, AxialGroove):
+        half = math.inf if area.length is None else 0.5 * area.length
+        return -half, half
+    size = area.diameter if isinstance(area, Hole) else area.length if isinstance(area, Pocket) else area.width
+    return area.z - 0.5 * size, area.z + 0.5 * size

@@ -1,0 +1,151 @@
+"""Prescribed vertices of supply areas, and links that end at an edge between two columns.
+
+The link from the first free vertex to the last one inside conducts over the distance d to the edge, H^3 / d in place of
+H^3 / s with the columns' distance s, and integrals take the supply's pressure up to the edge. Where an edge passes a
+vertex, its link becomes infinitely short and it has the supply's pressure on either side: forces and flows are
+continuous. The control volumes stay those of the grid, so that flows balance as without supply.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, SupplyArea, axial_span, placed
+
+# Shortest link over the columns' distance: rounding of its flow stays below 1e-11.
+SHORTEST = 1e-4
+
+
+class SupplyMap:
+    """Supply areas of one bearing on its film grid.
+
+    Parameters
+    ----------
+    supply : tuple of SupplyArea
+    grid : FilmGrid
+        Its arrays ``fixed`` and ``weight`` are those of the areas from now on.
+
+    Attributes
+    ----------
+    grid : FilmGrid
+        The same with `FilmGrid.cuts`; itself with circumferential grooves alone.
+    masks : list of (n, m) bool arrays
+        Vertices of every area at its last position.
+    rotating : bool
+        Whether an area turns with the journal.
+    """
+
+    def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid) -> None:
+        whole = all(isinstance(area, CircumferentialGroove) for area in supply)
+        self.grid = grid if whole else dataclasses.replace(grid, cuts=np.ones((2, *grid.shape)))
+        # without axial flow grooves have no ends
+        length = (grid.z[-1] - grid.z[0]) * grid.reference_length
+        self.supply = placed(supply, length) if grid.link_z.any() else supply
+        self.rotating = any(area.rotating for area in supply)
+        self.ends, self.plain_weight = grid.fixed.copy(), grid.weight.copy()
+        self.masks = [np.zeros(grid.shape, dtype=np.bool_) for _ in supply]
+        self.spin = 0.0
+        self._place()
+
+    def turn(self, spin: float) -> bool:
+        """Move the rotating areas to the spin angle, rad; True if they moved."""
+        if not self.rotating or spin == self.spin:
+            return False
+        self.spin = spin
+        self._place()
+        return True
+
+    def _place(self) -> None:
+        """Prescribed vertices, cut links and weights at the present spin."""
+        g = self.grid
+        share = np.ones((2, *g.shape))
+        for area, mask in zip(self.supply, self.masks, strict=True):
+            mask[:] = False
+            cover(area, g, self.spin if area.rotating else 0.0, mask, share)
+            mask &= ~self.ends
+        covered = np.logical_or.reduce(self.masks)
+        np.logical_or(self.ends, covered, out=g.fixed)
+        if g.cuts is not None:
+            cut_links(covered, share[0], self.plain_weight, g.cuts, g.weight)
+
+    def pressures(self) -> np.ndarray:
+        """Gauge pressure of every area, Pa."""
+        return np.array([area.pressure for area in self.supply])
+
+    def prescribe(self, values: np.ndarray, P: np.ndarray) -> None:
+        """Write one value per area into the field P (n, m); a shared vertex has that of the first area."""
+        for mask, value in zip(reversed(self.masks), reversed(values), strict=True):
+            P[mask] = value
+
+    def flows(self, inflow: np.ndarray) -> np.ndarray:
+        """What every area feeds into the film, in the unit of ``inflow`` (n, m).
+
+        A shared vertex counts for the first area.
+        """
+        left = np.ones(inflow.shape, dtype=np.bool_)
+        out = np.empty(len(self.masks))
+        for k, mask in enumerate(self.masks):
+            out[k] = float(np.sum(inflow[mask & left]))
+            left &= ~mask
+        return out
+
+
+def cover(area: SupplyArea, grid: FilmGrid, spin: float, mask: np.ndarray, share: np.ndarray) -> None:
+    """Mark the vertices inside an area in mask (n, m), edges included, and take the part of the links to their
+    neighbours that is film down in ``share`` (2, n, m), in theta and z."""
+    if isinstance(area, Hole):
+        theta, z = grid.x - spin, grid.z * grid.reference_length
+        mask |= area.covers(theta, z, grid.reference_length)
+        return
+    low, high = axial_span(area)
+    middle, half = 0.5 * (low + high), 0.5 * (high - low)
+    rows = np.ones(grid.z.size, dtype=np.bool_)
+    if math.isfinite(half):
+        rows = np.abs(grid.z * grid.reference_length - middle) <= half * (1.0 + EDGE)
+    if isinstance(area, CircumferentialGroove):
+        mask[:, rows] = True
+        return
+    n, step = grid.x.size, grid.width_x[0]
+    center, half = (area.angle + spin - grid.x[0]) / step, 0.5 * area.width_angle / step
+    first, last = math.ceil(center - half - EDGE), math.floor(center + half + EDGE)
+    inside = np.arange(first, last + 1) % n
+    mask[inside[:, None], rows] = True
+    if inside.size:
+        for link, film in (((first - 1) % n, center - half - first + 1), (last % n, last + 1 - center - half)):
+            share[0, link, rows] = np.minimum(share[0, link, rows], film)
+
+
+@njit(cache=True)
+def cut_links(covered, share, area, cuts, weight):
+    """Conductance of links in theta from covered to free vertices, of which ``share`` (n, m) is film, and weights.
+
+    Integrals, and flows in z, take the supply's pressure up to the edge: the free column stands for s (1 - s) of a
+    distance s less (the trapezoidal rule has (1 - s) / 2, the same in the mean; here nothing is left where the edge
+    passes a vertex), the last covered one for twice that more, the one before for that less, which keeps middles.
+    """
+    n, m = covered.shape
+    width = np.ones((n, m))
+    for i in range(n):
+        nxt = i + 1 if i + 1 < n else 0
+        for j in range(m):
+            cuts[0, i, j] = 1.0
+            if covered[i, j] == covered[nxt, j]:
+                continue
+            s = share[i, j]
+            cuts[0, i, j] = 1.0 / max(s, SHORTEST)
+            last, free, inner = (i, nxt, (i - 1) % n) if covered[i, j] else (nxt, i, (nxt + 1) % n)
+            back = 1.0 if covered[inner, j] else 0.0
+            width[free, j] -= s * (1.0 - s)
+            width[last, j] += s * (1.0 - s) * (1.0 + back)
+            width[inner, j] -= s * (1.0 - s) * back
+    for i in range(n):
+        for j in range(m):
+            weight[i, j] = area[i, j] * width[i, j]
+        for j in range(m - 1):
+            low, high = width[i, j], width[i, j + 1]
+            cuts[1, i, j] = low if abs(low - 1.0) > abs(high - 1.0) else high

@@ -1,0 +1,85 @@
+"""Rows of the film's grid on the axial edges of supply areas.
+
+Circumferential grooves part the film into lands, which share the grid's intervals by their lengths. In a land with
+edges of other areas, every part between two edges gets as many of its intervals as the stretched grid has there; four
+at least where no area lies, which is the film between areas or at an end.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from exudyn_ehd.film.grid import rows_between
+from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole, SupplyArea, axial_span
+
+# Intervals of a land, and of a part of one without an area.
+LEAST = 4
+# What parts need more is taken from a land's longest part, down to so many.
+KEPT = 6
+# Edges closer than this share of the length are one.
+SAME = 1e-13
+
+
+def supply_rows(
+    supply: Sequence[SupplyArea], radius: float, length: float, n_z: int, stretch: float
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Axial vertices over R with rows on the edges of `placed` areas, and their weights; None without areas."""
+    if not supply:
+        return None
+    half, grooves = 0.5 * length, groove_spans(supply)
+    bounds = [-half, *(z for span in grooves for z in span), half]
+    total = sum(high - low for low, high in zip(bounds[::2], bounds[1::2], strict=True))
+    edges, counts = [-half], []
+    for k, (low, high) in enumerate(zip(bounds[::2], bounds[1::2], strict=True)):
+        if k > 0:
+            edges.append(low)
+            counts.append(1)
+        share = (n_z + 2 * len(grooves)) * (high - low) / total
+        cuts = _edges_on(supply, low, high, length)
+        edges += cuts[1:]
+        counts += [max(LEAST, math.ceil(share - SAME))] if len(cuts) == 2 else _parts(supply, cuts, share, stretch)
+    # an even number can be halved for a coarser grid
+    counts[1 if grooves and len(counts) == 2 * len(grooves) + 1 else int(np.argmax(counts))] += sum(counts) % 2
+    return rows_between([z / radius for z in edges], counts, stretch)
+
+
+def groove_spans(supply: Sequence[SupplyArea]) -> list[tuple[float, float]]:
+    """Axial extents, m, of the circumferential grooves from end to end of the bearing."""
+    return sorted(axial_span(a) for a in supply if isinstance(a, CircumferentialGroove))
+
+
+def _edges_on(supply: Sequence[SupplyArea], low: float, high: float, length: float) -> list[float]:
+    """Axial edges of the areas on the land from low to high, and centres of holes; its ends are the first and last."""
+    found = {low, high}
+    for area in supply:
+        places = (area.z,) if isinstance(area, Hole) else axial_span(area)
+        found.update(z for z in places if low < z < high)
+    edges: list[float] = []
+    for z in sorted(found):
+        if not edges or z - edges[-1] > SAME * length:
+            edges.append(z)
+    edges[-1] = high
+    return edges
+
+
+def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stretch: float) -> list[int]:
+    """Intervals between the edges on a land with ``share`` of the grid's."""
+    middle, half, quarter = 0.5 * (edges[0] + edges[-1]), 0.5 * (edges[-1] - edges[0]), 0.5 * math.pi * stretch
+    s = np.clip((np.array(edges) - middle) / half, -1.0, 1.0)
+    if stretch > 0.0:
+        s = np.arcsin(s * math.sin(quarter)) / quarter
+    spans = [axial_span(a) for a in supply if not isinstance(a, (CircumferentialGroove, Hole))]
+    counts, least = [], []
+    for k, part in enumerate(0.5 * share * np.diff(s)):
+        z = 0.5 * (edges[k] + edges[k + 1])
+        least.append(1 if any(low < z < high for low, high in spans) else LEAST)
+        counts.append(max(least[-1], math.ceil(part - 1e-9)))
+    while sum(counts) > share + 2.0:
+        k = int(np.argmax(counts))
+        if counts[k] <= KEPT:
+            break
+        counts[k] -= 1
+    return counts
