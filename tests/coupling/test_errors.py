@@ -68,7 +68,7 @@ def test_film_error_comes_through_exudyn():
 
 def test_static_solver_too():
     mbs, _ = system(load=lambda t: -8000.0, offset=0.02)
-    with pytest.raises(ehd.EHDError):
+    with pytest.raises(ehd.EHDError, match=r"'big end'.*In a static solve .*no stiffness of their own"):
         ehd.SolveStatic(mbs, settings())
 
 
@@ -217,6 +217,22 @@ def test_lengths_in_millimetres():
         ehd.JournalBearing(journal_radius=25.0, length=25.0, radial_clearance=0.05, **size)
     with pytest.raises(ehd.InputError, match=r"radial_clearance must be at most 0.1 of .* metres"):
         ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=0.05, **size)
+
+
+def test_static_solution_of_a_bush_that_nothing_holds_names_it():
+    mbs = scenes.new_system()
+    mesh = ehd.HollowCylinder(inner_radius=0.03, thickness=0.012, length=0.03, axial=1, radial=1, circumferential=8)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7850.0)
+    ehd.CreateFlexibleBush(
+        mbs,
+        "ring",
+        bush=ehd.ANCFBush(mesh=mesh, material=steel),
+        outer=ehd.FreeOuter(),
+        loads=[ehd.Gravity(acceleration=(0, -9.81, 0))],
+    )
+    mbs.Assemble()
+    with pytest.raises(ehd.RunError, match=r"SolveStatic: .*FlexibleBush 'ring', which no support or carrier holds"):
+        ehd.SolveStatic(mbs, settings())
 
 
 @pytest.mark.parametrize("thermal", [ehd.LumpedThermal, ehd.FilmEnergy])

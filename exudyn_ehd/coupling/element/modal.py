@@ -22,8 +22,8 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.modes.static import BoreModes
 
-# An explicit solver that is not stored gives itself away by so many steps in a row that it asks at the start of.
-EXPLICIT_STEPS = 3
+# An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.
+EXPLICIT_STEPS = 2
 
 
 class BoreFilmElement(FilmElement):
@@ -120,8 +120,10 @@ class ModalFilmElement(BoreFilmElement):
         self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
         self._weighed = False
-        # step of a solver unknown that has asked at its start, and how many such steps have followed each other
-        self._asked_at = self._in_a_row = 0
+        # of a solver unknown: its step, how often it has asked there, whether at its start, and how many steps in a row
+        # were an explicit solver's
+        self._step = self._asked = self._in_a_row = 0
+        self._at_start = False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """As `FilmElement.force`.
@@ -132,17 +134,29 @@ class ModalFilmElement(BoreFilmElement):
         """
         force = super().force(mbs, t, item, q, q_t)
         steps = self.steps
-        if not self.is_massless or t != steps.start:
+        if not self.is_massless:
             return force
-        if not steps.is_idle and solver_state.is_implicit(steps.solver):
+        if steps.is_idle:
+            self._find_out(steps.unseen, t == steps.start)
+        elif t == steps.start and solver_state.is_implicit(steps.solver):
             force[self.rigid_size :] = 0.0
-        elif steps.is_idle and steps.unseen != self._asked_at:
-            # explicit solvers ask at the start of every step; one that is not stored can't be known otherwise
-            self._in_a_row = self._in_a_row + 1 if steps.unseen == self._asked_at + 1 else 1
-            self._asked_at = steps.unseen
-            if self._in_a_row == EXPLICIT_STEPS:
-                raise self.failures.no_mass()
         return force
+
+    def _find_out(self, step: int, at_start: bool) -> None:
+        """Raise `InputError` if a solver that is not stored proves explicit.
+
+        Explicit solvers ask at the start of every step, or (velocity Verlet) once at its end; implicit ones twice and
+        more, at its end.
+        """
+        if step == self._step:
+            self._asked += 1
+            self._at_start = self._at_start or at_start
+            return
+        explicit = step == self._step + 1 and step > 1 and (self._at_start or self._asked == 1)
+        self._in_a_row = self._in_a_row + 1 if explicit else 0
+        if self._in_a_row == EXPLICIT_STEPS:
+            raise self.failures.no_mass()
+        self._step, self._asked, self._at_start = step, 1, at_start
 
     def mass(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: mass matrix (N, N) of modes and housing."""

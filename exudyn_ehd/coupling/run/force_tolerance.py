@@ -69,6 +69,11 @@ class ForceTolerance:
             newton.absoluteTolerance = max(self.given, level / solver.conv.errorCoordinateFactor)
 
 
+def free_bushes(mbs: exu.MainSystem) -> list[BushFunctions]:
+    """Nodal bushes of a system that neither supports nor a carrier hold."""
+    return [bush for bush, _ in _bushes(mbs) if bush.equations.carrier is None and not bush.equations.held.any()]
+
+
 def _bushes(mbs: exu.MainSystem) -> list[tuple[BushFunctions, list[int]]]:
     owners = ((force_owner(mbs, number), number) for number in range(mbs.systemData.NumberOfObjects()))
     data = mbs.systemData

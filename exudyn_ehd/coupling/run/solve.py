@@ -11,7 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import ObjectIndex
-from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
+from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings
@@ -207,7 +207,8 @@ def own_errors(mbs: exu.MainSystem, where: str) -> Iterator[None]:
         while cause.__cause__ is not None:
             cause = cause.__cause__
         if isinstance(cause, EHDError):
-            raise type(cause)(f"{cause} {_kept(mbs)}") from error
+            static = f"{_unheld(mbs)} " if where == "SolveStatic" else ""
+            raise type(cause)(f"{cause} {static}{_kept(mbs)}") from error
         # Exudyn wraps an interrupt like any other exception of a user function
         if isinstance(cause, KeyboardInterrupt):
             raise KeyboardInterrupt(_kept(mbs)) from error
@@ -241,16 +242,23 @@ def _story(mbs: exu.MainSystem, *, static: bool) -> str:
             f"thickness {history.minimum_gap[-1]:.6g} m, force {np.linalg.norm(history.force[-1]):.6g} N; "
         )
     if static:
-        parts.append(
-            "a film without relative speed, and a journal's spin and place along the axis, have no stiffness of their "
-            "own: give speeds by initial velocities and hold what is free by springs or constraints; "
-        )
+        parts.append(f"{_unheld(mbs)[:-1]}; ")
     parts.append(
         "Newton's method most likely did not converge at the smallest step: use ConfigureSolver(simulationSettings), "
         "smaller steps or a StepControl, soften jumps of loads and speeds, and check constraints that leave nothing "
         "to move. joint.history holds all accepted steps."
     )
     return "".join(parts)
+
+
+def _unheld(mbs: exu.MainSystem) -> str:
+    """What has no stiffness in a static solve."""
+    free = "".join(f"FlexibleBush '{bush.name}', which no support or carrier holds, " for bush in free_bushes(mbs))
+    return (
+        f"In a static solve {free}a film without relative speed, a journal's spin and its place along the axis have no "
+        "stiffness of their own: give speeds by initial velocities and hold what is free by supports, springs or "
+        "constraints."
+    )
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:

@@ -76,7 +76,10 @@ def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
         else:
             raise AssertionError("not a smooth state: choose another one")
         numeric = (loads[0] - loads[1]) / (2.0 * size)
-        # 1e-6: truncation 1e-10 and rounding 1e-16 / 1e-7 with a decade to spare, per largest entry of the row;
-        # profiles of oil that thins are right to 1e-11, which is ten times that in a difference
-        limit = 1e-5 if option == "shear thinning" else 1e-6
-        assert abs((tangent[:, j] * unit[j] - numeric) / rows).max() < limit, (j, size)
+        # 1e-6: truncation 1e-10 and rounding 1e-16 / 1e-7 with a decade to spare, per largest entry of the row
+        limits = np.full(rows.size, 1e-6)
+        if option == "shear thinning":
+            # slopes of the shear (axial force, friction) are those in front of the profile's last Newton step, whatever
+            # the step of the difference: 1.2e-6 of 1e-5 of the stress, `shear_profile.LAST_STEP`; its values behind it
+            limits[[2, 5]] = 3e-6
+        assert np.all(abs((tangent[:, j] * unit[j] - numeric) / rows) < limits), (j, size)
