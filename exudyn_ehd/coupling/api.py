@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.contract import Index, JointModel, Side
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
-from exudyn_ehd.coupling.items.axial import hold_axially
+from exudyn_ehd.coupling.items.axial import hold
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics import rigid_nodes
@@ -37,12 +37,14 @@ _WHERE = "CreateLubricatedJoint"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Free:
-    """The journal slides freely along the axis."""
+    """``axial``: the journal slides freely along the axis; ``tilt``: it tilts as far as the film lets it."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Held:
-    """The relative axial displacement keeps its reference value, by an algebraic constraint.
+    """``axial``: the relative axial displacement keeps its reference value; ``tilt``: the axes keep their directions.
+
+    Both by one algebraic constraint, which carries what the film does not.
 
     For implicit and static solvers; Exudyn's explicit ones stop at once and name the constraint object
     (``constraintNumber`` of the joint).
@@ -59,6 +61,7 @@ def CreateLubricatedJoint(
     bearing: JournalBearing | None = None,
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
+    tilt: Free | Held = Free(),
     stepControl: StepControl | None = None,
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
@@ -79,6 +82,7 @@ def CreateLubricatedJoint(
     bearing: JournalBearing | None = None,
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
+    tilt: Free | Held = Free(),
     stepControl: StepControl | None = None,
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
@@ -99,6 +103,7 @@ def CreateLubricatedJoint(
     bearing: JournalBearing | None = None,
     rotationMatrixAxes: ArrayLike | None = None,
     axial: Free | Held = Free(),
+    tilt: Free | Held = Free(),
     stepControl: StepControl | None = None,
     bushGravity: Sequence[float] | np.ndarray | None = None,
     useGlobalFrame: bool = True,
@@ -142,6 +147,9 @@ def CreateLubricatedJoint(
         the axis). Every angle of the film counts from x about z.
     axial : Free or Held
         Whether the journal may slide along the axis.
+    tilt : Free or Held
+        Free: the film alone carries tilting moments, by its length. Held: journal and bore stay parallel and a
+        constraint carries them, where one joint of a model stands for a shaft's several bearings.
     stepControl : StepControl or None
         Lets Exudyn halve steps in which the gap changes by too much; None: only steps whose film can't be evaluated are
         halved.
@@ -178,9 +186,10 @@ def CreateLubricatedJoint(
     require_system(_WHERE, mbs)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):
         require_bool(f"{_WHERE}.{argument}", value)
-    require_type(f"{_WHERE}.axial", axial, Free, Held)
+    for argument, motion in (("axial", axial), ("tilt", tilt)):
+        require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_type(f"{_WHERE}.stepControl", stepControl, StepControl, type(None))
-    _check_name(mbs, name)
+    _require_new(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
         require_number(f"{_WHERE}.{argument}", size, "m", above=0.0)
@@ -189,24 +198,25 @@ def CreateLubricatedJoint(
     gravity = None if bushGravity is None else require_vector(f"{_WHERE}.bushGravity", bushGravity, 3, "m/s^2")
     if bearing is None:
         raise InputError(f"{_WHERE}.bearing is missing; give a JournalBearing(...).")
-    if mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     name = name or f"lubricated joint {mbs.systemData.NumberOfObjects()}"
     housing, journal = resolve_pair(mbs, itemNumbers)
     rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = joint_points(housing, journal, position, useGlobalFrame)
-    if housing.body is not None and getattr(bearing, "bush", None) is not None:
-        # imported here: a rigid bearing needs no solid
-        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
-
-        bearing, housing = hold_fe_bore(mbs, bearing, housing, points[0], rotation)
-    bush = getattr(bearing, "bush", None)
-    if bush is not None and not housing.nodes and getattr(bush, "body_forces", False):
-        # what stands still needs no modes for its acceleration
-        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
+    bearing, housing = _on_its_housing(mbs, bearing, housing, points[0], rotation)
     model = cast(JointModel, build_model(bearing))
     joint = attach(
-        mbs, model, housing, journal, points, rotation, name=name, axial=axial, show=show, color=color, gravity=gravity
+        mbs,
+        model,
+        housing,
+        journal,
+        points,
+        rotation,
+        name=name,
+        axial=axial,
+        tilt=tilt,
+        show=show,
+        color=color,
+        gravity=gravity,
     )
     if stepControl is not None:
         joint.element.steps.control = GapWatch(stepControl, bearing)
@@ -215,7 +225,25 @@ def CreateLubricatedJoint(
     return joint
 
 
-def _check_name(mbs: exu.MainSystem, name: str) -> None:
+def _on_its_housing(
+    mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
+) -> tuple[JournalBearing, Item]:
+    """The bearing with the bush that its housing makes of it, and the side of the housing."""
+    if housing.body is not None and getattr(bearing, "bush", None) is not None:
+        # imported here: a rigid bearing needs no solid
+        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_bore
+
+        bearing, housing = hold_fe_bore(mbs, bearing, housing, point, rotation)
+    bush = getattr(bearing, "bush", None)
+    if bush is not None and not housing.nodes and getattr(bush, "body_forces", False):
+        # what stands still needs no modes for its acceleration
+        bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
+    return bearing, housing
+
+
+def _require_new(mbs: exu.MainSystem, name: str) -> None:
+    if mbs.systemIsConsistent:
+        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
     if not isinstance(name, str):
         raise InputError(f"{_WHERE}.name must be a str, got {name!r}.")
     if name in {joint.name for joint in joints_of(mbs)}:
@@ -244,6 +272,7 @@ def attach(
     *,
     name: str = "",
     axial: Free | Held = Free(),
+    tilt: Free | Held = Free(),
     show: bool = True,
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     gravity: np.ndarray | None = None,
@@ -262,7 +291,7 @@ def attach(
         Joint point of either side in the reference configuration, global [m].
     rotation : ndarray (3, 3)
         Joint frame in the reference configuration.
-    name, axial, show, color, gravity
+    name, axial, tilt, show, color, gravity
         As in `CreateLubricatedJoint`.
     """
     for item in (housing, journal):
@@ -272,9 +301,9 @@ def attach(
     if not any(isinstance(side, MarkerSide) for side in sides):
         yields = functools.partial(_yields, model, sides)
         check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
-    # planar bodies can't move axially: the constraint would be empty, and singular
+    # planar bodies can't move axially or tilt: the constraint would be empty, and singular
     flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
-    held = isinstance(axial, Held) and not flat
+    kept = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
     element = FilmElement(model, *sides, name)
     nodes = [node for side in sides for node in side.nodes]
     more: dict[str, object] = {}
@@ -299,7 +328,8 @@ def attach(
             **more,
         )
     )
-    constraint = hold_axially(mbs, name, housing, journal, points, rotation) if held else None
+    held = any(kept.values()) and not flat
+    constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if held else None
     element.presence = Presence(mbs, name, element, number, sides)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)

@@ -41,7 +41,7 @@ class LubricatedJoint(JointResults):
     objectNumber : exudyn.ObjectIndex
         The film element.
     constraintNumber : exudyn.ObjectIndex or None
-        The axial constraint, if `Held`.
+        The constraint of what is `Held`.
     element : FilmElement
         The film between the two frames.
     display : FilmDisplay
