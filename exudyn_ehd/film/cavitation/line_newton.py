@@ -22,9 +22,9 @@ MOST_STEPS = 100
 LEAST = 1e-8
 # s that a vertex starts from whose pressure says nothing of it.
 START = 1e-3
-# What a step leaves is about itself, in s and in pressures over the peak, times the change of s since its factor. Of
-# the first step with a factor s alone counts, since all else is linear.
-LEFT = 1e-16
+# What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
+# factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
+LEFT_OF_LINE, LEFT = 1e-10, 1e-15
 # Steps after which vertices no longer leave the film at once: two may drive each other out and in again for ever. Of an
 # s that would vanish so much is left. Steps after which pressures are the unknowns everywhere: then Newton's method
 # can't miss, since balances are concave in them, but it takes longer.
@@ -33,71 +33,70 @@ PATIENT, KEPT, SAFE = 8, 0.25, 30
 LARGE = 10.0
 # Change of s beyond which a new factor is faster; steps with a factor after its first.
 REUSABLE, MOST_REUSES = 0.3, 3
+# Share of the balances that a step with an older factor has to leave behind.
+APPROACH = 0.3
 # Change of s up to which a factor counts as that of the solution.
 EXACT = 1e-8
 # Pressure below the cavity's, over the peak, by which a vertex without a line leaves the film: about 100 roundings.
 ROUNDING = 1e-13
 _NONE = np.int64(0)
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-@njit(cache=True, inline="always")
-def _outflow(kx, kz, p, i, j):
-    """What the pressure flows take away from a vertex."""
+@njit(cache=True, fastmath=_FAST)
+def lacks(links, p, out):
+    """What the balances lack without the line: b less what the pressure flows take away, (n, m)."""
+    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
     n, m = p.shape
-    prv = i - 1 if i > 0 else n - 1
-    nxt = i + 1 if i + 1 < n else 0
-    own = p[i, j]
-    r = kx[i, j] * (own - p[nxt, j]) + kx[prv, j] * (own - p[prv, j])
-    if j > 0:
-        r += kz[i, j - 1] * (own - p[i, j - 1])
-    if j + 1 < m:
-        r += kz[i, j] * (own - p[i, j + 1])
-    return r
+    size, x, lack = n * m, p.reshape(-1), out.reshape(-1)
+    last = size - m
+    along, across = np.empty(size + m), np.empty(size + 1)
+    for c in range(last):
+        along[m + c] = kx[c] * (x[c] - x[c + m])
+    for c in range(m):
+        along[c] = along[size + c] = kx[last + c] * (x[last + c] - x[c])
+    across[0] = across[size] = 0.0
+    for c in range(size - 1):
+        # nothing flows over the last row's links
+        across[c + 1] = kz[c] * (x[c] - x[c + 1])
+    for c in range(size):
+        lack[c] = b[c] - along[m + c] + along[c] - across[c + 1] + across[c]
 
 
 @njit(cache=True)
-def join_film(links, line, fixed, active, p):
-    """Vertices at which oil piles up join the film; returns their number."""
-    kx, kz, b = links
-    f, k, s, _, _ = line
-    n, m = b.shape
+def join_film(lack, line, fixed, active, p):
+    """Vertices at which oil piles up join the film; returns their number. ``lack`` (n, m) of `lacks`."""
+    rest, known, free, pressures = lack.reshape(-1), fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
+    f, k, s = line[0].reshape(-1), line[1].reshape(-1), line[2].reshape(-1)
     joined = 0
-    for i in range(n):
-        for j in range(m):
-            if active[i, j] or fixed[i, j]:
-                continue
-            r = _outflow(kx, kz, p, i, j) - b[i, j]
-            if f[i, j] > 0.0:
-                place = (0.5 * f[i, j] - r) / f[i, j]
-                if place > LEAST:
-                    active[i, j] = True
-                    s[i, j] = min(place, 1.0)
-                    p[i, j] = 0.5 * f[i, j] / k[i, j] * s[i, j] * s[i, j]
-                    joined += 1
-            elif r <= 0.0:
-                active[i, j] = True
+    for c in range(rest.size):
+        if free[c] | known[c]:
+            continue
+        if f[c] > 0.0:
+            place = 0.5 + rest[c] / f[c]
+            if place > LEAST:
+                free[c] = True
+                s[c] = min(place, 1.0)
+                pressures[c] = 0.5 * f[c] / k[c] * s[c] * s[c]
                 joined += 1
+        elif rest[c] >= 0.0:
+            free[c] = True
+            joined += 1
     return joined
 
 
 @njit(cache=True)
-def line_rows(links, line, order, count, p, rhs_out):
-    """What the balances of the unknowns lack (count,); the line's share of their diagonals."""
-    kx, kz, b = links
-    f, k, s, _, share = line
-    m = b.shape[1]
-    i = 0
+def line_rows(lack, line, order, count, rhs_out):
+    """What the balances of the unknowns lack (count,) with the line; its share of their diagonals."""
+    rest, share = lack.reshape(-1), line[4]
+    f, k, s = line[0].reshape(-1), line[1].reshape(-1), line[2].reshape(-1)
     for r in range(count):
-        j = order[r] - i * m
-        if j < 0 or j >= m:  # rows of a column follow each other: one division per column
-            i = order[r] // m
-            j = order[r] - i * m
-        lack, own = b[i, j] - _outflow(kx, kz, p, i, j), s[i, j]
+        c = order[r]
+        rhs_out[r], own = rest[c], s[c]
         share[r] = 0.0
         if own < 1.0:
-            lack += 0.5 * f[i, j] * (1.0 - own) ** 2
-            share[r] = k[i, j] * (1.0 - own) / own
-        rhs_out[r] = lack
+            rhs_out[r] += 0.5 * f[c] * (1.0 - own) * (1.0 - own)
+            share[r] = k[c] * (1.0 - own) / own
 
 
 @njit(cache=True)
@@ -193,16 +192,54 @@ def place_line(line, fixed, active, p):
 
 
 @njit(cache=True)
-def solve_line(links, line, fixed, active, factor, x, forth, p):
+def _same_set(active, order, count):
+    """Whether these are the vertices of the last factor."""
+    free, now, known = active.reshape(-1), 0, 0
+    for c in range(free.size):
+        now += free[c]
+    for r in range(count):
+        known += free[order[r]]
+    return now == known == count and count > 0
+
+
+@njit(cache=True)
+def approach_film(links, line, active, factor, last, x, p):
+    """A step with the factor of the film before, if the balances hold better behind it: from a film close by it leads
+    to where a new factor serves to the end. ``last``: (count, width) of that factor."""
+    count, width = last
+    order, _, _, band, inv_diag = factor
+    if not _same_set(active, order, count):
+        return
+    lack, s = np.empty(p.shape), line[2]
+    old = p.copy(), s.copy(), active.copy()
+    lacks(links, p, lack)
+    line_rows(lack, line, order, count, x)
+    before = np.abs(x[:count]).sum()
+    solve_ldl(band, inv_diag, count, width, x.reshape(1, x.size))
+    _, _, left = move_film(line, order, count, x, 1, active, p)
+    lacks(links, p, lack)
+    line_rows(lack, line, order, count, x)
+    if left > 0 or not np.abs(x[:count]).sum() < APPROACH * before:
+        p[:], s[:], active[:] = old
+
+
+@njit(cache=True)
+def solve_line(links, line, fixed, active, factor, last, x, forth, p):
     """The film from the sets and pressures at hand; returns (ok, steps, count, width, whether the factor is exact).
 
-    ``forth``: number the columns in theta (1), or against it (-1).
+    ``last``: as for `approach_film`; ``forth``: number the columns in theta (1), or against it (-1).
     """
     order, old_order, number, _, _ = factor
     place_line(line, fixed, active, p)
+    approach_film(links, line, active, factor, last, x, p)
     count, width, changes = FIRST_ROW, np.int64(1), 1
+    lack = np.empty(p.shape)
     for step in range(1, MOST_STEPS + 1):
-        changes += join_film(links, line, fixed, active, p)
+        lacks(links, p, lack)
+        joined = join_film(lack, line, fixed, active, p)
+        if joined > 0:
+            lacks(links, p, lack)
+        changes += joined
         first = count
         if changes > 0:
             old_count, old_width = count, width
@@ -211,22 +248,25 @@ def solve_line(links, line, fixed, active, factor, x, forth, p):
             count, width = number_along(active, links[0], forth, _NONE, order, number)
             # another bandwidth splits the loops over a row elsewhere, and so rounds differently: start over
             first = first_changed_row(order, old_order, old_count, count, width) if width == old_width else FIRST_ROW
-        line_rows(links, line, order, count, p, x)
+        line_rows(lack, line, order, count, x)
         if not factor_line(links, line, factor, count, width, first):
             return False, step, count, width, False
         solve_ldl(factor[3], factor[4], count, width, x.reshape(1, x.size))
         moved, in_film, changes = move_film(line, order, count, x, step, active, p)
-        done = moved * moved <= LEFT and in_film <= LARGE
+        done, last_line = moved * moved <= 10.0 * LEFT and in_film <= LARGE, moved
         for _ in range(MOST_REUSES):
             if done or changes > 0 or moved > REUSABLE:
                 break
-            line_rows(links, line, order, count, p, x)
+            lacks(links, p, lack)
+            line_rows(lack, line, order, count, x)
             solve_ldl(factor[3], factor[4], count, width, x.reshape(1, x.size))
             in_line, in_film, changes = move_film(line, order, count, x, step, active, p)
             moved += in_line
-            done = max(in_line, in_film) * moved <= LEFT
+            rate = max(moved, in_line / last_line if last_line > 0.0 else 0.0)
+            done, last_line = in_film * rate <= LEFT and in_line * rate <= LEFT_OF_LINE, in_line
         if changes == 0 and done:
-            changes = join_film(links, line, fixed, active, p)
+            lacks(links, p, lack)
+            changes = join_film(lack, line, fixed, active, p)
             if changes == 0:
                 for r in range(count):
                     c = order[r]
@@ -253,8 +293,9 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
         update_active_set(y.kx, y.kz, y.b, y.fixed, pc, work.active, y.pressure)
         steps = 1
     p = y.pressure - pc
+    last = (work.count, work.width) if steps == 0 else (0, 1)
     ok, count, work.count, work.width, line.exact = solve_line(
-        (y.kx, y.kz, y.b), line.fields, y.fixed, work.active, factor, work.unknowns, forth, p
+        (y.kx, y.kz, y.b), line.fields, y.fixed, work.active, factor, last, work.unknowns, forth, p
     )
     if not ok and work.warm:
         # a start from another state can mislead where the film itself is benign
@@ -271,7 +312,8 @@ def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace) -> Non
     if line.exact:
         return
     factor = work.order, work.old_order, work.number, work.band, work.inv_diag
-    links, p = (system.kx, system.kz, system.b), system.pressure - system.cavity_pressure
-    line_rows(links, line.fields, work.order, work.count, p, work.unknowns)
+    links = system.kx, system.kz, system.b
+    # their right-hand sides are not asked for
+    line_rows(links[2], line.fields, work.order, work.count, work.unknowns)
     factor_line(links, line.fields, factor, work.count, work.width, work.count)
     line.exact = True

@@ -93,7 +93,8 @@ class RuptureLine:
         count = line_gradients(
             work.order, work.count, self.fields, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, rows, by
         )
-        return LineGradients(rows[:count], work.order[rows[:count]], by[:, :count])
+        rows = rows[:count]
+        return LineGradients(rows, work.order[rows], by[:, :count])
 
 
 @njit(cache=True)
@@ -177,24 +178,39 @@ def contract_line(
     speed += weights @ line.by[6:].T
 
 
-def add_line_columns(line: LineGradients, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
+@njit(cache=True)
+def add_line_columns(line, at, out):
     """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
 
-    As `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
+    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
     """
+    rows, places, by = line
     at = Directions(*at)
     n, m = at.cos_x.size, at.z.size
-    i, j = np.divmod(line.places, m)
-    z, by = at.z[j], line.by
-    on, back = at.z[(j + 1) % m], at.z[(j - 1) % m]
-    whole, tilted = by[2] + by[3] + by[4], by[2] * z + by[3] * on + by[4] * back
-    for q, faces, cells in ((0, at.cos_f, at.cos_x), (1, at.sin_f, at.sin_x)):
-        along = by[0] * faces[i] + by[1] * faces[(i - 1) % n]
-        out[q, line.rows] -= along + whole * cells[i]
-        out[2 + q, line.rows] -= along * z + tilted * cells[i]
-        out[4 + q, line.rows] -= by[5] * cells[i]
-        out[6 + q, line.rows] -= by[5] * cells[i] * z
-    out[8:, line.rows] += by[6:]
+    for c in range(rows.size):
+        r, i = rows[c], places[c] // m
+        j = places[c] - i * m
+        prv = i - 1 if i > 0 else n - 1
+        z, whole, tilted = at.z[j], by[2, c], by[2, c] * at.z[j]
+        if j + 1 < m:
+            whole += by[3, c]
+            tilted += by[3, c] * at.z[j + 1]
+        if j > 0:
+            whole += by[4, c]
+            tilted += by[4, c] * at.z[j - 1]
+        x = by[0, c] * at.cos_f[i] + by[1, c] * at.cos_f[prv]
+        y = by[0, c] * at.sin_f[i] + by[1, c] * at.sin_f[prv]
+        cos, sin, rate = at.cos_x[i], at.sin_x[i], by[5, c]
+        out[0, r] -= x + whole * cos
+        out[1, r] -= y + whole * sin
+        out[2, r] -= x * z + tilted * cos
+        out[3, r] -= y * z + tilted * sin
+        out[4, r] -= rate * cos
+        out[5, r] -= rate * sin
+        out[6, r] -= rate * cos * z
+        out[7, r] -= rate * sin * z
+        out[8, r] += by[6, c]
+        out[9, r] += by[7, c]
 
 
 def add_line_stencil(line: LineGradients, by_gap: float, by_rate: float, weight: np.ndarray) -> None:

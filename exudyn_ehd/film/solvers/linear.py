@@ -126,6 +126,7 @@ class FilmSolver:
             self.coarse = FilmSolver(
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
             )
+            self.coarse.line = self.coarse.system.line = None  # of which the sets alone are asked for
 
     @property
     def pressure(self) -> np.ndarray:

@@ -104,6 +104,23 @@ def test_many_random_films(dense_matrix):
     assert _check_states(6000, 2, dense_matrix) <= 100
 
 
+def test_a_supply_that_comes_and_goes_is_that_of_a_cold_film():
+    """The factor of the film before belongs to other unknowns."""
+    warm, cold = (_films(LINE, ((33, 7, 2.0),))[0] for _ in range(2))
+    for columns in ((), (5, 6), (7,), ()):
+        cold.forget()
+        for film in (warm, cold):
+            film.H_t[:] = 0.0
+            for gap, x in ((film.H, film.grid.x), (film.HF, film.grid.x_face)):
+                gap[:] = (1.0 - 0.7 * np.cos(x))[:, None]
+            film.grid.fixed[:, 1:-1] = False
+            film.grid.fixed[list(columns), 3] = True
+            film.pressure[list(columns), 3] = 0.2
+            film.refresh_fixed()
+            assert film.solve(1.0, 0.0, -1.0)[0] is Status.CONVERGED
+        assert np.abs(warm.pressure - cold.pressure).max() < 1e-12 * cold.pressure.max()
+
+
 def test_films_without_a_line_are_those_of_the_grid():
     """At rest, and where the wedge builds up pressure everywhere: the same film, to rounding."""
     rng = np.random.default_rng(0)
