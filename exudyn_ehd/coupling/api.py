@@ -25,7 +25,7 @@ from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
-from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl
+from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
@@ -188,7 +188,7 @@ def CreateLubricatedJoint(
         require_bool(f"{_WHERE}.{argument}", value)
     for argument, motion in (("axial", axial), ("tilt", tilt)):
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
-    require_type(f"{_WHERE}.stepControl", stepControl, StepControl, type(None))
+    require_of_joint(f"{_WHERE}.stepControl", stepControl)
     _require_new(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):

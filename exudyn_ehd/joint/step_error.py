@@ -35,6 +35,8 @@ FIRST = 3
 SMALLEST_GAP_SHARE = 1e-3
 # Cosine of the turn of a peak in a step beyond which it has jumped.
 JUMP = 0.9
+# What a step may miss of the error that is left, and of the largest one at least.
+BUDGET, SMALLEST_BUDGET = 0.1, 0.01
 # The error that the number of steps aims at, less than half of the one that is told: the first steps are not known.
 GOAL = 0.02
 
@@ -82,6 +84,53 @@ def step_errors(
     ends = [np.hypot(*(errors[:, :2] + s * 0.5 * length * errors[:, 2:]).T) for s in (-1.0, 1.0)]
     out[known] = (np.maximum(*ends) / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance))[known]
     return out
+
+
+def next_error(
+    time: np.ndarray,
+    motion: np.ndarray,
+    tangent: np.ndarray,
+    before: np.ndarray,
+    length: float,
+    largest: float,
+    deflection: np.ndarray | None = None,
+) -> tuple[np.ndarray, float]:
+    """Error of the pose behind a step, and what the step has missed over what it may miss.
+
+    It may miss what the film forgets of the ``largest`` error in a step, or a tenth of what the error before leaves of
+    it where that is more.
+
+    Parameters
+    ----------
+    time : (3,) array
+        Of the last three states, s.
+    motion : (3, 10) array
+        There, with the rates that the film was told.
+    tangent : (6, 10) array
+        Of the film's wrench.
+    before : (4,) array
+        Error of the pose at the start of the step.
+    length, largest : float
+        Of the bearing, and error of the gap that is allowed, m.
+    deflection : (3, 2) array, optional
+        Of a liner, where it is largest, m.
+
+    Returns
+    -------
+    ndarray (4,), float
+    """
+    missed = _missed(time, motion[:, :4], motion[:, 4:8])[2]
+    if deflection is not None:
+        missed[:2] -= _lag(time, deflection)[2]
+    blocks, after, used = tangent.take(BLOCKS), np.empty(4), 0.0
+    for k, lever in ((0, 1.0), (2, 0.5 * length)):
+        kept = _kept(-blocks[k : k + 1], -blocks[k + 1 : k + 2], time[2:] - time[1]).reshape(2, 2)
+        after[k : k + 2] = kept @ (before[k : k + 2] + missed[k : k + 2])
+        forgotten = 1.0 - float(np.abs(np.linalg.eigvals(kept)).max())
+        left = largest - lever * math.hypot(*before[k : k + 2])
+        allowed = max(forgotten * largest, BUDGET * left, SMALLEST_BUDGET * largest)
+        used += lever * math.hypot(*missed[k : k + 2]) / allowed
+    return after, used
 
 
 def _bend(time: np.ndarray, values: np.ndarray) -> np.ndarray:

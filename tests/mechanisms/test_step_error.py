@@ -39,7 +39,7 @@ SCENES = {
 }
 
 
-def run(name, steps):
+def run(name, steps, **options_of_run):
     make, options = SCENES[name]
     if "cavitation" in options:
         speed = 50.0 * math.pi
@@ -48,7 +48,7 @@ def run(name, steps):
         mbs, joint, end = make(**options)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        ehd.SolveDynamic(mbs, settings(end, steps, 0.6))
+        ehd.SolveDynamic(mbs, settings(end, steps, 0.6), **options_of_run)
     return joint
 
 
@@ -86,13 +86,13 @@ def test_a_run_with_coarse_steps_says_so():
         ("slider-crank", (90, 135, 180, 270)),
         ("big end", (126, 252, 504)),
         ("orbit", (100, 200, 400)),
-        ("big end, liner", (126, 252)),
-        ("four-bar, oil content", (150, 200, 400)),
+        ("big end, liner", (252,)),
+        ("four-bar, oil content", (150, 200)),
     ],
 )
 def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, steps):
     """A fixed number of steps after what the coarsest run says has an error below 5 %."""
-    reference = run(name, 4 * steps[-1] if "liner" not in name else 4032).history
+    reference = run(name, max(4 * steps[-1], 2016 if "liner" in name else 1600)).history
     for number in steps:
         joint = run(name, number)
         error = true_error(joint.history, reference)
@@ -100,3 +100,25 @@ def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, ste
         told = told_steps(joint)
         if told is not None:
             assert true_error(run(name, told).history, reference) < 0.05, told
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("name", "usual", "fixed", "most"),
+    [
+        ("four-bar", 200, (195, 255), 1.7),
+        ("slider-crank", 135, (135, 206), 1.7),
+        ("big end", 252, (252, 504), 1.7),
+        ("orbit", 100, (100, 300), 2.5),
+    ],
+)
+def test_steps_by_their_error(name, usual, fixed, most):
+    """Errors within a third of what is asked, at a cost next to the best equal steps that were found by hand.
+
+    Those hold 5 and 2 %. Mechanisms that turn evenly gain nothing from other steps, and pay for changes of their size.
+    """
+    reference = run(name, 8 * usual).history
+    for error, steps in zip((0.05, 0.02), fixed, strict=True):
+        joint, best = run(name, usual, stepControl=ehd.StepControl(error=error)), run(name, steps)
+        assert true_error(joint.history, reference) < 1.33 * error
+        assert joint.element.evaluations < most * best.element.evaluations

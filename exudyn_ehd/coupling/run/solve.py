@@ -5,7 +5,6 @@ from __future__ import annotations
 import pathlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from typing import Any
 
 import exudyn as exu
 import numpy as np
@@ -16,7 +15,9 @@ from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings
 from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
-from exudyn_ehd.status import EHDError, InputError, RunError
+from exudyn_ehd.coupling.run.step_size import steps_by_error, user_function
+from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -71,6 +72,7 @@ def SolveDynamic(
     simulationSettings: exu.SimulationSettings,
     *,
     restart: SystemState | str | pathlib.Path | None = None,
+    stepControl: StepControl | None = None,
     **options: object,
 ) -> bool:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
@@ -93,6 +95,8 @@ def SolveDynamic(
         ``endTime`` and ``numberOfSteps`` are those of the rest. With the same step size and full Newton it repeats what
         the run would have done without the stop, to rounding: films with their memory, Exudyn's algorithmic
         accelerations and the histories.
+    stepControl : StepControl, optional
+        ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
 
@@ -108,7 +112,7 @@ def SolveDynamic(
     RunError
         If the solver ended otherwise without success.
     InputError
-        If the restart belongs to another system.
+        If the restart belongs to another system, or the step control is none of a run.
     """
     require_system("SolveDynamic", mbs)
     require_settings("SolveDynamic", simulationSettings)
@@ -119,12 +123,14 @@ def SolveDynamic(
     else:
         require_time("SolveDynamic", simulationSettings)
     require_items(mbs)
-    if options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) not in _IMPLICIT:
+    implicit = options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) in _IMPLICIT
+    control = step_control("SolveDynamic", mbs, simulationSettings, stepControl, implicit=implicit)
+    if not implicit:
         for joint in joints_of(mbs):
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
         _refuse_inactive(mbs)
-    with going_on, _better_start(mbs), own_errors(mbs, "SolveDynamic"):
+    with going_on, control, _better_start(mbs), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
 
 
@@ -269,10 +275,29 @@ def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> Star
     return StartGuess(mbs, GapLimit(elements), ForceTolerance(elements), before, bushes)
 
 
-def user_function(hook: Any) -> Any:
-    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
-    function = hook["function"] if isinstance(hook, dict) else hook
-    return function if callable(function) else 0
+def step_control(
+    where: str,
+    mbs: exu.MainSystem,
+    settings: exu.SimulationSettings,
+    control: StepControl | None,
+    *,
+    implicit: bool = True,
+) -> AbstractContextManager[None]:
+    """The control of the steps of a run, to run within."""
+    if control is None:
+        return nullcontext()
+    require_type(f"{where}.stepControl", control, StepControl)
+    if control.error is None:
+        raise InputError(
+            f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "
+            "largest_gap_change is of a joint: CreateLubricatedJoint(stepControl=...)."
+        )
+    if not implicit or not settings.timeIntegration.adaptiveStep:
+        raise InputError(
+            f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
+            "can repeat steps; ConfigureSolver(simulationSettings) sets it."
+        )
+    return steps_by_error(mbs, settings, [joint.element for joint in joints_of(mbs)], control.error)
 
 
 @contextmanager

@@ -41,10 +41,12 @@ from exudyn_ehd.coupling.run.solve import (
     require_system,
     require_time,
     start_guess,
-    user_function,
+    step_control,
 )
 from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.step_size import user_function
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
+from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
@@ -125,6 +127,7 @@ def SolveDynamicSparse(
     simulationSettings: exu.SimulationSettings | None = None,
     *,
     reuse: FactorReuse | None = None,
+    stepControl: StepControl | None = None,
 ) -> SparseRun:
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
@@ -140,6 +143,8 @@ def SolveDynamicSparse(
     simulationSettings : exudyn.SimulationSettings, optional
         Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
     reuse : FactorReuse, optional
+    stepControl : StepControl, optional
+        As in `SolveDynamic`.
 
     Returns
     -------
@@ -159,6 +164,7 @@ def SolveDynamicSparse(
     require_time("SolveDynamicSparse", settings)
     _require_offered(settings.timeIntegration)
     require_items(mbs)
+    control = step_control("SolveDynamicSparse", mbs, settings, stepControl)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
@@ -179,7 +185,7 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with own_errors(mbs, "SolveDynamicSparse"):
+        with control, own_errors(mbs, "SolveDynamicSparse"):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")

@@ -1,4 +1,7 @@
-"""Steps that are too coarse for a film, rejected through Exudyn's own step size control."""
+"""What users ask of the steps, and steps that are too coarse for a film, rejected through Exudyn's own control.
+
+`exudyn_ehd.coupling.run.step_size` chooses steps by their error.
+"""
 
 from __future__ import annotations
 
@@ -10,32 +13,43 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.watch import solver_state
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_type
 
 # Gap against which changes are measured where surfaces touch or nearly do and no contact tells the scale, share of the
 # clearance.
 SMALLEST_GAP_SHARE = 1e-3
 ROUGHNESSES = 4.0
+LARGEST_GAP_CHANGE = 0.25
 
 
 @dataclass(frozen=True, kw_only=True)
 class StepControl:
-    """Limits what an implicit step may do to the film.
+    """Limits what an implicit step may do to the film, or chooses the steps by the error that they make.
 
-    Newton may well converge for a step in which the journal falls from the centre onto its contact, or crosses the
-    contact's range at once: the motion is then wrong, without a sign. With a step control such a step is answered like
-    a film that can't be evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves
-    it, and doubles it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size
-    every step is accepted. Explicit and static solvers are not touched.
+    **Of a joint** (``CreateLubricatedJoint(stepControl=StepControl(largest_gap_change=0.1))``): Newton may well
+    converge for a step in which the journal falls from the centre onto its contact, or crosses the contact's range at
+    once: the motion is then wrong, without a sign. With a step control such a step is answered like a film that can't
+    be evaluated (Newton's iterates count too, so that steps end well below the limit): Exudyn halves it, and doubles
+    it again after some good ones (``adaptiveStep...`` of its settings). At Exudyn's smallest step size every step is
+    accepted. Explicit and static solvers are not touched.
+
+    **Of a run** (``SolveDynamic(mbs, simulationSettings, stepControl=StepControl(error=0.02))``, `SolveDynamicSparse`
+    alike): steps grow and shrink so that the estimated error of the gaps of all joints, ``history.step_error``, stays
+    near ``error``; steps that miss far more are refused. ``numberOfSteps`` of the settings then stands for a usual
+    step: the first one is an eighth of it, the largest four of it, so that no step leaps over a load that comes and
+    goes. Steps end at the times at which solution file and sensors are written (``writePeriod``).
 
     Parameters
     ----------
     largest_gap_change : float
         Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
-        step (or of the contact's range, if that is larger); 0.01 to 1.
+        step (or of the contact's range, if that is larger); 0.01 to 1. Of a joint.
+    error : float, optional
+        Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run.
     """
 
-    largest_gap_change: float = 0.25
+    largest_gap_change: float = LARGEST_GAP_CHANGE
+    error: float | None = None
 
     def __post_init__(self) -> None:
         require_number("StepControl.largest_gap_change", self.largest_gap_change, at_least=0.01)
@@ -44,6 +58,23 @@ class StepControl:
                 f"StepControl.largest_gap_change must be within 0.01 and 1, got {self.largest_gap_change!r}; leave the "
                 "control out with stepControl=None."
             )
+        if self.error is not None:
+            require_number("StepControl.error", self.error, at_least=1e-4, at_most=0.5)
+            if self.largest_gap_change != LARGEST_GAP_CHANGE:
+                raise InputError(
+                    "StepControl: error is of a run, largest_gap_change of a joint; give one StepControl to "
+                    "SolveDynamic and another to CreateLubricatedJoint."
+                )
+
+
+def require_of_joint(where: str, control: object) -> None:
+    """Refuse what is no control of a joint's steps; None is none."""
+    require_type(where, control, StepControl, type(None))
+    if isinstance(control, StepControl) and control.error is not None:
+        raise InputError(
+            f"{where}: StepControl.error is of a run; give it to ehd.SolveDynamic(mbs, simulationSettings, "
+            "stepControl=...) or SolveDynamicSparse (mbs.SolveDynamic has no control of errors)."
+        )
 
 
 class GapWatch:

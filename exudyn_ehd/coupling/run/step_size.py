@@ -1,0 +1,223 @@
+"""Steps chosen by the error that they make in the films.
+
+Behind Newton's method of a step, `exudyn_ehd.joint.step_error.next_error` says for every joint what the step has missed
+over what it may miss. Far too much, and Exudyn repeats the step by half of it or more (its function after Newton's
+method recommends the size); else the function after the step sets the size of the next one. What a step misses grows
+with the cube of its size, and what it may miss with its size: a step's demand is the root of the quotient over its
+size, and the next one follows the largest demand of late.
+
+A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
+over to the new one within a step or two. So sizes change seldom, and the first steps behind a change don't count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, Protocol, TypeAlias
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, next_error
+from exudyn_ehd.status import Status
+
+# First and largest step, in steps of the settings.
+FIRST, LARGEST = 0.125, 4.0
+# What a step has missed, over what it may miss, from which it is repeated.
+REFUSED = 8.0
+# Largest change of the size at once, and changes that are not worth one.
+SHRINK, GROW, SAME = 0.3, 2.0, (0.7, 1.7)
+# Part of its demand that a step hands on, and steps behind a change that do not count.
+KEPT, QUIET = 0.97, 3
+# Shares of a step: one that ended so early was repeated; rounding.
+SHORTENED, ROUNDING = 0.99, 1e-6
+# Steps that Exudyn never takes before it doubles one of itself.
+NEVER = 10**9
+
+
+class Steps(Protocol):
+    """What is asked of the accepted steps of a joint."""
+
+    @property
+    def tangent(self) -> np.ndarray | None: ...
+
+
+class Film(Protocol):
+    """What is asked of a joint's element."""
+
+    @property
+    def model(self) -> JointModel: ...
+    @property
+    def steps(self) -> Steps: ...
+    @property
+    def last(self) -> Trial | None: ...
+
+
+_State: TypeAlias = tuple[float, np.ndarray, tuple[float, float]]
+
+
+class _Joint:
+    """The error of one joint: at the start of the step, and behind the one at hand."""
+
+    def __init__(self, film: Film, error: float) -> None:
+        self.film, self.error = film, error
+        self.lags = isinstance(getattr(film.model.bearing, "bush", None), ElasticLiner)
+        self.states: list[_State] = []
+        self.now: _State | None = None
+        self.before = self.after = np.zeros(4)
+
+    def used(self, time: float) -> float | None:
+        """What the step to ``time`` has missed over what it may miss; None if it is not known."""
+        trial, tangent, bearing = self.film.last, self.film.steps.tangent, self.film.model.bearing
+        if trial is None or trial.evaluation is None or trial.status != Status.CONVERGED:
+            self.now = None
+            return None
+        film = trial.evaluation.quantities()
+        w, angle = (film["bore_displacement"], film["peak_angle"]) if self.lags else (0.0, 0.0)
+        self.now = (time, trial.motion[:10], (w * math.cos(angle), w * math.sin(angle)))
+        if len(self.states) < 2 or tangent is None:
+            return None
+        times, motions, deflections = map(np.array, zip(*self.states, self.now, strict=True))
+        gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
+        deflection = deflections if self.lags else None
+        self.after, used = next_error(
+            times, motions, tangent, self.before, bearing.length, self.error * gap, deflection
+        )
+        return used
+
+    def accept(self) -> None:
+        """Go on behind the step at hand."""
+        self.before = self.after
+        # without a film there is no error, and the next ones are known two steps later
+        self.states = [] if self.now is None else [*self.states[-1:], self.now]
+
+
+class StepSize:
+    """User functions of a run that repeat steps and choose their sizes.
+
+    Parameters
+    ----------
+    settings : exudyn.SimulationSettings
+    films : sequence of Film
+        Elements of all joints.
+    error : float
+        Share of the minimum film thickness.
+    output : bool
+        Whether the system has sensors.
+    after_newton, after_step : function or 0
+        The user's own, called first.
+
+    Attributes
+    ----------
+    refused : int
+        Steps that were repeated.
+    """
+
+    def __init__(
+        self,
+        settings: exu.SimulationSettings,
+        films: Sequence[Film],
+        error: float,
+        *,
+        sensors: bool,
+        after_newton: Any = 0,
+        after_step: Any = 0,
+    ) -> None:
+        run, solution = settings.timeIntegration, settings.solution
+        self.joints = [_Joint(film, error) for film in films]
+        self.after_newton, self.after_step = after_newton, after_step
+        self.begin, self.end = run.startTime, run.endTime
+        self.usual = (self.end - self.begin) / run.numberOfSteps
+        self.periods = [solution.file.writePeriod] if solution.file.write else []
+        self.periods += [solution.sensors.writePeriod] if sensors else []
+        self.beyond = 2.0 * run.discontinuous.iterationTolerance
+        self.size = self.planned = FIRST * self.usual
+        self.time = math.nan
+        self.demand = 0.0
+        self.used: float | None = None
+        self.unchanged = self.refused = 0
+
+    def look(self, mbs: exu.MainSystem, time: float) -> list[float]:
+        """User function after Newton's method: error, and step size to repeat the step with."""
+        error, wanted = self.after_newton(mbs, time) if self.after_newton else (0.0, -1.0)
+        known = [used for joint in self.joints if (used := joint.used(time)) is not None]
+        self.used = max(known, default=None)
+        step = time - mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
+        smallest = mbs.sys["dynamicSolver"].it.minStepSize
+        if self.used is None or self.used < REFUSED or step <= smallest * (1.0 + ROUNDING):
+            return [error, wanted]
+        self.refused += 1
+        step *= max(SHRINK, self.used**-0.5)
+        return [max(error, self.beyond), min(step, wanted) if wanted >= 0.0 else step]
+
+    def choose(self, mbs: exu.MainSystem, time: float) -> bool:
+        """User function after an accepted step, and before the first one: sets the next size."""
+        goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
+        if not math.isnan(self.time):
+            for joint in self.joints:
+                joint.accept()
+            self._adapt(time - self.time)
+        self.time = time
+        self.planned = self._landing(time)
+        mbs.sys["dynamicSolver"].it.currentStepSize = self.planned
+        return goes_on
+
+    def _adapt(self, step: float) -> None:
+        """The size to go on with, behind an accepted step."""
+        self.unchanged += 1
+        if step < SHORTENED * self.planned:
+            # repeated, here or by Exudyn
+            self.size, self.unchanged, self.demand = step, 0, max(self.demand, 1.0 / step)
+        if self.used is None or self.unchanged <= QUIET:
+            return
+        self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
+        wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
+        factor = min(GROW, max(SHRINK, wanted / self.size))
+        if not SAME[0] < factor < SAME[1]:
+            self.size *= factor
+            self.unchanged = 0
+
+    def _landing(self, time: float) -> float:
+        """The next step, which ends at the next time that is asked for or is at most half the way there."""
+        stops = [self.end]
+        for period in self.periods:
+            if period > ROUNDING * self.usual:
+                stops.append(self.begin + period * (math.floor((time - self.begin) / period + ROUNDING) + 1))
+        rest = min(stops) - time
+        if self.size >= rest * (1.0 - ROUNDING):
+            return rest
+        return min(self.size, 0.5 * rest)
+
+
+def user_function(hook: Any) -> Any:
+    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
+    function = hook["function"] if isinstance(hook, dict) else hook
+    return function if callable(function) else 0
+
+
+@contextmanager
+def steps_by_error(
+    mbs: exu.MainSystem, settings: exu.SimulationSettings, films: Sequence[Film], error: float
+) -> Iterator[None]:
+    """Choose the steps of the run within; the user's functions and settings come back then."""
+    own: tuple[Callable[..., Any], ...] = (
+        user_function(mbs.GetPostNewtonUserFunction()),
+        user_function(mbs.GetPostStepUserFunction()),
+    )
+    sensors = mbs.systemData.NumberOfSensors() > 0
+    control = StepSize(settings, films, error, sensors=sensors, after_newton=own[0], after_step=own[1])
+    run = settings.timeIntegration
+    kept = run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize
+    run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = NEVER, True
+    mbs.SetPostNewtonUserFunction(control.look)
+    mbs.SetPostStepUserFunction(control.choose)
+    try:
+        yield
+    finally:
+        mbs.SetPostNewtonUserFunction(own[0])
+        mbs.SetPostStepUserFunction(own[1])
+        run.adaptiveStepRecoverySteps, run.discontinuous.useRecommendedStepSize = kept
