@@ -274,7 +274,7 @@ def _check_line(bearing: JournalBearing) -> None:
         return
     film, oil = type(bearing.film).__name__, bearing.lubricant
     others = {
-        f"film={film}(...)": not isinstance(bearing.film, (FiniteLength, LongBearing)),
+        f"film={film}(...)": not isinstance(bearing.film, (FiniteLength, LongBearing, ImpedanceMap)),
         "an ElasticLiner": isinstance(bearing.bush, ElasticLiner),
         "Lubricant.density_law": oil.density_law is not None,
         "Lubricant.shear_law": oil.shear_law is not None,

@@ -28,7 +28,7 @@ LEFT_OF_LINE, LEFT = 1e-10, 1e-15
 # Steps after which vertices no longer leave the film at once: two may drive each other out and in again for ever. Of an
 # s that would vanish so much is left. Steps after which pressures are the unknowns everywhere: then Newton's method
 # can't miss, since balances are concave in them, but it takes longer.
-PATIENT, KEPT, SAFE = 8, 0.25, 30
+PATIENT, KEPT, SAFE = 8, 0.1, 30
 # Steps over the peak that leave more than its rounding: those from other films, far larger ones.
 LARGE = 10.0
 # Change of s beyond which a new factor is faster; steps with a factor after its first.
@@ -145,7 +145,10 @@ def move_film(line, order, count, steps, taken, active, p):
             place = np.sqrt(2.0 * max(new, 0.0) / curve)
             if own < 1.0 and taken <= SAFE:
                 place = own + steps[r] / (curve * own)
-            place = max(place, kept * own if own > LEAST else 0.0)
+            if own > LEAST and place < kept * own:
+                # on its way out, whatever little it moves
+                place, in_line = kept * own, 1.0
+            place = max(place, 0.0)
             if place < 1.0:
                 new = 0.5 * curve * place * place
             elif own < 1.0:

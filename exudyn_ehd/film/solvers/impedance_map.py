@@ -56,7 +56,8 @@ class ImpedanceMap:
     ----------
     n_theta, n_z, stretch
         Grid of the film behind the map, as for `FiniteLength`. The force's ripple with the snapping of the rupture line
-        is the map's largest error, so that n_theta is large.
+        is the map's largest error, so that n_theta is large; with ``SwiftStieber(line_in_cells=True)`` a quarter of it
+        is left (0.11 % instead of 0.44 % at L/D 1).
     largest_eccentricity_ratio : float
         End of the table, 0.5 to 0.995.
     n_eccentricity, n_direction : int
@@ -328,7 +329,8 @@ def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: floa
         scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
         return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
 
-    key = repr((FORMAT, film, type(closure).__name__, float(length_to_radius), SAMPLES))
+    condition = type(closure).__name__ + closure.line_in_cells * " in cells"
+    key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
     shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
     data = cached_arrays("impedance", key.encode(), shapes, compute)
     v = data["scalars"]

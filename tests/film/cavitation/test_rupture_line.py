@@ -206,7 +206,6 @@ def test_heat_is_the_power_of_the_motion():
     "options",
     (
         {"film": ehd.ShortBearing()},
-        {"film": ehd.ImpedanceMap()},
         {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
         {"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
         {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))},

@@ -71,6 +71,15 @@ def test_default_map_within_one_percent_of_the_film(make_bearing, measured, clos
     measured("worst of 150 states", max(errors), 0.01)
 
 
+def test_a_line_inside_the_cells_has_a_map_of_its_own(make_bearing, cache):
+    tables = [impedance_table(SMALL, ehd.SwiftStieber(line_in_cells=line), 2.0) for line in (False, True)]
+    assert not np.array_equal(tables[0].nodes, tables[1].nodes)
+    # what the line's place on the grid leaves of error is less
+    assert tables[1].median_error < 0.5 * tables[0].median_error
+    model = build_model(make_bearing(1.0, film=SMALL, cavitation=ehd.SwiftStieber(line_in_cells=True)))
+    assert np.array_equal(model.table.nodes, tables[1].nodes)
+
+
 @pytest.mark.parametrize("largest", [0.01, 0.5, 0.9])
 def test_tangent_against_differences(make_bearing, largest):
     model = build_model(make_bearing(film=SMALL))
