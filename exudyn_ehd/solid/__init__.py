@@ -4,6 +4,7 @@ Module map
 ----------
 bush                what a scene writes: `ANCFBush`, `ModalBush`, `Rayleigh`
 mesh                hollow cylinders; surfaces and lines of meshes
+unrolled            faces on a cylinder: where points lie on them, where they meet and end
 mesh_import         users' meshes, from memory
 mesh_files          users' meshes, from files
 abaqus_input        parts, instances and node sets of an Abaqus input file

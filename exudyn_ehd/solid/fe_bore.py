@@ -115,7 +115,7 @@ class ReducedBore:
 
     def __post_init__(self) -> None:
         theta, z, weight = quadrature(self.length)
-        field_ = self._interpolated(theta, z)
+        field_ = self._displaced(self.faces.interpolation(theta, z))
         place = np.stack([self.radius * np.cos(theta), self.radius * np.sin(theta), z], axis=1)
         object.__setattr__(self, "rigid", _rigid_fit(place, weight, field_))
 
@@ -129,9 +129,8 @@ class ReducedBore:
         """What resists the modes in the film's object: nothing (k,), the body does it itself."""
         return np.zeros(self.count)
 
-    def _interpolated(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-        values = self.displacements.reshape(len(self.displacements), -1)
-        return (self.faces.interpolation(theta, z) @ values).reshape(len(theta), 3, self.count)
+    def _displaced(self, values: csr_matrix) -> np.ndarray:
+        return (values @ self.displacements.reshape(len(self.displacements), -1)).reshape(-1, 3, self.count)
 
     def held(self) -> ReducedBore:
         """The same bore with all of its displacement left to the gap: for a frame that doesn't follow."""
@@ -142,12 +141,16 @@ class ReducedBore:
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement against the averaged rigid motion on the grid theta x z, (len(theta), len(z), k)."""
         T, Z = np.meshgrid(theta, z, indexing="ij")
-        t, x = T.ravel(), Z.ravel()
-        normal = np.stack([np.cos(t), np.sin(t)], axis=1)
-        u = self._interpolated(t, x)[:, :2]
-        turn = np.stack([self.rigid[4][None] * x[:, None], -self.rigid[3][None] * x[:, None]], axis=1)
+        values = self.faces.interpolation(T.ravel(), Z.ravel())
+        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+
+    def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """The same (p, k) at points (p,) whose ``values`` (p, n) of displacements come from those at the nodes."""
+        normal = np.stack([np.cos(theta), np.sin(theta)], axis=1)
+        u = self._displaced(values)[:, :2]
+        turn = np.stack([self.rigid[4][None] * z[:, None], -self.rigid[3][None] * z[:, None]], axis=1)
         residual = u - self.rigid[None, :2] - turn
-        return np.ascontiguousarray(np.einsum("pik,pi->pk", residual, normal).reshape(*T.shape, self.count))
+        return np.ascontiguousarray(np.einsum("pik,pi->pk", residual, normal))
 
 
 def quadrature(length: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

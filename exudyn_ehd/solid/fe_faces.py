@@ -11,9 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 from scipy.sparse import csr_matrix, spmatrix
 
-from exudyn_ehd.solid.elements.faces import face_of
 from exudyn_ehd.solid.elements.kinds import boundary_faces
-from exudyn_ehd.solid.mesh import invert_faces, near_faces
+from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces
 from exudyn_ehd.status import InputError
 
 # Largest angle between neighbouring nodes of a bore, rad.
@@ -46,7 +45,7 @@ class BodyMesh(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class BoreFaces:
+class BoreFaces(Unrolled):
     """Faces on a bore.
 
     Parameters
@@ -61,6 +60,11 @@ class BoreFaces:
     positions: np.ndarray
     faces: np.ndarray
 
+    @property
+    def local(self) -> np.ndarray:
+        """As `faces`."""
+        return self.faces
+
     def interpolation(self, theta: np.ndarray, z: np.ndarray) -> csr_matrix:
         """S, shape (p, n): values at points of the bore from values at the nodes.
 
@@ -72,9 +76,8 @@ class BoreFaces:
         theta, z = np.asarray(theta, dtype=float).ravel(), np.asarray(z, dtype=float).ravel()
         corner = self.positions[self.faces]
         point, face = np.nonzero(near_faces(corner, theta, z))
-        kind = face_of(self.faces)
-        natural = invert_faces(kind, corner[face], theta[point], z[point])
-        outside = kind.outside(natural)
+        natural = invert_faces(self.kind, corner[face], theta[point], z[point])
+        outside = self.kind.outside(natural)
         order = np.lexsort((outside, point))
         first = order[np.unique(point[order], return_index=True)[1]]
         lost = np.setdiff1d(np.arange(theta.size), point)
@@ -85,7 +88,7 @@ class BoreFaces:
                 f"bore, whose nodes span z = {self.positions[:, 2].min():g} to {self.positions[:, 2].max():g} m; holes "
                 "in the bore are not supported: check position, axis, length and radius_tolerance."
             )
-        values, _ = kind.shapes(natural[first])
+        values, _ = self.kind.shapes(natural[first])
         rows = np.repeat(point[first], self.faces.shape[1])
         return csr_matrix(
             (values.ravel(), (rows, self.faces[face[first]].ravel())), shape=(theta.size, len(self.positions))

@@ -13,9 +13,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.elements.element import Element
-from exudyn_ehd.solid.elements.faces import Face, face_of
 from exudyn_ehd.solid.elements.hex20 import NODES
 from exudyn_ehd.solid.elements.kinds import boundary_faces, element_of
+from exudyn_ehd.solid.unrolled import Unrolled, invert_faces, near_faces, wrapped
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers
 
 
@@ -36,7 +36,7 @@ class Line:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Surface:
+class Surface(Unrolled):
     """A patch of element faces with a nodes each.
 
     Parameters
@@ -56,10 +56,10 @@ class Surface:
     faces: np.ndarray
     local_faces: np.ndarray
 
-    @cached_property
-    def kind(self) -> Face:
-        """What the faces are."""
-        return face_of(self.faces)
+    @property
+    def local(self) -> np.ndarray:
+        """As `local_faces`."""
+        return self.local_faces
 
     @cached_property
     def theta(self) -> np.ndarray:
@@ -105,8 +105,8 @@ class Surface:
             bad = int(np.argmax(best))
             raise InputError(
                 f"Surface.locate: the point theta = {theta[bad]:g} rad, z = {z[bad]:g} m must lie on the surface, "
-                f"which spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush or lengthen "
-                "the bush."
+                f"which spans z = {self.z.min():g} to {self.z.max():g} m; move the film grid onto the bush, lengthen "
+                "the bush, or close the hole there."
             )
         chosen = np.full(len(theta), -1)
         hits = np.flatnonzero(inside <= best[point])
@@ -136,56 +136,15 @@ class Surface:
         return np.asarray(np.einsum("kai,ai->ka", moved, direction))
 
 
-def directed(interpolation: csr_matrix, direction: np.ndarray) -> csr_matrix:
-    """Map (p, 3 n) from vectors at nodes, node by node, to their parts along ``direction`` (p, d) at points (p,).
+def directed(interpolation: csr_matrix, direction: np.ndarray, parts: int = 3) -> csr_matrix:
+    """Map (p, parts n) from vectors at nodes, node by node, to their share along ``direction`` (p, d) at points (p,).
 
-    ``interpolation`` (p, n); d = 2 leaves z out.
+    ``interpolation`` (p, n); d = 2 leaves z out, vectors of two parts have none.
     """
     S, size = interpolation.tocoo(), direction.shape[1]
     values = S.data[:, None] * direction[S.row]
-    rows, columns = np.repeat(S.row, size), (3 * S.col[:, None] + np.arange(size)).ravel()
-    return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], 3 * S.shape[1]))
-
-
-def near_faces(corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Flags (p, f): which points (p,) of an unrolled surface may lie on which faces with nodes ``corner`` (f, a, 3)."""
-    middle = corner.mean(axis=1)
-    centre = np.arctan2(middle[:, 1], middle[:, 0])
-    spread = np.abs(wrapped(np.arctan2(corner[..., 1], corner[..., 0]) - centre[:, None])).max(axis=1)
-    low, high = corner[..., 2].min(axis=1), corner[..., 2].max(axis=1)
-    margin = 0.05 * (high - low)
-    close = np.abs(wrapped(theta[:, None] - centre)) <= 1.05 * spread + 1e-9
-    return np.asarray(close & (z[:, None] >= low - margin) & (z[:, None] <= high + margin))
-
-
-def invert_faces(kind: Face, corner: np.ndarray, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Natural coordinates (n, 2) of points (n,) on a face each, by Newton's method on theta(r, s) and z(r, s).
-
-    Parameters
-    ----------
-    kind : Face
-    corner : ndarray, shape (n, a, 3)
-        Nodes of every point's face [m].
-    theta, z : ndarray, shape (n,)
-        [rad], [m]
-    """
-    natural = np.full((len(corner), 2), kind.middle)
-    for _ in range(20):
-        value, gradient = kind.shapes(natural)
-        x = np.einsum("na,nai->ni", value, corner)
-        slope = np.einsum("nar,nai->nir", gradient, corner)
-        error = np.stack([wrapped(np.arctan2(x[:, 1], x[:, 0]) - theta), x[:, 2] - z], axis=1)
-        turn = (x[:, 0, None] * slope[:, 1] - x[:, 1, None] * slope[:, 0]) / (x[:, :2] ** 2).sum(axis=1)[:, None]
-        step = np.linalg.solve(np.stack([turn, slope[:, 2]], axis=1), error[..., None])[..., 0]
-        natural = np.clip(natural - step, -1.5, 1.5)
-        if step.size == 0 or np.abs(step).max() < 1e-13:
-            break
-    return natural
-
-
-def wrapped(angle: np.ndarray) -> np.ndarray:
-    """The same angle within -pi and pi."""
-    return (angle + np.pi) % (2 * np.pi) - np.pi
+    rows, columns = np.repeat(S.row, size), (parts * S.col[:, None] + np.arange(size)).ravel()
+    return csr_matrix((values.ravel(), (rows, columns)), shape=(S.shape[0], parts * S.shape[1]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

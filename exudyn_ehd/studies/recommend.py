@@ -203,10 +203,7 @@ def _unlike_measured_bushes(bearing: JournalBearing) -> str:
     if bush is None or isinstance(bush, ElasticLiner):
         return ""
     if not isinstance(bush, ModalBush):
-        return (
-            f"solid bushes were measured as ModalBush only, not as {type(bush).__name__}, whose bore deflects next to "
-            "its ends within less than an interval of a coarse film; compare a finer film"
-        )
+        return f"solid bushes were measured as ModalBush only, not as {type(bush).__name__}; compare a finer film"
     if not isinstance(bush.mesh, HollowCylinder) or not (
         0.5 <= bush.mesh.thickness / (THICKNESS * bush.mesh.inner_radius) <= 2.0
     ):
@@ -215,10 +212,7 @@ def _unlike_measured_bushes(bearing: JournalBearing) -> str:
             "a factor of two either way counts"
         )
     if bush.tolerance < TOLERANCE:
-        return (
-            f"modes were measured down to tolerance {TOLERANCE:g}, not {bush.tolerance:g}: finer ones need finer "
-            "films; compare a finer film"
-        )
+        return f"modes were measured down to tolerance {TOLERANCE:g}, not {bush.tolerance:g}; compare a finer film"
     return ""
 
 

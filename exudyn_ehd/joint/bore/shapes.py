@@ -16,7 +16,7 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import add_transposed, put_rows, sparse_product
+from exudyn_ehd.film.sensitivity.bore_stencil import add_transposed, nodal_displacements, nodal_loads, put_rows
 from exudyn_ehd.film.sensitivity.mirror_symmetry import (
     courses,
     fold_adjoints,
@@ -26,8 +26,9 @@ from exudyn_ehd.film.sensitivity.mirror_symmetry import (
     place_columns,
     stencil_by_vertices,
 )
+from exudyn_ehd.joint.bore.transfer import end_means, vertex_means
 from exudyn_ehd.solid.fe_bore import ReducedBore
-from exudyn_ehd.solid.mesh import Surface
+from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.modes.static import BoreModes
 
 # Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
@@ -77,6 +78,23 @@ class Bore(Protocol):
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
 
+    def end_shapes(self) -> np.ndarray:
+        """What S is for linear pressures that vanish at one end, (2, k): the first at L/2, the second at -L/2.
+
+        Loads are these times the integral of the pressure over the bore's area.
+        """
+
+
+def _on_lines(grid: FilmGrid, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Angle, rad, and z, m, of places with scaled z (m,) on each of the n lines of a grid, (n m,)."""
+    T, Z = np.meshgrid(grid.x, z * grid.reference_length, indexing="ij")
+    return T.ravel(), Z.ravel()
+
+
+def _centres(grid: FilmGrid) -> np.ndarray:
+    """Scaled centres (2,) of linear pressures that vanish at one end."""
+    return grid.z[-1] * np.array([-1.0, 1.0]) / 3.0
+
 
 class ModalBore:
     """Bore that moves in modes.
@@ -101,10 +119,11 @@ class ModalBore:
     """
 
     def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
-        self.modes = modes
+        self.modes, self.grid = modes, grid
         self.grid_shape = grid.shape
         self.stiffness = modes.stiffness
-        whole = modes.radial(grid.x, grid.z * grid.reference_length)
+        places = _on_lines(grid, grid.z)
+        whole = modes.radial_of(vertex_means(modes.faces, grid), *places).reshape(*grid.shape, modes.count)
         is_even = _snap_parity(whole)
         n, m = grid.shape
         self.mirrored = 0 if is_even is None else m // 2
@@ -181,6 +200,12 @@ class ModalBore:
         back = np.argsort(self.order)
         return out[np.ix_(back, back)]
 
+    def end_shapes(self) -> np.ndarray:
+        """S for linear pressures (2, k)."""
+        places = _on_lines(self.grid, _centres(self.grid))
+        shapes = self.modes.radial_of(end_means(self.modes.faces, self.grid), *places)
+        return shapes.reshape(-1, 2, self.size).mean(axis=0)
+
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
     """Which of the shapes (n, m, k) are even in z, the others being odd.
@@ -208,23 +233,25 @@ class NodalBore:
 
     Attributes
     ----------
+    values : csr matrix (n m, nodes)
+        Of `exudyn_ehd.joint.bore.transfer.vertex_means`.
+    normals : (n m, 2) array
+        At the film's vertices.
     shapes : csr matrix (n m, k)
         S, k twice the number of nodes.
-    values : csr matrix (n m, nodes)
-        Shape functions at the film's vertices.
     order : (k,) int array
         0 to k - 1.
     """
 
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
         self.grid_shape, self.grid = grid.shape, grid
-        T, Z = np.meshgrid(grid.x, grid.z * grid.reference_length, indexing="ij")
-        full = surface.radial_interpolation(T.ravel(), Z.ravel())
-        columns = (3 * np.arange(len(surface.nodes))[:, None] + np.arange(2)).ravel()
-        self.values: csr_matrix = surface.interpolation(T.ravel(), Z.ravel())
-        self.shapes: csr_matrix = full[:, columns].tocsr()
+        theta, _ = _on_lines(grid, grid.z)
+        self.normals = np.stack([np.cos(theta), np.sin(theta)], axis=1)
+        self.surface, self.values = surface, vertex_means(surface, grid)
+        self.shapes: csr_matrix = directed(self.values, self.normals, 2)
         self.transposed: csr_matrix = self.shapes.T.tocsr()
-        self.order = np.arange(len(columns))
+        self.order = np.arange(self.size)
+        self._kernel = self.values.indptr, self.values.indices, self.values.data, self.normals
 
     @property
     def size(self) -> int:
@@ -233,24 +260,22 @@ class NodalBore:
 
     def displacement(self, q: np.ndarray) -> np.ndarray:
         """S q (n, m)."""
-        return (self.shapes @ q).reshape(self.grid_shape)
+        return self.displacements(q, q)[0]
 
     def load(self, field: np.ndarray) -> np.ndarray:
         """S^T f (k,)."""
-        T, out = self.transposed, np.empty(self.size)
-        sparse_product(T.indptr, T.indices, T.data, np.ascontiguousarray(field).reshape(-1), out)
+        out = np.empty(self.size)
+        nodal_loads(*self._kernel, np.ascontiguousarray(field).reshape(-1), out)
         return out
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
         """Every field's S^T f, (r, k)."""
-        return fields.reshape(len(fields), -1) @ self.shapes
+        return np.stack([self.load(field) for field in fields])
 
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
         place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
-        S = self.shapes
-        sparse_product(S.indptr, S.indices, S.data, q, place.reshape(-1))
-        sparse_product(S.indptr, S.indices, S.data, q_t, rate.reshape(-1))
+        nodal_displacements(*self._kernel, q, q_t, place.reshape(-1), rate.reshape(-1))
         return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
@@ -269,3 +294,10 @@ class NodalBore:
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
         return (self.transposed.multiply(field.ravel()) @ self.shapes).toarray()
+
+    def end_shapes(self) -> np.ndarray:
+        """S for linear pressures (2, k)."""
+        theta, _ = _on_lines(self.grid, _centres(self.grid))
+        normals = np.stack([np.cos(theta), np.sin(theta)], axis=1)
+        shapes = directed(end_means(self.surface, self.grid), normals, 2)
+        return shapes.toarray().reshape(-1, 2, self.size).mean(axis=0)

@@ -39,10 +39,6 @@ from exudyn_ehd.joint.tangent.nodes import BoreForces, NodalProduct, nodal_tange
 from exudyn_ehd.joint.tangent.spread import complete
 from exudyn_ehd.status import Status
 
-# Panels of three Gauss points around and along the bore that integrate the load of the ends' pressure; they match the
-# usual meshes.
-END_PANELS = 120, 12
-
 
 class ClosingFilm(NamedTuple):
     """Where a film closes: on the way to a place, at a part of its eccentricity and tilt.
@@ -162,41 +158,26 @@ class BoreTerm:
         return self.displacement
 
 
-def end_load(bore: Callable[[FilmGrid], Bore], grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
+def end_load(bore: Bore, grid: FilmGrid, pressures: tuple[float, float]) -> np.ndarray:
     """What the film's weights lack in the bore's loads (k,) of the ends' pressure, N.
 
-    The weights are made for pressures that vanish at the ends; a pressure that does not meets there the part of the
-    bore that yields most, which few vertices can't integrate (8 % in the displacement with 12 intervals). The
-    pressure is therefore split into ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are
-    integrated by Gauss points, and a rest that vanishes at the ends. The first part has neither force nor moment on
-    the journal.
+    The vertices on the ends load the bore there alone. The pressure is therefore split into
+    ``p0 (1 - zeta) / 2 + p1 (1 + zeta) / 2``, zeta = 2 z / L, whose loads are integrated, and a rest that vanishes at
+    the ends. The first part has neither force nor moment on the journal.
 
     Parameters
     ----------
-    bore : function of FilmGrid
+    bore : Bore
+        On the grid.
     grid : FilmGrid
         The film's.
     pressures : (float, float)
         At -L/2 and L/2, Pa.
     """
-    half = float(grid.z[-1])
-    x, weight_x = _panels(0.0, 2.0 * np.pi, END_PANELS[0])
-    z, weight_z = _panels(-half, half, END_PANELS[1])
-    area = np.outer(weight_x, weight_z)
-    points = dataclasses.replace(grid, x=x, z=z, fixed=np.zeros(area.shape, dtype=bool))
-
-    def course(z: np.ndarray) -> np.ndarray:
-        return pressures[0] + (pressures[1] - pressures[0]) * 0.5 * (1.0 + z / half)
-
-    exact, seen = bore(points).load(course(z) * area), bore(grid).load(course(grid.z) * grid.weight)
-    return (exact - seen) * grid.reference_length**2
-
-
-def _panels(start: float, end: float, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Three Gauss points in each of ``count`` panels, and their weights."""
-    nodes, weights = np.polynomial.legendre.leggauss(3)
-    half = 0.5 * (end - start) / count
-    return (start + half * (2.0 * np.arange(count)[:, None] + 1.0 + nodes)).ravel(), np.tile(weights * half, count)
+    half, R = float(grid.z[-1]), grid.reference_length
+    exact = 2.0 * np.pi * half * (np.array(pressures) @ bore.end_shapes())
+    course = 0.5 * (pressures[0] * (1.0 - grid.z / half) + pressures[1] * (1.0 + grid.z / half))
+    return np.asarray(exact - bore.load(course * grid.weight)) * R**2
 
 
 class ElasticBearingModel(BearingModel):
@@ -233,7 +214,7 @@ class ElasticBearingModel(BearingModel):
         self.elasticity = elasticity
         self._coordinates = np.zeros(self.bore.size)
         self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
-        self._end_load = end_load(bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
+        self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
 
     @cached_property
     def bore_forces(self) -> BoreForces:

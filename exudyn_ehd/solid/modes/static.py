@@ -44,10 +44,11 @@ from math import ceil, log2
 import numpy as np
 from numpy.polynomial.legendre import legval
 from scipy.linalg import eigh
+from scipy.sparse import csr_matrix
 
 from exudyn_ehd.solid.bush import ModalBush
 from exudyn_ehd.solid.loads import Pressure, pressure_loads
-from exudyn_ehd.solid.mesh import BushMesh
+from exudyn_ehd.solid.mesh import BushMesh, Surface, directed
 from exudyn_ehd.solid.modes import dynamic
 from exudyn_ehd.solid.modes.dynamic import body_force_modes, vibration_modes
 from exudyn_ehd.solid.static_equilibrium import held_stiffness
@@ -105,6 +106,11 @@ class BoreModes:
         """Number of modes."""
         return self.stiffness.size
 
+    @property
+    def faces(self) -> Surface:
+        """Of the bore."""
+        return self.mesh.bore
+
     def vibrations(self) -> tuple[np.ndarray, np.ndarray]:
         """Undamped vibrations without a film, outer surface held; for a bush with ``dynamics``.
 
@@ -150,9 +156,14 @@ class BoreModes:
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
         """Radial displacement of the bore at the grid theta x z for unit coordinates, shape (len(theta), len(z), k)."""
         T, Z = np.meshgrid(theta, z, indexing="ij")
-        H = self.mesh.bore.radial_interpolation(T.ravel(), Z.ravel())
-        bore = self.displacements[:, self.mesh.bore.nodes].reshape(self.count, -1)
-        return np.ascontiguousarray((H @ bore.T).reshape(T.shape + (self.count,)))
+        values = self.faces.interpolation(T.ravel(), Z.ravel())
+        return self.radial_of(values, T.ravel(), Z.ravel()).reshape(*T.shape, self.count)
+
+    def radial_of(self, values: csr_matrix, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """The same (p, k) at points (p,) whose ``values`` (p, nodes) of displacements come from those at the nodes."""
+        H = directed(values, np.stack([np.cos(theta), np.sin(theta)], axis=1))
+        bore = self.displacements[:, self.faces.nodes].reshape(self.count, -1)
+        return np.ascontiguousarray(H @ bore.T)
 
 
 def bore_modes(bush: ModalBush) -> BoreModes:

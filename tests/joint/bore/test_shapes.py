@@ -8,6 +8,7 @@ import pytest
 from exudyn_ehd.film.banded.many_sides import TILE, make_tiles
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.solid.mesh import HollowCylinder
 
 K = 60
 
@@ -20,8 +21,12 @@ def bore_and_shapes(kind, n_z):
         sign = np.where(is_even, 1.0, -1.0)
         # with rounding of the modes' eigenvalue problem
         shapes = shapes + sign * shapes[:, ::-1] * (1.0 + 1e-14)
-    modes = SimpleNamespace(count=K, stiffness=np.ones(K), radial=lambda theta, z: shapes.copy())
-    return ModalBore(modes, grid), shapes.reshape(-1, K)
+    shapes = shapes.reshape(-1, K)
+    faces = HollowCylinder(inner_radius=0.03, thickness=0.01, length=0.06, axial=1, radial=1, circumferential=8).mesh()
+    modes = SimpleNamespace(
+        count=K, stiffness=np.ones(K), faces=faces.bore, radial_of=lambda values, theta, z: shapes.copy()
+    )
+    return ModalBore(modes, grid), shapes
 
 
 @pytest.mark.parametrize("kind", ["both", "even", "odd", "neither"])

@@ -38,7 +38,7 @@ def test_the_solid_holds_the_films_forces(modulus):
     """Internal forces of the mesh against the film's forces on its nodes, at strains from nothing to a tenth."""
     b = bearing(modulus)
     model = build_model(b)
-    evaluation = model.evaluate_steady(motion(C * (0.8 if modulus > 1e9 else 1.2)))
+    evaluation = model.evaluate_steady(motion(C * (0.8 if modulus > 1e9 else 1.5)))
     mesh, u = b.bush.build_mesh(), model.elasticity.displacements
     assert np.array_equal(u[mesh.bore.nodes, :2].ravel(), evaluation.bore.coordinates)
     assert not u[mesh.outer.nodes].any()
@@ -52,7 +52,7 @@ def test_the_solid_holds_the_films_forces(modulus):
 @pytest.mark.parametrize("law", [ehd.NeoHooke, pytest.param(ehd.SaintVenantKirchhoff, marks=pytest.mark.slow)])
 def test_stiffness_is_that_about_the_deformed_state(law):
     b = bearing(1e7, law)
-    eq = ehd.equilibrium(b, speed=SPEED, load=(0.0, -150.0))
+    eq = ehd.equilibrium(b, speed=SPEED, load=(0.0, -250.0))
     assert np.abs(eq.film.bore_displacement).max() > 0.03 * WALL
     model, step = build_model(b), 1e-5 * C
     model.evaluate_steady(motion(*eq.position))

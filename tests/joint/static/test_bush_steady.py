@@ -20,8 +20,7 @@ C = 30e-6
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.02, length=0.066, axial=4, radial=2, circumferential=24)
 
 
-# The load of a film whose vertices are no closer than the mesh's nodes is not smooth on the mesh: fine grid and mesh
-# to compare.
+# To compare.
 FINE = dataclasses.replace(CYLINDER, circumferential=40)
 FINE_FILM = ehd.FiniteLength(n_theta=96, n_z=12)
 # Soft bores deflect next to their ends within an interval of the former.
@@ -217,7 +216,7 @@ def test_damping_is_that_of_a_bore_that_follows_slowly():
     bearing = make_bearing(modal(7e10, tolerance=0.1, tilted=False))
     eq = ehd.equilibrium(bearing, speed=SPEED, load=(0.0, -20e3))
     model = build_model(bearing)
-    h, v = 1e-4 * C, 1e-5
+    h, v = 1e-4 * C, 1e-6
 
     def settled(x, y):
         evaluation = model.evaluate_steady(np.array([x, y, 0, 0, 0, 0, 0, 0, SPEED, 0.0]))
@@ -317,7 +316,7 @@ def test_a_bore_that_strains_a_linear_bush_beyond_its_range_says_so(kind):
         )
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            result = ehd.steady(b, speed=314.0, eccentricity_ratio=0.34)
+            result = ehd.steady(b, speed=314.0, eccentricity_ratio=0.5)
         strain = np.abs(result.bore_displacement).max() / 1e-3
         said = [str(w.message) for w in caught if w.category is ehd.StrainWarning]
         assert (strain > 0.01) == (modulus == 2e7)
