@@ -160,9 +160,10 @@ class LubricatedJoint(JointResults):
     def stop_at(self, *, force: float = math.inf, pressure: float = math.inf) -> None:
         """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
 
-        Without it runs end where the film is none: peak pressures beyond 90 GPa, rigid surfaces pressed through each
-        other by more than the clearance, forces that alternate at many times what they move and carry. Steps beyond 3
-        GPa, or 1 GPa on the projected area, give an `OverloadWarning`.
+        Without it runs end where the film is none: pressures beyond 90 GPa (`SolveDynamic` and `SolveDynamicSparse`
+        try smaller steps first), rigid surfaces pressed through each other by more than the clearance, forces that
+        alternate at many times what they move and carry. Steps beyond 3 GPa, or 1 GPa on the projected area, give an
+        `OverloadWarning`.
 
         Parameters
         ----------

@@ -232,6 +232,11 @@ class FilmElement:
         """The state evaluated last, if it is still known."""
         return self._trial
 
+    def has_result(self) -> bool:
+        """Whether the state evaluated last can be accepted as the end of a step."""
+        trial = self._trial
+        return trial is None or not (trial.status == Status.NO_PRESSURE or self.failures.crushes(trial))
+
     def require_film(self, time: float) -> None:
         """Raise if the run has ended behind the end of a pressure law, or with a film that no bearing has."""
         trial = self._trial

@@ -15,6 +15,7 @@ from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings
 from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
+from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
@@ -130,7 +131,7 @@ def SolveDynamic(
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
         _refuse_inactive(mbs)
-    with going_on, control, _better_start(mbs), own_errors(mbs, "SolveDynamic"):
+    with going_on, control, _better_start(mbs), refusing(mbs), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
 
 
@@ -309,6 +310,17 @@ def _better_start(mbs: exu.MainSystem) -> Iterator[None]:
         yield
     finally:
         mbs.SetPreNewtonResidualUserFunction(own)
+
+
+@contextmanager
+def refusing(mbs: exu.MainSystem) -> Iterator[None]:
+    """Refuse steps without a film in the run within; the user's function comes back then."""
+    own = user_function(mbs.GetPostNewtonUserFunction())
+    mbs.SetPostNewtonUserFunction(StepRefusal([joint.element for joint in joints_of(mbs)], own or None))
+    try:
+        yield
+    finally:
+        mbs.SetPostNewtonUserFunction(own)
 
 
 @contextmanager

@@ -37,6 +37,7 @@ from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 from exudyn_ehd.coupling.run.settings import require_settings
 from exudyn_ehd.coupling.run.solve import (
     own_errors,
+    refusing,
     require_items,
     require_system,
     require_time,
@@ -185,7 +186,7 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with control, own_errors(mbs, "SolveDynamicSparse"):
+        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
