@@ -189,8 +189,9 @@ class JournalBearing:
     def _check_supply(self) -> None:
         if not self.supply:
             return
-        ends = None if isinstance(self.film, LongBearing) else self.end_pressures
-        check_supply(self.supply, self.journal_radius, self.length, self.film.n_theta, ends)
+        film, ends = self.film, None if isinstance(self.film, LongBearing) else self.end_pressures
+        around = film.circumferential_pressure_flow
+        check_supply(self.supply, self.journal_radius, self.length, film.n_theta, around, ends)
         if isinstance(self.inlet, MaximumGap):
             raise InputError(
                 "JournalBearing.supply and inlet=MaximumGap() exclude each other: a supplied film starts at its "

@@ -23,7 +23,7 @@ from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
-from exudyn_ehd.film.supply.rows import supply_rows
+from exudyn_ehd.film.supply.rows import column_of_hole, supply_rows
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
 # Bytes of a film's banded matrix.
@@ -211,7 +211,10 @@ def film_grid(
     open_ring: bool,
     supply: tuple[SupplyArea, ...] = (),
 ) -> FilmGrid:
-    """Grid of a film model with rows on the edges of supply areas; other parameters as for `bearing_grid`."""
+    """Grid of a film model, with rows on the edges of supply areas and a column on the first hole.
+
+    Other parameters as for `bearing_grid`.
+    """
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
     return bearing_grid(
@@ -220,7 +223,7 @@ def film_grid(
         film.n_theta,
         film.n_z,
         stretch=film.stretch,
-        start_angle=start_angle,
+        start_angle=start_angle + column_of_hole(supply, film.n_theta),
         open_ring=open_ring,
         rows=supply_rows(placed(supply, length), radius, length, film.n_z, film.stretch),
     )

@@ -10,6 +10,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.film.supply.areas import placed
 from exudyn_ehd.film.supply.cuts import SupplyMap
+from exudyn_ehd.film.supply.holes import circle, strength, strengths
 from exudyn_ehd.film.supply.rows import supply_rows
 
 RADIUS, LENGTH = 0.025, 0.05
@@ -18,7 +19,7 @@ AREAS = [
     ehd.AxialGroove(angle=-3.1, width_angle=0.4, length=0.03, pressure=1e5),
     ehd.CircumferentialGroove(width=0.01, pressure=2e5),
     ehd.CircumferentialGroove(z=0.012, width=0.006),
-    ehd.Hole(angle=6.2, z=-0.005, diameter=0.012, pressure=1e5),
+    ehd.Hole(angle=6.2, diameter=0.012, pressure=1e5),
     ehd.Pocket(angle=2.0, z=0.01, width_angle=0.5, length=0.01, pressure=3e5),
     ehd.Pocket(angle=2.0, width_angle=0.5, length=0.01, rotating=True),
 ]
@@ -104,6 +105,30 @@ def test_rows_lie_on_the_edges_of_any_areas():
         assert weight @ np.cos(2.0 * rows) == pytest.approx(np.sin(2.0), rel=5e-3)
 
 
+def test_small_holes_feed_as_the_well_model_of_a_square_grid():
+    """Peaceman's equivalent radius, 0.198 of the spacing; the links are as much shorter as the hole is wide."""
+    rows = tuple(float(j) for j in range(-8, 9))
+    for radius in (1e-4, 1e-3, 1e-2):
+        exact = 1.0 / (1.0 + 2.0 / math.pi * math.log(0.198 / radius))
+        hole = circle(rows, radius, 0.0)
+        assert hole.factors(strength(rows, radius, 0.0)) == pytest.approx(exact, rel=5e-3)
+
+
+def test_factors_of_a_hole_follow_its_size_and_place():
+    """Of 60 sizes, and of places between two columns: none is far from the next one's, and the tables agree."""
+    rng = np.random.default_rng(9)
+    rows = (-9.0, -6.0, -3.5, -1.5, 0.0, 1.5, 4.0, 7.0, 10.0)
+    for radius in rng.uniform(0.5, 3.0, 3):
+        places, table = strengths(rows, radius)
+        for offset in rng.uniform(-0.5, 0.5, 4):
+            assert np.interp(offset, places, table) == pytest.approx(strength(rows, radius, offset), rel=0.1)
+    fed = []
+    for radius in np.geomspace(0.02, 0.7, 60):
+        hole = circle(rows, radius, 0.2)
+        fed.append(hole.factors(strength(rows, radius, 0.2)).sum())
+    assert np.all(np.diff(fed) > 0.0)
+
+
 def test_flows_count_a_shared_vertex_once():
     grid = ehd.bearing_grid(RADIUS, LENGTH, 64, 12)
     supply = SupplyMap((ehd.CircumferentialGroove(width=0.01), ehd.AxialGroove(angle=1.0, width_angle=0.5)), grid)
@@ -138,7 +163,7 @@ def _bearing(**options):
             "must not exceed the ambient pressure",
         ),
         ({"end_pressures": ("1", "2")}, "JournalBearing.end_pressures must be 2 finite numbers"),
-        ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001),)}, "n_theta=158 would do"),
+        ({"supply": (ehd.Hole(angle=0.1, z=0.003, diameter=0.001, rotating=True),)}, "n_theta=158 would do"),
         ({"supply": (ehd.Hole(angle=0.1, z=1.0, diameter=0.001),)}, "outside the bearing"),
         ({"supply": (ehd.AxialGroove(angle=0.0, width_angle=0.01, rotating=True),)}, "n_theta=629 would do"),
         ({"supply": (ehd.AxialGroove(angle=0.1, width_angle=0.01),)}, "lies between two columns"),

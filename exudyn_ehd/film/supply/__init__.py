@@ -4,6 +4,7 @@ Module map
 ----------
 areas    what a scene names: AxialGroove, CircumferentialGroove, Hole, Pocket
 rows     rows of the grid on the areas' axial edges
+holes    round holes, down to a source within a cell
 cuts     prescribed vertices, and links that end at an edge between two columns
 checks   what is refused
 """

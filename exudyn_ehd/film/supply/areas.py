@@ -90,7 +90,7 @@ class CircumferentialGroove:
 
 @dataclass(frozen=True, kw_only=True)
 class Hole:
-    """Round hole.
+    """Round hole of any diameter; in the journal of at least a column of the film's grid.
 
     Parameters
     ----------

@@ -20,6 +20,7 @@ def check_supply(
     radius: float,
     length: float,
     n_theta: int,
+    around: bool,
     end_pressures: tuple[float, float] | None,
 ) -> None:
     """Raise `InputError` for areas that the film can't have.
@@ -31,6 +32,8 @@ def check_supply(
         R and L in m.
     n_theta : int
         Columns of the film's grid.
+    around : bool
+        Whether there is pressure flow in theta.
     end_pressures : two floats or None
         Pa; None: without axial flow, where areas reach from end to end.
     """
@@ -45,7 +48,7 @@ def check_supply(
                 f"JournalBearing.supply[{k}]: {area!r} lies outside the bearing, whose z is within +-{0.5 * length:g} "
                 "m; check its position and size."
             )
-        _check_columns(k, area, radius, step)
+        _check_columns(k, area, radius, step, around)
         if end_pressures is not None:
             _check_ends(k, area, length, end_pressures)
     _check_lands(areas, length)
@@ -77,12 +80,14 @@ def _core(area: SupplyArea, radius: float) -> tuple[float, float, float]:
     return radius * half, 0.5 * (high - low), 0.0
 
 
-def _check_columns(k: int, area: SupplyArea, radius: float, step: float) -> None:
+def _check_columns(k: int, area: SupplyArea, radius: float, step: float, around: bool) -> None:
     """Refuse areas that may lie between two columns, and grooves that meet themselves around the journal."""
     if isinstance(area, CircumferentialGroove):
         return
     width = area.diameter / radius if isinstance(area, Hole) else area.width_angle
     low, high = (area.angle - 0.5 * width) / step, (area.angle + 0.5 * width) / step
+    if isinstance(area, Hole) and around and not area.rotating:
+        return  # holes of any size feed the nearest vertex
     between = width < step if area.rotating else math.floor(high + EDGE) < math.ceil(low - EDGE)
     if between:
         raise InputError(

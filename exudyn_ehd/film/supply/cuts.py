@@ -15,10 +15,17 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.supply.areas import EDGE, CircumferentialGroove, Hole, SupplyArea, axial_span, placed
-
-# Shortest link over the columns' distance: rounding of its flow stays below 1e-11.
-SHORTEST = 1e-4
+from exudyn_ehd.film.supply.areas import (
+    EDGE,
+    AxialGroove,
+    CircumferentialGroove,
+    Hole,
+    Pocket,
+    SupplyArea,
+    axial_span,
+    placed,
+)
+from exudyn_ehd.film.supply.holes import SHORTEST, Circle, circle, strength, strengths
 
 
 class SupplyMap:
@@ -29,6 +36,8 @@ class SupplyMap:
     supply : tuple of SupplyArea
     grid : FilmGrid
         Its arrays ``fixed`` and ``weight`` are those of the areas from now on.
+    around : bool
+        Whether there is pressure flow in theta.
 
     Attributes
     ----------
@@ -40,7 +49,8 @@ class SupplyMap:
         Whether an area turns with the journal.
     """
 
-    def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid) -> None:
+    def __init__(self, supply: tuple[SupplyArea, ...], grid: FilmGrid, around: bool = True) -> None:
+        self.around = around
         whole = all(isinstance(area, CircumferentialGroove) for area in supply)
         self.grid = grid if whole else dataclasses.replace(grid, cuts=np.ones((2, *grid.shape)))
         # without axial flow grooves have no ends
@@ -63,15 +73,59 @@ class SupplyMap:
     def _place(self) -> None:
         """Prescribed vertices, cut links and weights at the present spin."""
         g = self.grid
-        share = np.ones((2, *g.shape))
+        share = np.ones(g.shape)
+        holes: list[tuple[Circle, int, float]] = []
         for area, mask in zip(self.supply, self.masks, strict=True):
             mask[:] = False
-            cover(area, g, self.spin if area.rotating else 0.0, mask, share)
+            if isinstance(area, Hole):
+                holes.append(self._hole(area))
+                hole, column, _ = holes[-1]
+                mask[(hole.covered[:, 0] + column) % g.x.size, hole.covered[:, 1]] = True
+            else:
+                cover(area, g, self.spin if area.rotating else 0.0, mask, share)
             mask &= ~self.ends
         covered = np.logical_or.reduce(self.masks)
         np.logical_or(self.ends, covered, out=g.fixed)
         if g.cuts is not None:
-            cut_links(covered, share[0], self.plain_weight, g.cuts, g.weight)
+            cut_links(covered, share, self.plain_weight, g.cuts, g.weight)
+            for hole, column, factor in holes:
+                self._cut_hole(hole, column, factor)
+
+    def _hole(self, area: Hole) -> tuple[Circle, int, float]:
+        """A hole on the grid at the present spin, the column next to its centre, and the factor of its links."""
+        g, step = self.grid, float(self.grid.width_x[0])
+        center = (area.angle + (self.spin if area.rotating else 0.0) - g.x[0]) / step
+        radius, z = 0.5 * area.diameter / (step * g.reference_length), g.z - area.z / g.reference_length
+        rows = tuple(((z - z[np.argmin(np.abs(z))]) / step).tolist())
+        column = round(center)
+        offset, factor = center - column, 1.0
+        if self.around and area.rotating:
+            factor = float(np.interp(offset, *strengths(rows, radius)))
+        elif self.around:
+            factor = strength(rows, radius, offset)
+        return circle(rows, radius, offset), column, factor
+
+    def _cut_hole(self, hole: Circle, column: int, factor: float) -> None:
+        """Links of a hole to the film.
+
+        A vertex with a hole that is smaller than what it feeds like has not the hole's pressure around: integrals take,
+        as the flow does, the mean of its neighbours' for what its links conduct less.
+        """
+        g, n = self.grid, self.grid.x.size
+        assert g.cuts is not None
+        x, z = g.link_x[0] * g.width_z, np.append(g.link_z, 0.0) * g.width_x[0]
+        total = 2.0 * x + z + np.append(0.0, z[:-1])
+        for (axis, i, j), conducts in zip(hole.links.tolist(), hole.factors(factor).tolist(), strict=True):
+            first = (i + column) % n, j
+            last = ((i + column + 1) % n, j) if axis == 0 else (first[0], j + 1)
+            if g.fixed[first] and g.fixed[last]:
+                continue
+            g.cuts[axis][first] *= conducts
+            inner, outer = (first, last) if g.fixed[first] else (last, first)
+            share = max(0.0, 1.0 - conducts) * (x[j] if axis == 0 else z[j]) / total[inner[1]]
+            taken = share * self.plain_weight[inner]
+            g.weight[inner] -= taken
+            g.weight[outer] += taken
 
     def pressures(self) -> np.ndarray:
         """Gauge pressure of every area, Pa."""
@@ -95,13 +149,11 @@ class SupplyMap:
         return out
 
 
-def cover(area: SupplyArea, grid: FilmGrid, spin: float, mask: np.ndarray, share: np.ndarray) -> None:
-    """Mark the vertices inside an area in mask (n, m), edges included, and take the part of the links to their
-    neighbours that is film down in ``share`` (2, n, m), in theta and z."""
-    if isinstance(area, Hole):
-        theta, z = grid.x - spin, grid.z * grid.reference_length
-        mask |= area.covers(theta, z, grid.reference_length)
-        return
+def cover(
+    area: AxialGroove | CircumferentialGroove | Pocket, grid: FilmGrid, spin: float, mask: np.ndarray, share: np.ndarray
+) -> None:
+    """Mark the vertices inside an area in mask (n, m), edges included, and take down in ``share`` (n, m) what part of
+    the links in theta to their neighbours is film."""
     low, high = axial_span(area)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)
     rows = np.ones(grid.z.size, dtype=np.bool_)
@@ -117,7 +169,7 @@ def cover(area: SupplyArea, grid: FilmGrid, spin: float, mask: np.ndarray, share
     mask[inside[:, None], rows] = True
     if inside.size:
         for link, film in (((first - 1) % n, center - half - first + 1), (last % n, last + 1 - center - half)):
-            share[0, link, rows] = np.minimum(share[0, link, rows], film)
+            share[link, rows] = np.minimum(share[link, rows], film)
 
 
 @njit(cache=True)

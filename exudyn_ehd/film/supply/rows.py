@@ -1,4 +1,4 @@
-"""Rows of the film's grid on the axial edges of supply areas.
+"""Rows of the film's grid on the axial edges of supply areas, and a column on a hole.
 
 Circumferential grooves part the film into lands, which share the grid's intervals by their lengths. In a land with
 edges of other areas, every part between two edges gets as many of its intervals as the stretched grid has there; four
@@ -46,6 +46,12 @@ def supply_rows(
     return rows_between([z / radius for z in edges], counts, stretch)
 
 
+def column_of_hole(supply: Sequence[SupplyArea], n_theta: int) -> float:
+    """Angle, less than a column, that brings a column of the grid to the first hole in the housing; 0 without one."""
+    holes = (area for area in supply if isinstance(area, Hole) and not area.rotating)
+    return next((hole.angle % (2.0 * math.pi / n_theta) for hole in holes), 0.0)
+
+
 def groove_spans(supply: Sequence[SupplyArea]) -> list[tuple[float, float]]:
     """Axial extents, m, of the circumferential grooves from end to end of the bearing."""
     return sorted(axial_span(a) for a in supply if isinstance(a, CircumferentialGroove))
@@ -72,11 +78,12 @@ def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stret
     if stretch > 0.0:
         s = np.arcsin(s * math.sin(quarter)) / quarter
     spans = [axial_span(a) for a in supply if not isinstance(a, (CircumferentialGroove, Hole))]
-    counts, least = [], []
+    counts = []
     for k, part in enumerate(0.5 * share * np.diff(s)):
         z = 0.5 * (edges[k] + edges[k + 1])
-        least.append(1 if any(low < z < high for low, high in spans) else LEAST)
-        counts.append(max(least[-1], math.ceil(part - 1e-9)))
+        # of two intervals the pressure beside the area is integrated to third order
+        least = (2 if part > 0.3 else 1) if any(low < z < high for low, high in spans) else LEAST
+        counts.append(max(least, math.ceil(part - 1e-9)))
     while sum(counts) > share + 2.0:
         k = int(np.argmax(counts))
         if counts[k] <= KEPT:

@@ -5,13 +5,18 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
-from exudyn_ehd.film.grid import Directions
+from exudyn_ehd.film.grid import Directions, FilmGrid
 from exudyn_ehd.film.models import film_grid, film_solver
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.film.supply.cuts import SupplyMap
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.joint.solved_film import ContactFields, Evaluations, FilmParts, LimiterFields
+
+
+def _supply_map(bearing: JournalBearing, grid: FilmGrid) -> SupplyMap | None:
+    around = getattr(bearing.film, "circumferential_pressure_flow", True)
+    return SupplyMap(bearing.supply, grid, around) if bearing.supply else None
 
 
 def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) -> FilmParts:
@@ -21,7 +26,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     grid = film_grid(
         bearing.film, R, bearing.length, start_angle=start_angle, open_ring=open_ring, supply=bearing.supply
     )
-    supply = SupplyMap(bearing.supply, grid) if bearing.supply else None
+    supply = _supply_map(bearing, grid)
     grid = grid if supply is None else supply.grid
     liner: NonlinearFilmSolver | None = None
     if effects.liner is not None:
