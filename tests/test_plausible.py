@@ -42,12 +42,14 @@ HANDED_ON = {
     "varied.parameters",
     "parameter_study.parameters",
 }
-# Numbers, but no sizes of a scene: times and angles of a picture or of what has been computed.
+# Numbers, but no sizes of a scene: times and angles of a picture or of what has been computed; what is handed on.
 READING = {
     "LubricatedJoint.plot_bearing.camera", "LubricatedJoint.plot_traces.quantities",
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
+    "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
+    "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
 }  # fmt: skip
 # What the package makes, and hands out to be read.
 RESULTS = {
