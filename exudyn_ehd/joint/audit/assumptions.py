@@ -82,8 +82,12 @@ def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
         return replace(found, advice=advice, remedy=refined(**sizes | {name: wanted}))
     wanted = max(wanted, 48 if name == "n_theta" else 6)
     if value > TOO_FINE * needed and wanted < size:
-        advice = f"finer than the pressure needs: {name}={wanted} would do."
-        return replace(found, unneeded=True, advice=advice, remedy=refined(**sizes | {name: wanted}))
+        coarser = refined(**sizes | {name: wanted})
+        # a flexible bore constricts its film within less than the pressure's peak
+        loss = None if case.bearing.bush is None else case.films.change(coarser)
+        if loss is None or loss.size <= MATTERS:
+            advice = f"finer than the pressure needs: {name}={wanted} would do."
+            return replace(found, unneeded=True, advice=advice, remedy=coarser)
     return found
 
 
