@@ -112,7 +112,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "OnCylinder.radius",
         "add_bore_modes.radius",
     ),
-    "length": ("JournalBearing.length", "HollowCylinder.length", "add_bore_modes.length"),
+    "length": ("JournalBearing.length", "AxialGroove.length", "HollowCylinder.length", "add_bore_modes.length"),
     "grid": (
         "bearing_grid.radius",
         "bearing_grid.length",
@@ -121,7 +121,6 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "slider_grid.reference_length",
     ),
     "part": (
-        "AxialGroove.length",
         "CircumferentialGroove.width",
         "Hole.diameter",
         "Pocket.length",

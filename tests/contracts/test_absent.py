@@ -105,6 +105,10 @@ EFFECTS = {
         ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
     ),
+    "holes": (
+        ("film.supply.cuts", "film.supply.holes"),
+        {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5),)},
+    ),
     "mass conservation": (
         ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),
         {"cavitation": CLOSURES["elrod"]},
@@ -134,7 +138,9 @@ SHARED = {
     "reynolds.stepped_gap",
     "sensitivity.bore_stencil",
     "sensitivity.rigid",
-    "supply",
+    "supply.areas",
+    "supply.checks",
+    "supply.rows",
     "reynolds.link_derivatives",
     "lubricant.temperature_viscosity",
     "heat.options",
