@@ -66,8 +66,10 @@ class FilmGrid:
         Inverse distance between column i and i + 1 (cyclic); 0 where there is no link.
     link_z : (m - 1,) array
         Inverse distance between row j and j + 1.
+    weight_z : (m,) array
+        Integration weights along z.
     weight : (n, m) array
-        Integration weights (area).
+        Integration weights (area), next to the edges of supply areas no product of those in theta and z.
     fixed : (n, m) bool array
         Vertices with prescribed pressure.
     reference_length : float
@@ -84,6 +86,7 @@ class FilmGrid:
     width_z: np.ndarray
     link_x: np.ndarray
     link_z: np.ndarray
+    weight_z: np.ndarray
     weight: np.ndarray
     fixed: np.ndarray
     reference_length: float
@@ -160,6 +163,7 @@ def _tensor_grid(
         width_z=width_z,
         link_x=np.ascontiguousarray(link_x),
         link_z=link_z,
+        weight_z=weight_z,
         weight=np.outer(weight_x, weight_z),
         fixed=np.ascontiguousarray(fixed),
         reference_length=float(reference_length),
@@ -281,6 +285,7 @@ def long_bearing_grid(
         width_z=width_z,
         link_x=1.0 / width_x,
         link_z=np.zeros(n_z - 1),
+        weight_z=width_z,
         weight=np.outer(width_x, width_z),
         fixed=fixed,
         reference_length=float(radius),

@@ -159,7 +159,7 @@ def _around(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, csr_matrix]:
 
 def _along(grid: FilmGrid, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Scaled places (p,) of the points along the bore, the means (m, p) and the points' weights (p,)."""
-    z, area = grid.z, grid.weight[0] / grid.width_x[0]
+    z, area = grid.z, grid.weight_z
     m, half = z.size, 0.5 * float(area.sum())
     # slices that have no vertices on the ends reach up to these
     edges = np.concatenate(([-half], z[1:-1], [half]))
