@@ -72,7 +72,7 @@ def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
     change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     found = replace(finding(effect, indicator, value, None), change=change)
-    if change is not None and change.size > MATTERS:
+    if change is not None and change.found and change.size > MATTERS:
         found = replace(found, matters=True)
     unit = 8 if name == "n_theta" else 2
     wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))

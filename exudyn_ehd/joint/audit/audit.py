@@ -117,7 +117,7 @@ def _row(f: Finding) -> tuple[str, ...]:
     if f.matters and f.on is None:
         verdict = "beyond limit"
     share = "" if f.time_share is None else f"{f.time_share:.0%}"
-    change = "" if f.change is None else f"{f.change.size:.1%}"
+    change = "" if f.change is None else f"{f.change.size:.1%}" if f.change.found else "no film"
     limit = f"{'<' if f.below else '>'} {f.threshold:.3g}"
     return f.effect, _ON[f.on], change, f"{f.value:.3g}", limit, share, verdict, f.indicator
 

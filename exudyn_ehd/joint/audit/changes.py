@@ -43,7 +43,7 @@ class Change:
     load : float
         At the same position or motion; nan if there is no such film.
     minimum_gap, peak_pressure, power_loss : float
-        At the same load.
+        At the same load; nan if no film was found that carries it.
     """
 
     load: float
@@ -52,12 +52,19 @@ class Change:
     power_loss: float
 
     @property
+    def found(self) -> bool:
+        """Whether a film was found that carries the same load."""
+        return not math.isnan(self.minimum_gap)
+
+    @property
     def size(self) -> float:
-        """Largest change at the same load."""
-        return max(abs(self.minimum_gap), abs(self.peak_pressure), abs(self.power_loss))
+        """Largest change at the same load; inf without a film."""
+        return max(abs(self.minimum_gap), abs(self.peak_pressure), abs(self.power_loss)) if self.found else math.inf
 
     def __str__(self) -> str:
         load = "" if math.isnan(self.load) else f"load {self.load:+.1%} at the same position; "
+        if not self.found:
+            return f"{load}no film found that carries the same load"
         rest = f"minimum film thickness {self.minimum_gap:+.1%}, peak {self.peak_pressure:+.1%}"
         return f"{load}{rest}, loss {self.power_loss:+.1%} at the same load"
 
@@ -108,12 +115,14 @@ class Comparison:
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
         # the temperature is held where both have one: what else changes it is of second order
         held = mine.history if other.effects.thermal is not None and self.model.effects.thermal is not None else None
+        if other.flexible and other.bearing.bush is self.model.bearing.bush:
+            other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
         load = _load_at(search, mine.motion[:MOTION_SIZE])
-        moved = _same_load(search, mine.motion[:MOTION_SIZE])
+        moved, share = _same_load(search, mine.motion[:MOTION_SIZE]), load / float(np.hypot(*force)) - 1.0
         if moved is None:
-            return None
-        p, share = _numbers(moved), load / float(np.hypot(*force)) - 1.0
+            return Change(load=share, minimum_gap=math.nan, peak_pressure=math.nan, power_loss=math.nan)
+        p = _numbers(moved)
         gap, peak, loss = (new / old - 1.0 if old > 0.0 else 0.0 for new, old in zip(p, q, strict=True))
         return Change(load=share, minimum_gap=gap, peak_pressure=peak, power_loss=loss)
 

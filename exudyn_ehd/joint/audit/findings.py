@@ -81,14 +81,15 @@ class Finding:
     on : bool or None
         Whether the bearing has it; None for an assumption or a number that can't be switched.
     matters : bool
-        The effect changes something by more than 3 %; where no change was computed, ``value`` beyond ``threshold``.
+        The effect changes something by more than 3 %; where no change was computed or no film was found, ``value``
+        beyond ``threshold``.
     unneeded : bool
-        It takes time although it does not matter.
+        It takes time although it does not matter; never where no film was found without it.
     advice : str
         What to do about it; empty if nothing.
     change : Change or None
-        What switching the effect changes, computed at the audited states; None where ``value`` says plainly that it is
-        nothing, or where the other film was not found.
+        What switching the effect changes, computed at the audited states; not ``found`` where no film carries the same
+        load then, None where ``value`` says plainly that it is nothing, or where the films can't be compared.
     remedy : function or None
         What ``advice`` does to a bearing.
     time_share : float or None
@@ -156,13 +157,15 @@ def finding(
     is off and drops what is on.
     """
     limit = LIMITS[effect] if limit is None else limit
-    if change is None:
+    if change is None or not change.found:
         matters = value < limit.value if limit.below else value > limit.value
-        unneeded = not matters
+        unneeded = not matters and change is None
     else:
         matters, unneeded = change.size > MATTERS, change.size < NOTHING
     unneeded = unneeded and on is True and needless is not None
     advice = mattering if matters and not on else ""
+    if advice and change is not None and not change.found:
+        advice += " No film was found that carries this load then."
     if unneeded and needless:
         advice = needless
     return Finding(

@@ -10,6 +10,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.temperature import ACCELERATED, DEPTH, LARGEST_CHANGE, foreseen, is_settled
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import FilmError, Status
@@ -25,6 +26,8 @@ STEP_HALVINGS = 8
 HEATED_ROUNDS = 60
 TYPICAL_CHANGE = 30.0
 LOAD_TOLERANCE = 1e-10
+# Of a way from small loads: first step and smallest, shares of the load.
+FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.005
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
 
@@ -55,7 +58,8 @@ class LoadSearch:
     """Search for the position in which the steady film of a model carries a load.
 
     Newton's method. Where a temperature follows the position, both are sought together first, `heated`. Where that
-    fails, the temperature settles in every position. The tangent at a held temperature misses what the temperature
+    fails and no film is known yet, the load grows from a quarter of it, `climb`; where this does too, the temperature
+    settles in every position. The tangent at a held temperature misses what the temperature
     adds; Broyden's update of that part, D, from the forces of successive positions replaces it::
 
         (dF/dx + D) step = -(F + load),    D += (dF - (mean of dF/dx + D) step) step^T / step^2.
@@ -73,7 +77,7 @@ class LoadSearch:
 
     def __init__(self, model: BearingModel, force: np.ndarray, where: str, effort: int = LARGEST_EFFORT) -> None:
         self.model, self.force, self.where, self.effort = model, force, where, effort
-        self.size = float(np.hypot(*force))
+        self.size, self.carried = float(np.hypot(*force)), 0.0
         self.count, self.first = 0, model.parts.evaluations.count
         self._history: History | None = None
         self._follows = np.zeros((2, 2))
@@ -89,9 +93,11 @@ class LoadSearch:
         b = self.model.bearing
         tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
         self.first = self.model.parts.evaluations.count
-        start = self._start(self.heated(motion, tolerance))
-        found = self.newton(start, tolerance)
-        if self.residual(found) > tolerance:
+        fresh, place = self._history is None, self.heated(motion, tolerance)
+        if place is motion and fresh and self.model.effects.thermal is not None:
+            place = self.climb(motion, tolerance)
+        found = self.newton(self._start(place), tolerance)
+        if self.residual(found) > tolerance and self.carried == 0.0:
             self._follows = np.zeros((2, 2))
             held_back = 10.0 * self.size / b.radial_clearance
             found = self.newton(self._start(motion), tolerance, LARGEST_CREEP_STEPS, held_back)
@@ -104,7 +110,7 @@ class LoadSearch:
                 f"{np.hypot(*found.motion[:2]) / b.radial_clearance:.4f}. A load this high may need "
                 "asperity=GreenwoodTripp(...) or contact=RegularisedWall(...), or a finer film grid; a supply area in "
                 "the loaded zone or a starved film may carry no such load at any position: look at ehd.steady(...) "
-                f"around there.{_hot(found)}"
+                f"around there.{_hot(found, self.carried)}"
             )
         return found
 
@@ -128,7 +134,7 @@ class LoadSearch:
         for _ in range(HEATED_ROUNDS):
             self.count += 1
             history = History(temperature=T if T.ndim else float(T))
-            reached = self.model.evaluate_steady(place, history)
+            reached = self._near(place, history)
             if reached.film is None or reached.status is not Status.CONVERGED:
                 break
             change, tangent = thermal.steady_temperature(reached.film) - T, reached.steady_tangent()
@@ -154,6 +160,41 @@ class LoadSearch:
             T = T + step[2:].reshape(T.shape) * min(1.0, 4.0 * size / max(float(np.abs(step[2:]).max()), size))
         return motion
 
+    def _near(self, motion: np.ndarray, history: History) -> Evaluation:
+        """The steady film at a motion (10,), if a flexible bore comes to it straight."""
+        if not isinstance(self.model, ElasticBearingModel):
+            return self.model.evaluate_steady(motion, history)
+        self.model.elasticity.straight = True
+        try:
+            return self.model.evaluate_steady(motion, history)
+        finally:
+            self.model.elasticity.straight = False
+
+    def climb(self, motion: np.ndarray, tolerance: float) -> np.ndarray:
+        """Motion (10,) of the largest load up to the whole one, ``carried``, to which films follow from smaller ones.
+
+        Every load starts from where the last two lead, at the last temperature, which is kept. Where heat lets a film
+        carry no more, the steps shorten to nothing.
+        """
+        whole, size, place, motion = self.force, self.size, motion, motion.copy()
+        share, step, self.carried, self._history = 0.0, FIRST_SHARE, 0.0, None
+        motion[:2] = first_guess(self.model.bearing, motion[8], FIRST_SHARE * whole, motion[2:4])
+        rate = np.zeros(2)
+        while share < 1.0 and step > SMALLEST_SHARE and not self._spent():
+            target = min(1.0, share + step)
+            self.force, self.size = target * whole, target * size
+            start = motion.copy()
+            start[:2] += (target - share) * rate
+            found = self.heated(start, tolerance)
+            if found is start:
+                step *= 0.5
+                continue
+            rate = (found[:2] - motion[:2]) / (target - share) if share else rate
+            place = motion = found
+            share, step, self.carried = target, 1.5 * step, self.size
+        self.force, self.size = whole, size
+        return place
+
     def _start(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), or that at a smaller eccentricity if there is none."""
         for _ in range(STEP_HALVINGS):
@@ -162,6 +203,9 @@ class LoadSearch:
             except FilmError:
                 motion = np.concatenate([0.8 * motion[:2], motion[2:]])
         return self.at(motion)
+
+    def _spent(self) -> bool:
+        return self.model.parts.evaluations.count - self.first > self.effort
 
     def residual(self, place: Carried) -> float:
         """Largest component of film force + load, over the load."""
@@ -209,8 +253,7 @@ class LoadSearch:
         for _ in range(most):
             residuals.append(self.residual(place))
             stuck = not resistance and len(residuals) > PATIENCE and residuals[-1] > 0.1 * residuals[-1 - PATIENCE]
-            spent = self.model.parts.evaluations.count - self.first > self.effort
-            if residuals[-1] <= tolerance or stuck or spent or resistance > highest:
+            if residuals[-1] <= tolerance or stuck or self._spent() or resistance > highest:
                 break
             try:
                 slope = resistance * np.eye(2) - place.tangent[:2, :2] - self._follows
@@ -226,14 +269,15 @@ class LoadSearch:
         return place
 
 
-def _hot(place: Carried) -> str:
-    """What the heat has to do with a load that no film carries."""
+def _hot(place: Carried, carried: float) -> str:
+    """What the heat has to do with a load that no film carries, and how much it does."""
     T = place.film.temperature
     if T is None:
         return ""
+    most = f" Followed from smaller loads, the film carries up to {carried:.4g} N." if carried else ""
     return (
-        f" The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film thins "
-        "faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
+        f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
+        "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
         "supply of oil or a housing_conductance raises it."
     )
 

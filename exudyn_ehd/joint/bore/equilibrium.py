@@ -31,8 +31,8 @@ LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE, MOVING_STEPS, MOVING_TOLERANCE = 60,
 # Of a viscous bore's way: slowness at its start and its end, share of q that the motion may leave to Newton's method;
 # trials after which no way is begun or gone on.
 SLOWEST, LARGEST_SLOWNESS, NEAR, LARGEST_EFFORT = 10.0, 1e9, 0.02, 600
-# Trials after which the whole way ends.
-LARGEST_WAY = 3000
+# Trials after which the whole way ends, and a straight one.
+LARGEST_WAY, STRAIGHT_WAY = 3000, 60
 
 
 class Elasticity:
@@ -49,9 +49,12 @@ class Elasticity:
     ----------
     failure : str
         Why the last `settle` found no balance, and a remedy; empty if it did, or if the film is the reason.
+    straight : bool
+        `settle` gives up where Newton's method does not go straight to a balance: for searches that can come nearer.
     """
 
     failure = ""
+    straight = False
 
     def __init__(self, make: Callable[[], np.ndarray]) -> None:
         self._make = make
@@ -143,10 +146,10 @@ def bore_equilibrium(
     they leave a gap, before the undeformed bore. Returns the evaluation or None, the number of Newton trials, and the
     largest part of the place with an equilibrium on the way, with its coordinates (k,).
     """
-    newton = Newton(model, motion, film)
+    newton, most = Newton(model, motion, film), STRAIGHT_WAY if model.elasticity.straight else LARGEST_WAY
     found = newton.solve(start, 1.0, straight=True) if start.any() else None
     reached, part, q, rate = 0.0, 1.0, np.zeros_like(start), np.zeros_like(start)
-    while found is None and part > SMALLEST_PART and newton.trials < LARGEST_WAY:
+    while found is None and part > SMALLEST_PART and newton.trials < most:
         target = min(1.0, reached + part)
         near = newton.settle(q + (target - reached) * rate, target)
         if near is None:
@@ -171,7 +174,7 @@ class Newton(Generic[Result]):
     def settle(self, q: np.ndarray, part: float) -> Result | None:
         """As `solve`: straight, or as a viscous bore comes there from q, or somehow."""
         found = self.solve(q, part, straight=True)
-        if found is None and self.trials < LARGEST_EFFORT:
+        if found is None and self.trials < LARGEST_EFFORT and not self.model.elasticity.straight:
             found = self._come_to_rest(q, part) or self.solve(q, part)
         return found
 

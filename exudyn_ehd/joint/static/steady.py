@@ -113,7 +113,10 @@ class SteadyResult(Film, FilmPictures):
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
         model = build_study_model(self.bearing, start)
-        state = FilmState(self.motion, history_at(model, self.motion, "audit"))
+        near = None if self.temperature is None else History(temperature=self.temperature)
+        if model.flexible:
+            model.evaluate(self.motion, near)  # the search for its shape starts from this film's
+        state = FilmState(self.motion, history_at(model, self.motion, "audit", near))
         return audit_states(model, [state], liner=liner, measure_time=measure_time)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.audit import findings
 from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_share, tilt_loss
 from exudyn_ehd.joint.audit.switches import steel_ring
@@ -118,6 +119,21 @@ def test_supply_asks_for_mass_conservation():
     assert not audit(bearing(supply=(groove,), cavitation=elrod), eps=0.8).unneeded
     flooded = audit(bearing(end_pressures=(1e7, 1e7), cavitation=elrod), eps=0.5)
     assert flooded["mass conservation"].unneeded
+
+
+def test_effects_with_which_no_film_carries_the_load_are_named():
+    # between rigid surfaces no film of Roelands' oil carries a mean pressure beyond 1 / coefficient, 50 MPa
+    film = ehd.steady(bearing(), speed=2000.0, eccentricity_ratio=0.97)
+    assert np.hypot(*film.force[:2]) / 8e-4 > 1e8
+    found = film.audit()
+    check_readable(found)
+    law = found["piezoviscosity"]
+    assert law.matters and not law.change.found and law.change.size == math.inf
+    assert law.advice.endswith("No film was found that carries this load then.")
+    assert "no film" in str(found).split("\n\n")[0] and "no film found that carries the same load" in str(law.change)
+    # an effect without which no film is found is not called needless, however small its indicator
+    without = findings.finding("contact", "", 0.0, True, needless="asperity=None.", change=law.change)
+    assert not without.unneeded and not without.advice
 
 
 # Cases that a cavitated share times a squeeze share called nothing: light and heavy, on the move and at rest.

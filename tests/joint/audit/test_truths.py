@@ -44,9 +44,9 @@ def test_stored_truths_are_those_of_today(number):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("number", [2, 5, 9, 12])
+@pytest.mark.parametrize("number", [row["scene"] for row in truths.read(truths.COMPLETE)[:20]])
 def test_followed_advice_ends_at_the_film_with_everything_on(number, measured):
-    clean, rounds, differences = truths.follow(truths.draw(number))
+    clean, rounds, differences = truths.follow(number)
     assert clean and rounds <= 4
     for name, difference in differences.items():
         measured(f"{name} against everything on", abs(difference), 0.05)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import re
 
 import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.balance.position import LoadSearch
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History
@@ -292,8 +294,19 @@ def test_a_load_at_which_the_friction_of_asperities_heats_the_film_away_says_so(
     rough = ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=1.15e11)
     bearing = dataclasses.replace(bearing, asperity=rough)
     ehd.equilibrium(bearing, speed=600.0, load=(0.0, -1e4))
-    with pytest.raises(ehd.FilmError, match=r"no position found .*The film is at \d+ K there: .*seizes"):
+    with pytest.raises(ehd.FilmError, match=r"no position found .*The film is at \d+ K there: .*seizes") as error:
         ehd.equilibrium(bearing, speed=600.0, load=(0.0, -3e5))
+    most = float(re.search(r"the film carries up to (\S+) N", str(error.value)).group(1))
+    assert 1e4 < most < 3e5 and ehd.equilibrium(bearing, speed=600.0, load=(0.0, -most)).residual < 1e-8
+
+
+def test_loads_that_grow_lead_to_the_film_that_a_search_finds_at_once(make_bearing):
+    bearing = _hot(make_bearing, "one temperature")
+    found = ehd.equilibrium(bearing, speed=600.0, load=(0.0, -2e4)).film
+    search = LoadSearch(build_model(bearing), np.array([0.0, -2e4]), "test")
+    motion = search.climb(np.where(np.arange(10) == 8, 600.0, 0.0), 1e-10)
+    np.testing.assert_allclose(motion[:2], found.motion[:2], rtol=0, atol=1e-8 * bearing.radial_clearance)
+    assert search.carried == search.size == 2e4
 
 
 def test_what_remembers_its_oil_has_its_settled_stiffness_at_rest(make_bearing):
