@@ -20,12 +20,17 @@ from exudyn_ehd.joint.model.build import build_model
 
 RADIUS, CLEARANCE = 0.01, 2e-5
 GRIDS = [(48, 8), (64, 10), (96, 10), (64, 16), (33, 7)]
-SUPPLIES = [
-    (ehd.AxialGroove(angle=1.0, width_angle=0.5, pressure=1e5),),
-    (ehd.Hole(angle=-2.0, diameter=0.9 * RADIUS, pressure=1e5),),
-    (ehd.AxialGroove(angle=0.0, width_angle=0.4), ehd.AxialGroove(angle=math.pi, width_angle=0.4)),
-    (ehd.Pocket(angle=2.0, width_angle=0.6, length=0.8 * RADIUS, pressure=1e5, rotating=True),),
-]
+
+
+def _supplies(length):
+    """Areas that leave a land at the ends of bearings of any length."""
+    size = min(RADIUS, length)
+    return [
+        (ehd.AxialGroove(angle=1.0, width_angle=0.5, pressure=1e5),),
+        (ehd.Hole(angle=-2.0, diameter=0.9 * size, pressure=1e5),),
+        (ehd.AxialGroove(angle=0.0, width_angle=0.4), ehd.AxialGroove(angle=math.pi, width_angle=0.4)),
+        (ehd.Pocket(angle=2.0, width_angle=0.6, length=0.8 * size, pressure=1e5, rotating=True),),
+    ]
 
 
 def _model(rng, length_to_diameter, supplied):
@@ -38,7 +43,7 @@ def _model(rng, length_to_diameter, supplied):
         lubricant=ehd.Lubricant(viscosity=0.04),
         film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
         cavitation=ehd.ElrodAdams(cavity_pressure=cavity),
-        supply=SUPPLIES[rng.integers(len(SUPPLIES))] if supplied else (),
+        supply=_supplies(2.0 * RADIUS * length_to_diameter)[rng.integers(4)] if supplied else (),
     )
     return build_model(bearing)
 

@@ -81,13 +81,13 @@ class Record:
         return self.total / max(self.states, 1)
 
 
-def _supplies(rng, pressure):
+def _supplies(rng, pressure, length):
     groove = ehd.AxialGroove(
         angle=float(rng.uniform(0, 6)), width_angle=float(rng.uniform(0.3, 0.9)), pressure=pressure
     )
     return [
         (groove,),
-        (ehd.Hole(angle=float(rng.uniform(0, 6)), diameter=0.9 * RADIUS, pressure=pressure),),
+        (ehd.Hole(angle=float(rng.uniform(0, 6)), diameter=0.9 * min(RADIUS, length), pressure=pressure),),
         (groove, dataclasses.replace(groove, angle=groove.angle + math.pi)),
         (ehd.Pocket(angle=2.0, width_angle=0.6, length=0.4 * RADIUS, pressure=pressure, rotating=True),),
     ][rng.integers(4)]
@@ -104,7 +104,7 @@ def random_bearing(rng, closure, *, laws=True):
         closure = dataclasses.replace(closure, cavity_pressure=cavity)
     supplied = rng.random() < 0.25 and n_theta >= 48
     if supplied:
-        options["supply"] = _supplies(rng, float(rng.choice([0.0, 1e5])))
+        options["supply"] = _supplies(rng, float(rng.choice([0.0, 1e5])), length)
     elif isinstance(closure, ehd.ElrodAdams) and cavity == 0.0:
         options["end_pressures"] = (1e4, 2e4)
     if rng.random() < 0.2:
