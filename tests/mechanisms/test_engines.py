@@ -26,7 +26,7 @@ def swinging(planar_rotor, law, steps, rho, cycles=3, load=5500.0, closure=ehd.E
         film=ehd.FiniteLength(n_theta=64, n_z=8),
         cavitation=closure(cavity_pressure=-5e4),
         asperity=ehd.GreenwoodTripp(composite_roughness=8e-7, composite_modulus=2e10),
-        supply=(ehd.CircumferentialGroove(width=4e-3, pressure=2e5),),
+        supply=(ehd.CircumferentialGroove(width=5e-4, pressure=2e5),),
     )
     rate, speed = 2.0 * math.pi / CYCLE, 430.0
     rotor = planar_rotor(

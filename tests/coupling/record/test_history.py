@@ -6,7 +6,7 @@ import pytest
 import scenes
 import toy
 
-from exudyn_ehd.coupling import api
+from exudyn_ehd.coupling.record.history import Quantity
 from exudyn_ehd.status import FilmError, InputError, Status
 
 
@@ -240,7 +240,7 @@ def test_plot_sensor_draws(monkeypatch):
     import matplotlib.pyplot as plt
 
     mbs, joint, _ = scene(toy.ToyFilm())
-    sensor = joint.AddSensor(api.Quantity.ECCENTRICITY)
+    sensor = joint.AddSensor(Quantity.ECCENTRICITY)
     mbs.Assemble()
     mbs.SolveDynamic(scenes.settings(0.001, 10))
     monkeypatch.setattr(plt, "show", lambda *args, **kwargs: None)
@@ -309,7 +309,7 @@ def test_two_joints_keep_records_of_their_own():
 
 def test_sensor_agrees_with_the_record():
     mbs, joint, _ = scene(toy.ToyFilm())
-    sensors = {q: joint.AddSensor(q) for q in api.Quantity}
+    sensors = {q: joint.AddSensor(q) for q in Quantity}
     mbs.Assemble()
     settings = scenes.settings(0.001, 10)
     settings.solution.sensors.writePeriod = 1e-12

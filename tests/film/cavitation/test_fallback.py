@@ -18,6 +18,7 @@ class _Misled:
     cavity_shear = 1.0
     conserves_mass = False
     clips = False
+    line_in_cells = False
     refused: list = dataclasses.field(default_factory=list)
 
     def solve(self, system, work):
