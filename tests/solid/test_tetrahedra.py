@@ -19,6 +19,9 @@ from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff, Tota
 from exudyn_ehd.status import InputError
 from tests.solid_tetrahedra import tet_mesh
 
+# kernels of an element are compiled for it alone, which takes longer than all these tests
+pytestmark = pytest.mark.slow
+
 STEEL = SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
 SOFT = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
 RUBBER = NeoHooke(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
@@ -83,7 +86,6 @@ def test_tangent_is_symmetric_and_the_derivative_of_the_force(rule, material):
     assert "has turned inside out" in solid.inversion(crushed)
 
 
-@pytest.mark.slow
 def test_serial_and_parallel_kernels_agree_to_rounding():
     u, v = np.random.default_rng(10).standard_normal((2, *SMALL.nodes.shape)) * 0.001
     results = []

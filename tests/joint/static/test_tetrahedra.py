@@ -7,6 +7,9 @@ import pytest
 import exudyn_ehd as ehd
 from tests.solid_tetrahedra import tet_mesh
 
+# kernels of an element are compiled for it alone, which takes longer than these tests
+pytestmark = pytest.mark.slow
+
 POLYMER = ehd.SaintVenantKirchhoff(youngs_modulus=5e9, poisson_ratio=0.3, density=1400.0)
 CYLINDER = ehd.HollowCylinder(inner_radius=0.03, thickness=0.01, length=0.04, axial=4, radial=2, circumferential=32)
 COARSE = dataclasses.replace(CYLINDER, axial=2, radial=1, circumferential=20)
@@ -16,8 +19,8 @@ COARSE = dataclasses.replace(CYLINDER, axial=2, radial=1, circumferential=20)
     ("kind", "cylinder", "options"),
     [
         (ehd.ModalBush, COARSE, {"tolerance": 0.1}),
-        pytest.param(ehd.ModalBush, CYLINDER, {}, marks=pytest.mark.slow),
-        pytest.param(ehd.ANCFBush, CYLINDER, {}, marks=pytest.mark.slow),
+        (ehd.ModalBush, CYLINDER, {}),
+        (ehd.ANCFBush, CYLINDER, {}),
     ],
     ids=["modal, coarse", "modal", "nodal"],
 )
