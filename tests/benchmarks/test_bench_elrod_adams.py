@@ -78,7 +78,7 @@ def test_steady_cold(benchmark):
 
 @pytest.mark.parametrize("supplied", [False, True], ids=["plain", "two grooves"])
 def test_supply(benchmark, supplied):
-    """Swift-Stieber with tangent; two axial grooves cut the ring and make it cheaper."""
+    """Swift-Stieber with tangent; two axial grooves cut the ring, with more rows beside them."""
     grooves = tuple(ehd.AxialGroove(angle=a, width_angle=0.35) for a in (0.0, np.pi))
     model = _model(96, 10, ehd.SwiftStieber(), supply=grooves if supplied else ())
     state = {"k": 0}
