@@ -65,21 +65,26 @@ def run(bush, end, steps, radius=0.9, **options):
 
 @pytest.mark.slow
 def test_slow_load_finds_the_quasi_static_bush():
-    """The journal's path differs by the square of the load's frequency over the bush's: in proportion to the
-    density."""
-    end, steps = 4e-3, 80
+    """The journal's path differs by the square of the load's frequency over the bush's: in proportion to the density.
+
+    Besides by what the modes of vibrations add to the compliance, which a bush of hardly any mass has too.
+    """
+    end, steps = 3e-3, 60
     # the start's transient has gone by then
     reference = run(STATIC, end, steps, 0.4).joint.history
-    late = reference.time > 2.5e-3
-    difference = []
-    for density in (7800.0, 31200.0):
+    late = reference.time > 2e-3
+    densities, motion = np.array([78.0, 7800.0, 31200.0]), []
+    for density in densities:
         history = run(soft(DYNAMIC, 2.1e11, density), end, steps, 0.4).joint.history
-        difference.append(np.abs(history.motion - reference.motion)[late, :2].max() / CLEARANCE)
-        # what the modes of vibrations add to the compliance
-        assert np.allclose(history.peak_pressure[late], reference.peak_pressure[late], rtol=3e-4)
+        motion.append(history.motion[late, :2] / CLEARANCE)
+        assert np.allclose(history.peak_pressure[late], reference.peak_pressure[late], rtol=1e-4)
+    light, *heavy = motion
+    quasi_static = reference.motion[late, :2] / CLEARANCE
+    assert np.abs(light - quasi_static).max() < 1e-5
     # (314 rad/s over 2 pi 43 kHz)^2 = 1.3e-6, of a path that film and journal's inertia amplify
-    assert difference[0] < 2e-5
-    assert difference[1] / difference[0] == pytest.approx(4.0, rel=0.1)
+    assert np.abs(heavy[0] - quasi_static).max() < 2e-5
+    by_mass = [np.abs(path - light).max() for path in heavy] / (densities[1:] - densities[0])
+    assert by_mass[1] / by_mass[0] == pytest.approx(1.0, rel=0.1)
 
 
 @pytest.mark.slow
