@@ -128,10 +128,11 @@ def CreateLubricatedJoint(
         Name of the joint, used in messages too; by default "lubricated joint" and the number of its object.
     itemNumbers : sequence of two
         Housing, journal: each a body or ground (ObjectIndex: rigid bodies, elements of ANCF beams, geometrically exact
-        beams and cables, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables) or a rigid marker
-        (MarkerIndex: on any of these, on a link of a kinematic tree, on a superelement). Beams are joined where
-        ``position`` lies along the element. A cable turns with its slope; it has no roll: spatial ones take joints
-        along the cable, without spin of their own, and across it, for motion in the plane normal to the axis.
+        beams and cables, mass points, Mass1D, RotationalMass1D), a node (NodeIndex: of rigid bodies, beams, cables,
+        points) or a rigid marker (MarkerIndex: on any of these, on a link of a kinematic tree, on a superelement).
+        Beams are joined where ``position`` lies along the element. A cable turns with its slope; it has no roll:
+        spatial ones take joints along the cable, without spin of their own, and across it, for motion in the plane
+        normal to the axis. A mass point never turns, as a slider in its guide, which takes the moments of the film.
     position : (3,) [m]
         Mid-plane point of the bearing axis in the reference configuration, global, or in the housing's frame with
         ``useGlobalFrame=False``; [] if a marker is given, which sets it. With two markers each sets its own side.
@@ -301,9 +302,10 @@ def attach(
     if not any(isinstance(side, MarkerSide) for side in sides):
         yields = functools.partial(_yields, model, sides)
         check_start(mbs, model.bearing, (housing, sides[0]), (journal, sides[1]), yields)
-    # planar bodies can't move axially or tilt: the constraint would be empty, and singular
+    # planar bodies can't move axially or tilt, nor points turn: the constraint would be empty, and singular
     flat = all(item.planar or item.kind == rigid_nodes.GROUND for item in (housing, journal))
-    kept = {"axial": isinstance(axial, Held), "tilt": isinstance(tilt, Held)}
+    turns = not all(item.kind in (rigid_nodes.GROUND, *rigid_nodes.POINTS) for item in (housing, journal))
+    kept = {"axial": isinstance(axial, Held) and not flat, "tilt": isinstance(tilt, Held) and turns and not flat}
     element = FilmElement(model, *sides, name)
     nodes = [node for side in sides for node in side.nodes]
     more: dict[str, object] = {}
@@ -328,8 +330,7 @@ def attach(
             **more,
         )
     )
-    held = any(kept.values()) and not flat
-    constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if held else None
+    constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
     element.presence = Presence(mbs, name, element, number, sides)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))
     register_joint(mbs, make)

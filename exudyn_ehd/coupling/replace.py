@@ -18,6 +18,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
 from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex
 from exudyn_ehd.coupling.handle import LubricatedJoint
+from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
 from exudyn_ehd.status import InputError, require_type
 
@@ -162,7 +163,7 @@ def _turns(joint: Data) -> bool:
 def _freedom(joint: Data, where: str) -> tuple[int, bool]:
     """Axis of the free rotation in the joint's frame, and whether the joint holds the journal along it."""
     if joint["objectType"] != "JointGeneric":
-        return 2, True
+        return 2, joint["objectType"] == "JointRevoluteZ"
     if joint["offsetUserFunction"] != 0 or joint["offsetUserFunction_t"] != 0:
         raise InputError(f"{where} has an offset function, which moves the joint; a film can't follow it.")
     if np.any(joint["offsetUserFunctionParameters"]):
@@ -187,15 +188,15 @@ def _side(mbs: exu.MainSystem, joint: Data, place: int, where: str) -> tuple[Ind
     number = MarkerIndex(int(joint["markerNumbers"][place]))
     data = mbs.GetMarker(number)
     if joint["objectType"] == "JointRevolute2D":
-        # such joints take positions; a film takes frames
+        # such joints take positions; a film takes frames, or points that don't turn
         show = {"show": False}
-        if data["markerType"] == "BodyPosition":
+        if data["markerType"] == "BodyPosition" and mbs.GetObject(data["bodyNumber"])["objectType"] not in MASS_POINTS:
             number = mbs.AddMarker(
                 eii.MarkerBodyRigid(
                     bodyNumber=data["bodyNumber"], localPosition=data["localPosition"], visualization=show
                 )
             )
-        elif data["markerType"] == "NodePosition":
+        elif data["markerType"] == "NodePosition" and mbs.GetNode(data["nodeNumber"])["nodeType"] not in POINT_KINDS:
             number = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=data["nodeNumber"], visualization=show))
         marker_item(mbs, f"{where}, markerNumbers[{place}]", number)
         return number, np.eye(3)

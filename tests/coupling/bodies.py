@@ -153,6 +153,34 @@ def wheel(mbs):
     return Body(body, [0.15, 0.2, 0.0], off_centre, False, (node,))
 
 
+def mass_point(planar, item="body"):
+    """``item``: body, node, or marker beside the body's centre, with which it never turns."""
+
+    def make(mbs):
+        body = mbs.CreateMassPoint(referencePosition=[0.3, 0.1, 0.0], mass=2.0, create2D=planar)
+        node = exu.NodeIndex(int(mbs.GetObject(body)["nodeNumber"]))
+        _load(mbs, node)
+        if item == "marker":
+            beside = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=body, localPosition=[0.0, -0.1, 0.0]))
+            return Body(beside, None, None, planar, (node,))
+        return Body(body if item == "body" else node, [0.3, 0.0, 0.0], None, planar, (node,))
+
+    return make
+
+
+def slider(mbs):
+    node = mbs.AddNode(eii.Node1D(referenceCoordinates=[0.1]))
+    turn = scenes.rotation([0.3, -0.2, 0.5])
+    body = mbs.AddObject(
+        eii.ObjectMass1D(nodeNumber=node, mass=2.0, referencePosition=[0.1, 0.2, 0.0], referenceRotation=turn)
+    )
+    marker = mbs.AddMarker(eii.MarkerNodeCoordinate(nodeNumber=node, coordinate=0))
+    mbs.AddLoad(eii.LoadCoordinate(markerNumber=marker, load=0.5))
+    off_centre = lambda: mbs.AddMarker(eii.MarkerBodyRigid(bodyNumber=body, localPosition=[0.05, 0, 0]))  # noqa: E731
+    place = np.array([0.1, 0.2, 0.0]) + turn @ [0.15, 0.0, 0.0]
+    return Body(body, place.tolist(), off_centre, False, (node,))
+
+
 def tree(mbs, parents=(-1, 0, 1)):
     """Three links; the joint is on the last one."""
     joints = exu.JointType
@@ -246,6 +274,7 @@ AGAINST_CONNECTOR = {
     "exact beam node EP": exact_beam("EP", "node"),
     "exact beam node Rxyz": exact_beam("Rxyz", "node"),
     "wheel": wheel,
+    "slider": slider,
     "tree": tree,
     "reduced FE body EP": reduced_ring(),
     "reduced FE body Rxyz": reduced_ring("Rxyz"),
@@ -256,6 +285,11 @@ AGAINST_CONNECTOR = {
 # Geometrically exact beams on RotVec nodes are left out: Exudyn's own model of them needs a hundred Newton steps per
 # time step here.
 JACOBIANS = AGAINST_CONNECTOR | {
+    "mass point": mass_point(False),
+    "mass point node": mass_point(False, "node"),
+    "mass point marker": mass_point(False, "marker"),
+    "mass point 2D": mass_point(True),
+    "mass point 2D marker": mass_point(True, "marker"),
     "exact beam node RotVec": exact_beam("RotVec", "node"),
     "cable 3D element": cable(3),
     "cable 3D node": cable(3, "node"),

@@ -9,6 +9,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.resolve import body_of_node
+from exudyn_ehd.coupling.kinematics.rigid_nodes import POINTS
 from exudyn_ehd.status import InputError
 
 _WHERE = "CreateLubricatedJoint"
@@ -45,6 +46,11 @@ def hold(
             markers.append(item.marker)
             turns.append(item.rotation.T @ rotation)
             continue
+        if axial and item.kind in POINTS:
+            raise InputError(
+                f"{_WHERE}: axial=Held() can't hold a mass point, which is the {label}; use axial=Free(), and "
+                "constrain the point's own coordinates."
+            )
         if item is journal:
             point = point - rotation[:, 2] * axial_offset
         transform = np.eye(4)
@@ -68,8 +74,8 @@ def hold(
 
 def _rigid_marker(mbs: exu.MainSystem, name: str, item: Item, transform: np.ndarray, asked: str) -> Index:
     """Marker at ``transform`` (4, 4) in the item's node frame, or in global space for ground."""
-    if item.node is None:
-        # a ground object of our own at the origin holds the marker
+    if item.node is None or item.kind in POINTS:
+        # a ground object of our own at the origin holds the marker; a point turns as little
         body = mbs.AddObject(eii.ObjectGround(name=name, visualization=eii.VObjectGround(show=False)))
     else:
         body = body_of_node(mbs, item.node)

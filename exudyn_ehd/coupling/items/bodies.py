@@ -7,7 +7,7 @@ import dataclasses
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
+from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
 from exudyn_ehd.coupling.items.item import Item
@@ -21,24 +21,30 @@ NODE_KINDS = {
     "RigidBodyRotVecLG": rigid_nodes.ROTATION_VECTOR,
     "RigidBody2D": rigid_nodes.PLANAR,
 }
+POINT_KINDS = {"Point": rigid_nodes.POINT, "Point2D": rigid_nodes.PLANAR_POINT, "PointGround": rigid_nodes.GROUND}
+MASS_POINTS = ("MassPoint", "MassPoint2D")
 _MESH_HINT = "give MarkerSuperElementRigid on nodes of its mesh"
 
 
 def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
-    """Node of a rigid body, a beam or a cable."""
+    """Node of a rigid body, a beam, a cable or a mass point."""
     data = mbs.GetNode(node)
     if data["nodeType"] in SLOPE_NODES:
         return cable_item(mbs, where, (node,), SLOPE_NODES[data["nodeType"]], None)
     if data["nodeType"] == "PointSlope23":
         return _slope_pair_item(mbs, where, node)
-    kind = NODE_KINDS.get(data["nodeType"])
+    kind = (NODE_KINDS | POINT_KINDS).get(data["nodeType"])
     if kind is None:
         raise InputError(
-            f"{where}: a node of type {data['nodeType']} has no rotation of its own; give a node of a rigid body, a "
-            "beam or a cable, or a rigid marker on the flexible body."
+            f"{where}: a node of type {data['nodeType']} has no rotation of its own and is no mass point; give a node "
+            "of a rigid body, a beam or a cable, a mass point, or a rigid marker on the flexible body."
         )
     reference = np.array(data["referenceCoordinates"], dtype=float)
-    nt = 2 if kind == rigid_nodes.PLANAR else 3
+    if kind == rigid_nodes.GROUND:
+        return Item(position=reference, rotation=np.eye(3), is_marker=False, kind=kind)
+    if data["nodeType"] in POINT_KINDS:
+        _require_point(mbs, where, node)
+    nt = rigid_nodes.translations(kind)
     position = np.zeros(3)
     position[:nt] = reference[:nt]
     rotation, _ = rigid_nodes.node_rotation(kind, reference[nt:])
@@ -47,7 +53,7 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
         rotation=rotation,
         is_marker=False,
         kind=kind,
-        planar=kind == rigid_nodes.PLANAR,
+        planar=nt == 2,
         node=node,
         nodes=(node,),
         node_position=position,
@@ -56,6 +62,20 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
         initial_coordinates=np.array(data["initialCoordinates"], dtype=float),
         initial_velocities=np.array(data["initialVelocities"], dtype=float),
     )
+
+
+def _require_point(mbs: exu.MainSystem, where: str, node: Index) -> None:
+    """Refuse a node without rotation of something that turns, as a mesh's is."""
+    owners = []
+    for i in range(mbs.systemData.NumberOfObjects()):
+        data = mbs.GetObject(ObjectIndex(i))
+        if any(int(n) == int(node) for n in data.get("nodeNumbers", [data.get("nodeNumber", -1)])):
+            owners.append((data["objectType"], f"object {i} '{data['name']}' ({data['objectType']})"))
+    if owners and not any(kind in MASS_POINTS for kind, _ in owners):
+        raise InputError(
+            f"{where}: node {int(node)} has no rotation of its own and is one of {owners[0][1]}, which may turn; "
+            f"{_MESH_HINT}."
+        )
 
 
 def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
@@ -69,14 +89,14 @@ def body_item(mbs: exu.MainSystem, where: str, body: Index) -> Item:
             is_marker=False,
             kind=rigid_nodes.GROUND,
         )
-    if kind in ("RigidBody", "RigidBody2D"):
+    if kind in ("RigidBody", "RigidBody2D", *MASS_POINTS):
         return node_item(mbs, where, NodeIndex(int(data["nodeNumber"])))
     nodes = beams.element_nodes(data) if "nodeNumbers" in data or "nodeNumber" in data else ()
     if kind in CABLES:
         return cable_item(mbs, where, nodes, CABLES[kind], float(data["length"]))
     if kind in EXACT_BEAMS:
         return beam_item(mbs, where, nodes, float(data["length"]))
-    if kind in ("ObjectANCFBeam", "RotationalMass1D"):
+    if kind in ("ObjectANCFBeam", "RotationalMass1D", "Mass1D"):
         position, rotation = beams.body_frame(mbs, body, np.zeros(3))
         return Item(
             position=position,

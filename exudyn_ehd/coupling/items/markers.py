@@ -11,7 +11,15 @@ import numpy as np
 from exudyn_ehd.coupling.contract import Data, Index, NodeIndex, Side
 from exudyn_ehd.coupling.items import beams
 from exudyn_ehd.coupling.items.beams import CABLES, EXACT_BEAMS, SLOPE_NODES
-from exudyn_ehd.coupling.items.bodies import NODE_KINDS, beam_item, body_item, cable_item, node_item
+from exudyn_ehd.coupling.items.bodies import (
+    MASS_POINTS,
+    NODE_KINDS,
+    POINT_KINDS,
+    beam_item,
+    body_item,
+    cable_item,
+    node_item,
+)
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.meshes import mesh_item
 from exudyn_ehd.coupling.kinematics.sides import FloatingSide, MarkerSide, NodeSide, TreeSide
@@ -21,7 +29,7 @@ _RIGID_MARKERS = ("BodyRigid", "NodeRigid", "SuperElementRigid", "KinematicTreeR
 
 
 def marker_item(mbs: exu.MainSystem, where: str, marker: Index) -> Item:
-    """Rigid marker, or marker of a position on a cable."""
+    """Rigid marker, or marker of a position on a cable or a mass point."""
     data = mbs.GetMarker(marker)
     item = _known_marker_item(mbs, where, data)
     if item is not None:
@@ -60,6 +68,8 @@ def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | No
             return cable_item(mbs, where, (node,), SLOPE_NODES[node_type], None, 0.0)
         if kind == "NodeRigid" and node_type in NODE_KINDS:
             return _transformed(node_item(mbs, where, node), data)
+        if node_type in POINT_KINDS:
+            return node_item(mbs, where, node)
     if kind in ("BodyRigid", "BodyPosition"):
         body = mbs.GetObject(data["bodyNumber"])
         if body["objectType"] in CABLES:
@@ -80,6 +90,9 @@ def _known_marker_item(mbs: exu.MainSystem, where: str, data: Data) -> Item | No
             return beam_item(mbs, where, beams.element_nodes(body), float(body["length"]), np.array(data["localHT"]))
         if kind == "BodyRigid" and body["objectType"] in ("Ground", "RigidBody", "RigidBody2D"):
             return _transformed(body_item(mbs, where, data["bodyNumber"]), data)
+        if body["objectType"] in MASS_POINTS:
+            item = body_item(mbs, where, data["bodyNumber"])
+            return dataclasses.replace(item, position=item.position + np.array(data["localPosition"]))
     return None
 
 

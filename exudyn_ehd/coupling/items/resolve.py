@@ -5,7 +5,7 @@ from __future__ import annotations
 import exudyn as exu
 
 from exudyn_ehd.coupling.contract import Index, MarkerIndex, NodeIndex, ObjectIndex
-from exudyn_ehd.coupling.items.bodies import body_item, node_item
+from exudyn_ehd.coupling.items.bodies import MASS_POINTS, body_item, node_item
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.markers import marker_item
 from exudyn_ehd.status import InputError
@@ -38,16 +38,16 @@ def resolve(mbs: exu.MainSystem, where: str, number: object) -> Item:
     except exu.ExudynError as error:
         raise InputError(f"{where} is not an item of this system: {number!r} ({error}).") from None
     raise InputError(
-        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam or cable node) or a "
+        f"{where} must be an ObjectIndex (body or ground), a NodeIndex (rigid-body, beam, cable or point node) or a "
         f"MarkerIndex (rigid marker), got {number!r}; pass what AddObject, AddNode, AddMarker or mbs.Create... "
         "returned."
     )
 
 
 def body_of_node(mbs: exu.MainSystem, node: Index) -> Index | None:
-    """The rigid body that moves ``node``, or None if there is none yet."""
+    """The rigid body or mass point that moves ``node``, or None if there is none yet."""
     for i in range(mbs.systemData.NumberOfObjects()):
         body = mbs.GetObject(i)
-        if body["objectType"] in ("RigidBody", "RigidBody2D") and int(body["nodeNumber"]) == int(node):
+        if body["objectType"] in ("RigidBody", "RigidBody2D", *MASS_POINTS) and int(body["nodeNumber"]) == int(node):
             return ObjectIndex(i)
     return None

@@ -22,11 +22,26 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR = range(5)
-"""How a node turns; GROUND has no coordinates."""
+GROUND, EULER_PARAMETERS, TAIT_BRYAN, ROTATION_VECTOR, PLANAR, POINT, PLANAR_POINT = range(7)
+"""How a node turns; GROUND has no coordinates, points move without turning."""
+POINTS = (POINT, PLANAR_POINT)
 
-COORDINATES = {GROUND: 0, EULER_PARAMETERS: 7, TAIT_BRYAN: 6, ROTATION_VECTOR: 6, PLANAR: 3}
+COORDINATES = {
+    GROUND: 0,
+    EULER_PARAMETERS: 7,
+    TAIT_BRYAN: 6,
+    ROTATION_VECTOR: 6,
+    PLANAR: 3,
+    POINT: 3,
+    PLANAR_POINT: 2,
+}
 """Number of coordinates of each kind."""
+
+
+@njit(cache=True)
+def translations(kind):
+    """Number of coordinates of the position, which are the first of a node that moves."""
+    return 2 if kind in (PLANAR, PLANAR_POINT) else 3
 
 
 @njit(cache=True)
@@ -133,6 +148,8 @@ def node_rotation(kind, theta):
         a = _rotation_vector(theta)
         return a, a.copy()
     a = np.eye(3)
+    if kind != PLANAR:
+        return a, np.zeros((3, 0))
     jr = np.zeros((3, 1))
     jr[2, 0] = 1.0
     a[0, 0], a[0, 1] = np.cos(theta[0]), -np.sin(theta[0])
@@ -218,7 +235,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     jac_out : ndarray (4, 3, n)
         Entries 0 and 1 are written.
     """
-    nt = 2 if kind == PLANAR else 3
+    nt = translations(kind)
     a, jr = node_rotation(kind, q[nt:] + reference[nt:])
     s = times(a, rho)
     omega = np.zeros(3)
@@ -246,7 +263,7 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
 @njit(cache=True)
 def node_variation(kind, q, q_t, reference, rho, jac_out):
     """Fill Vq and Wq of ``jac_out`` (4, 3, n), whose Jr must be current: variation of v and omega at fixed rates."""
-    nt = 2 if kind == PLANAR else 3
+    nt = translations(kind)
     theta = q[nt:] + reference[nt:]
     a, jr = node_rotation(kind, theta)
     s = times(a, rho)
@@ -264,7 +281,7 @@ def node_variation(kind, q, q_t, reference, rho, jac_out):
 @njit(cache=True)
 def node_geometric(kind, q, reference, rho, force, moment, geo_out):
     """Geometric term d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment at the marker."""
-    nt = 2 if kind == PLANAR else 3
+    nt = translations(kind)
     theta = q[nt:] + reference[nt:]
     a, jr = node_rotation(kind, theta)
     s = times(a, rho)

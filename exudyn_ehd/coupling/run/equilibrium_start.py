@@ -56,7 +56,7 @@ def place(
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(_INITIAL), dtype=float)
     rates = np.array(mbs.systemData.GetODE2Coordinates_t(_INITIAL), dtype=float)
     places = np.array(mbs.systemData.GetNodeLTGODE2(int(journal.nodes[0])), dtype=int)
-    size = 2 if journal.kind == rigid_nodes.PLANAR else 3
+    size = rigid_nodes.translations(journal.kind)
     coordinates[places[:size]] += (housing[:, :2] @ (result.position - motion[:2]))[:size]
     # the journal's axis keeps its place in the bearing: what it moved against it is taken off its velocity
     rates[places[:size]] -= (housing[:, :2] @ motion[4:6])[:size]
