@@ -16,7 +16,7 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
-from exudyn_ehd.coupling.record.sensors import add_sensor
+from exudyn_ehd.coupling.record.sensors import add_sensor, reader
 from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number
@@ -229,14 +229,25 @@ class LubricatedJoint(JointResults):
         return audit_record(self.bearing, record, liner=liner, measure_time=measure_time)
 
     def AddSensor(
-        self, quantity: Quantity | str, *, fileName: str = "", name: str = "", writeToFile: bool | None = None
+        self,
+        quantity: Quantity | exu.OutputVariableType | str,
+        *,
+        fileName: str = "",
+        name: str = "",
+        writeToFile: bool | None = None,
     ) -> Index:
         """Add an Exudyn sensor of one quantity, e.g. for ``mbs.PlotSensor`` and ``mbs.GetSensorStoredData``.
 
         Parameters
         ----------
-        quantity : Quantity or str
-            What to record, by its name in `JointHistory` too; vectors are in the joint frame, loads act on the journal.
+        quantity : Quantity, exudyn.OutputVariableType or str
+            What to record. Of the film, by its name in `JointHistory` too; vectors are in the joint frame, loads act on
+            the journal. Or what Exudyn's joints give, as of one with the markers [housing, journal], of film and
+            constraint together: ForceLocal, TorqueLocal, DisplacementLocal, VelocityLocal, Rotation (Tait-Bryan
+            angles), AngularVelocityLocal in the housing's joint frame, Force, Torque, Displacement, AngularVelocity
+            global, Position and Velocity of the housing's joint point, HomogeneousTransformation,
+            HomogeneousTransformationLocal. Loads are then those that the journal hands on to the housing, torques are
+            about the bearing's centre.
         fileName : str
             File to write to, as in Exudyn's sensors.
         name : str
@@ -248,14 +259,7 @@ class LubricatedJoint(JointResults):
         -------
         exudyn.SensorIndex
         """
-        names = [known.value for known in Quantity]
-        if not isinstance(quantity, Quantity) and quantity not in names:
-            raise InputError(
-                f"LubricatedJoint.AddSensor: quantity must be a member of Quantity or its name, one of "
-                f"{', '.join(names)}; got {quantity!r}."
-            )
-        quantity = Quantity(quantity)
+        title, read = reader(self.element, self.constraintNumber, quantity)
         write = bool(fileName) if writeToFile is None else writeToFile
         self.element.require_items(self.mbs)
-        label = name or f"{self.name} {quantity.value}"
-        return add_sensor(self.mbs, self.element, quantity, label, fileName, write)
+        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", fileName, write)

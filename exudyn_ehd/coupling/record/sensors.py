@@ -1,29 +1,130 @@
-"""Exudyn sensors that read a joint."""
+"""Exudyn sensors that read a joint: quantities of its film, and what Exudyn's own joints give.
+
+The latter are those of a joint whose first marker is on the housing and whose second is on the journal: what is local
+is in the housing's joint frame A0, loads are those that the journal hands on to the housing (minus those on the
+journal), of film and constraint together. Torques are vectors about the bearing's centre, as Exudyn's spring-dampers
+have them; ``TorqueLocal`` of its ideal joints holds multipliers, of ``CreateRevoluteJoint`` (-M_y, M_x).
+"""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
+from exudyn.rigidBodyUtilities import RotationMatrix2RotXYZ
 
 from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.record.element import Element
-from exudyn_ehd.coupling.record.history import Quantity, column
+from exudyn_ehd.coupling.record.history import FORCE, Quantity, column
+from exudyn_ehd.status import InputError
 
 _SIZE = {Quantity.MOTION: 10, Quantity.ECCENTRICITY: 2, Quantity.FORCE: 3, Quantity.MOMENT: 3}
 
 
+class _State(NamedTuple):
+    """Frames (3, 6) of housing and journal (see `kinematics`), local force and torque (3,) on the housing."""
+
+    housing: np.ndarray
+    journal: np.ndarray
+    force: np.ndarray
+    torque: np.ndarray
+
+    def local(self, column: int) -> np.ndarray:
+        """Difference of a column of the frames, in the housing's."""
+        return self.housing[:, :3].T @ (self.journal[:, column] - self.housing[:, column])
+
+    def turn(self) -> np.ndarray:
+        """Rotation (3, 3) of the journal against the housing."""
+        return self.housing[:, :3].T @ self.journal[:, :3]
+
+
+def _transformation(rotation: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """The 16 components of a homogeneous transformation, row by row."""
+    return np.vstack([np.column_stack([rotation, place]), [0.0, 0.0, 0.0, 1.0]]).ravel()
+
+
+OUTPUTS: dict[str, Callable[[_State], np.ndarray]] = {
+    "Position": lambda s: s.housing[:, 3],
+    "Velocity": lambda s: s.housing[:, 4],
+    "HomogeneousTransformation": lambda s: _transformation(s.housing[:, :3], s.housing[:, 3]),
+    "HomogeneousTransformationLocal": lambda s: _transformation(s.turn(), s.local(3)),
+    "Displacement": lambda s: s.journal[:, 3] - s.housing[:, 3],
+    "DisplacementLocal": lambda s: s.local(3),
+    "VelocityLocal": lambda s: s.local(4),
+    "Rotation": lambda s: RotationMatrix2RotXYZ(s.turn()),
+    "AngularVelocity": lambda s: s.journal[:, 5] - s.housing[:, 5],
+    "AngularVelocityLocal": lambda s: s.local(5),
+    "Force": lambda s: s.housing[:, :3] @ s.force,
+    "ForceLocal": lambda s: s.force,
+    "Torque": lambda s: s.housing[:, :3] @ s.torque,
+    "TorqueLocal": lambda s: s.torque,
+}
+"""What a sensor can read by the name of Exudyn's OutputVariableType."""
+
+
+def reader(
+    element: Element, constraint: Index | None, quantity: Quantity | exu.OutputVariableType | str
+) -> tuple[str, Callable[[exu.MainSystem], np.ndarray]]:
+    """Name of a quantity, and the function that reads it at a system's current state; nan without a film.
+
+    Raises
+    ------
+    InputError
+        For what is no quantity.
+    """
+    known = [member.value for member in Quantity]
+    if isinstance(quantity, exu.OutputVariableType):
+        quantity = quantity.name
+    if isinstance(quantity, str) and quantity in OUTPUTS:
+        output = OUTPUTS[quantity]
+        return quantity, lambda mbs: output(_state(mbs, element, constraint))
+    if not isinstance(quantity, Quantity) and quantity not in known:
+        raise InputError(
+            "LubricatedJoint.AddSensor: quantity must be a member of Quantity or its name, one of "
+            f"{', '.join(known)}, or an exu.OutputVariableType or its name, one of {', '.join(OUTPUTS)}; got "
+            f"{quantity!r}."
+        )
+    asked = Quantity(quantity)
+    missing = np.full(_SIZE.get(asked, 1), np.nan)
+
+    def read(mbs: exu.MainSystem) -> np.ndarray:
+        row = element.current_row(mbs)
+        return missing if row is None else column(row, asked)
+
+    return asked.value, read
+
+
+def _state(mbs: exu.MainSystem, element: Element, constraint: Index | None) -> _State:
+    """State of the joint; its sides are there once the film was asked."""
+    row = element.current_row(mbs)
+    load = np.full(6, np.nan) if row is None else -row[FORCE.start : FORCE.start + 6]
+    if constraint is not None:
+        output = exu.OutputVariableType
+        load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)
+        multipliers = mbs.GetObjectOutput(constraint, output.TorqueLocal)
+        load[3:] += [multipliers[1], -multipliers[0], 0.0]
+    housing, journal = (side.frame.copy() for side in element.sides)
+    return _State(housing, journal, load[:3], load[3:])
+
+
 def add_sensor(
-    mbs: exu.MainSystem, element: Element, quantity: Quantity, name: str, file_name: str, write_to_file: bool
+    mbs: exu.MainSystem,
+    element: Element,
+    read: Callable[[exu.MainSystem], np.ndarray],
+    name: str,
+    file_name: str,
+    write_to_file: bool,
 ) -> Index:
-    """Add a sensor of one quantity; its values are stored in the sensor.
+    """Add a sensor of what a `reader` reads; its values are stored in the sensor.
 
     The sensor looks at the state Exudyn shows it, which after an accepted step is exactly the state the record gets, so
-    that both agree bit for bit. Where the film can't be evaluated, it gives nan.
+    that both agree bit for bit.
     """
-    size = _SIZE.get(quantity, 1)
 
-    def read(
+    def values(
         mbs: exu.MainSystem,
         t: float,
         sensorNumbers: list[int],
@@ -31,16 +132,14 @@ def add_sensor(
         configuration: exu.ConfigurationType,
     ) -> list[float]:
         element.require_items(mbs)
-        row = element.current_row(mbs)
-        values = np.full(size, np.nan) if row is None else column(row, quantity)
-        return values.tolist()
+        return read(mbs).tolist()
 
     return mbs.AddSensor(
         eii.SensorUserFunction(
             name=name,
             sensorNumbers=[],
             factors=[],
-            sensorUserFunction=read,
+            sensorUserFunction=values,
             storeInternal=True,
             fileName=file_name,
             writeToFile=write_to_file,

@@ -322,7 +322,7 @@ def test_sensor_agrees_with_the_record():
         expected = getattr(history, quantity.value)
         np.testing.assert_array_equal(data[:, 1:], expected.reshape(len(history.time), -1))
     with pytest.raises(InputError):
-        joint.AddSensor("minimum_gap")
+        joint.AddSensor("gap")
 
 
 class BeyondEvaluation(toy.ToyEvaluation):
