@@ -56,23 +56,14 @@ def before(mbs, ground, upper, lower, simulationSettings):
 
 
 def after(mbs, ground, upper, lower, simulationSettings):
-    bearing = ehd.JournalBearing(
-        journal_radius=0.02,
-        length=0.14,
-        radial_clearance=40e-6,
-        lubricant=ehd.Lubricant(viscosity=0.4),
-        contact=ehd.RegularisedWall(onset=2e-6),
-    )
-    held = ehd.Held()
-    j1 = ehd.CreateLubricatedJoint(
-        mbs, itemNumbers=[ground, upper], position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing, axial=held
-    )
-    j2 = ehd.CreateLubricatedJoint(
-        mbs, itemNumbers=[upper, lower], position=[LENGTH, 0, 0], axis=[1, 0, 0], bearing=bearing, axial=held
-    )
+    oil, wall = ehd.Lubricant(viscosity=0.4), ehd.RegularisedWall(onset=2e-6)
+    bearing = ehd.JournalBearing(journal_radius=0.02, length=0.14, radial_clearance=40e-6, lubricant=oil, contact=wall)
+    film = {"bearing": bearing, "axial": ehd.Held()}
+    j1 = ehd.CreateLubricatedJoint(mbs, itemNumbers=[ground, upper], position=[0, 0, 0], axis=[0, 0, 1], **film)
+    j2 = ehd.CreateLubricatedJoint(mbs, itemNumbers=[upper, lower], position=[LENGTH, 0, 0], axis=[1, 0, 0], **film)
     mbs.Assemble()
     ehd.ConfigureSolver(simulationSettings)
-    mbs.SolveDynamic(simulationSettings)
+    ehd.SolveDynamic(mbs, simulationSettings)
     return j1, j2
 
 

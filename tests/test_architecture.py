@@ -8,7 +8,6 @@ import inspect
 import io
 import pathlib
 import pkgutil
-import re
 import subprocess
 import sys
 import tokenize
@@ -198,22 +197,3 @@ def test_functions_of_bench_and_examples_are_short():
                 own = set(range(node.lineno, node.end_lineno + 1)) - docs
                 found += [f"{path}: {node.name} has {len(own)} lines"] if len(own) > 60 else []
     assert not found, "\n".join(found)
-
-
-def _named_in_readme():
-    """Files and folders that the README names: in code, in links, in its commands."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
-    prose = re.sub(r"```.*?```", "", text, flags=re.DOTALL)
-    names = [n for n in re.findall(r"`([\w./-]+)`", prose) if "/" in n or n.endswith((".py", ".csv"))]
-    names += re.findall(r"\]\(([^)#:]+)\)", prose)
-    names += re.findall(r"(?:examples|tests|exudyn_ehd)/[\w./-]*", text)
-    names += [n.replace(".", "/") for n in re.findall(r"python -m ((?:tests|exudyn_ehd)[\w.]*)", text)]
-    # made by the examples
-    return sorted(set(names) - {"results/"})
-
-
-@pytest.mark.parametrize("name", _named_in_readme())
-def test_what_the_readme_names_exists(name):
-    """Seen from the project's folder, from the package, from the examples, or among the tables of the bench."""
-    places = (ROOT, PACKAGE, ROOT / "examples", ROOT / "tests" / "benchmarks" / "accuracy" / "data")
-    assert any((place / name).exists() for place in places), f"README.md names {name}, which is not there"

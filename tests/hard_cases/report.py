@@ -2,9 +2,9 @@
 
     python tests/hard_cases/report.py                       # all cases, 2000 random states per closure
     python tests/hard_cases/report.py --states 100000       # the long record
-    python tests/hard_cases/report.py --states 100000 --write README.md
+    python tests/hard_cases/report.py --states 100000 --write
 
-``--only TEXT`` picks cases, ``--write`` replaces what stands between the markers of a file.
+``--only TEXT`` picks cases, ``--write`` replaces what stands between the markers of README.md beside this file.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import sys
 import warnings
 
 HERE = pathlib.Path(__file__).resolve().parent
+GUIDE = HERE / "README.md"
 sys.path[:0] = [str(HERE), str(HERE.parents[1])]
 
 import hard_random  # noqa: E402
@@ -81,7 +82,7 @@ def main() -> int:
         "--states", type=int, default=SHORT, help="random states per closure; 0: none, a written record stays"
     )
     parser.add_argument("--only", default="", help="cases whose name contains this text")
-    parser.add_argument("--write", type=pathlib.Path, help="file with the markers <!-- hard cases --> and <!-- end -->")
+    parser.add_argument("--write", action="store_true", help="put the tables into README.md beside this file")
     arguments = parser.parse_args()
     if arguments.write and arguments.only:
         parser.error("--write needs all cases; leave --only out")
@@ -92,14 +93,14 @@ def main() -> int:
         print("\n" + "\n".join(RECORD_HEAD))
         records, solved = record_rows(arguments.states)
     if arguments.write:
-        text = arguments.write.read_text(encoding="utf-8")
+        text = GUIDE.read_text(encoding="utf-8")
         tables = [("hard cases", CASE_HEAD + cases)] + [("film record", RECORD_HEAD + records)] * bool(arguments.states)
         for key, lines in tables:
             marked = re.compile(rf"(<!-- {key} -->\n).*?(<!-- end -->)", re.DOTALL)
             if not marked.search(text):
-                raise SystemExit(f"{arguments.write} has no marker <!-- {key} -->")
+                raise SystemExit(f"{GUIDE} has no marker <!-- {key} -->")
             text = marked.sub(lambda m, lines=lines: m.group(1) + "\n".join(lines) + "\n" + m.group(2), text)
-        arguments.write.write_text(text, encoding="utf-8")
+        GUIDE.write_text(text, encoding="utf-8")
     return 0 if passed and solved else 1
 
 

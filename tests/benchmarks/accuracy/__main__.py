@@ -33,7 +33,7 @@ def main(arguments: list[str] | None = None) -> None:
     """Command line."""
     options = _parser().parse_args(arguments)
     if options.guide:
-        guide.renew(options.guide, DATA)
+        guide.renew(guide.READMES, DATA, guide.PICTURE)
         return
     if options.check_order:
         _check_order(_chosen(order.checkable(), options.only), options.runs)
@@ -69,8 +69,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--processes", type=int, default=1, help="more than 1: side by side, errors only, no times")
     add("--ship", action="store_true", help="write the tables where they are shipped: data, cells into the package")
     add("--draw", action="store_true", help="measure nothing, draw the shipped tables")
-    text = "put the shipped tables between this file's markers and stop"
-    add("--guide", type=pathlib.Path, metavar="README", help=text)
+    add("--guide", action="store_true", help="put the shipped tables between the markers of the READMEs and stop")
     text = "time the shipped studies in several runs, compare the order, stop"
     add("--check-order", action="store_true", help=text)
     add("--runs", type=int, default=3, help="runs of --check-order")

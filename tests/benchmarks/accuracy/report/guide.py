@@ -1,6 +1,6 @@
-"""Texts and tables of the README from the shipped tables.
+"""Texts and tables of the READMEs from the shipped tables.
 
-Every number about speed in it stands between markers and comes from here:
+Every number about speed in them stands between markers and comes from here:
 
 <!-- effect factors -->
 ...
@@ -38,7 +38,10 @@ CHEAPEST = (
     ("big_end_bush", "peak pressure"),
 )
 EFFECT_FACTORS, BUSH_COSTS, PAID_ONCE = "effect_factors", "bush_costs", "paid_once"
-PICTURE = pathlib.Path("examples/pictures/accuracy_against_time.png")
+ROOT = pathlib.Path(__file__).parents[4]
+# What `renew` fills, and the picture that goes with it.
+READMES = [ROOT / "README.md", ROOT / "exudyn_ehd/solid/README.md", ROOT / "tests/benchmarks/accuracy/README.md"]
+PICTURE = ROOT / "examples/pictures/accuracy_against_time.png"
 PICTURED = ("steady_800_film", "load")
 
 
@@ -83,6 +86,31 @@ def paper_text(folder: pathlib.Path) -> str:
         f"the default grid {format_seconds(default.seconds)} for {_percent(default.error)}, "
         f"an `ImpedanceMap` {format_seconds(film_map.seconds)} for {_percent(film_map.error)} once it is tabulated "
         f"({machine_of(notes)}, one thread)."
+    )
+
+
+def numbers_text(folder: pathlib.Path) -> str:
+    """What a reader wants to know first: five numbers."""
+    rows, notes = read_table(folder / "steady_800_film.csv", Row)
+    coarse, default, film_map = (_row(rows, name, "load") for name in ("2D 48 x 6", "2D 96 x 10", "map"))
+    (paper,) = (row for row in rows if "(paper)" in row.setting and row.quantity == "load")
+    found, _ = growth.read_growths(folder / "growth.csv")
+    (joints,) = (g for g in found if g.size_name == "joints")
+    once_paid, _ = read_table(folder / f"{PAID_ONCE}.csv", Cost)
+    first = once_paid[0]
+    return "\n".join(
+        [
+            f"- The default film takes {format_seconds(default.seconds)} with its tangent; its load is "
+            f"{_percent(default.error)} off the converged one.",
+            f"- `FiniteLength(n_theta=48, n_z=6)` takes {format_seconds(coarse.seconds)} for {_percent(coarse.error)}, "
+            f"an `ImpedanceMap` {format_seconds(film_map.seconds)} for {_percent(film_map.error)}.",
+            f"- Finite differences with SOR and Gümbel's condition take {format_seconds(paper.seconds)} for "
+            f"{_percent(paper.error)}.",
+            f"- A step of one rotor on its film takes {format_seconds(joints.seconds[0])}, a step of "
+            f"{joints.sizes[-1]:.0f} of them {format_seconds(joints.seconds[-1])}.",
+            f"- The first film of a new installation takes {format_seconds(first.seconds)}. "
+            f"(Processor time, {machine_of(notes)}, one thread.)",
+        ]
     )
 
 
@@ -198,6 +226,7 @@ def once_text(folder: pathlib.Path) -> str:
 
 
 BLOCKS: dict[str, Callable[[pathlib.Path], str]] = {
+    "five numbers": numbers_text,
     "paper against package": paper_text,
     "cheapest settings": cheapest_text,
     "growth": growth_text,
@@ -213,25 +242,28 @@ def guide_texts(folder: pathlib.Path) -> dict[str, str]:
     return {name: make(folder) for name, make in BLOCKS.items()}
 
 
-def renew(path: pathlib.Path, folder: pathlib.Path) -> None:
-    """Put the texts of the tables between the markers of a Markdown file, and renew its picture where it has one.
+def renew(paths: Sequence[pathlib.Path], folder: pathlib.Path, picture: pathlib.Path) -> None:
+    """Put the texts of the tables between the markers of Markdown files, and draw the picture that goes with them.
 
     Raises
     ------
     InputError
-        If a marker is missing; the file stays as it is.
+        If a marker is in none of the files or in several; the files stay as they are.
     """
-    text = path.read_text(encoding="utf-8")
+    texts = {path: path.read_text(encoding="utf-8") for path in paths}
     for name, block in guide_texts(folder).items():
         marked = re.compile(rf"(<!-- {re.escape(name)} -->\n).*?(<!-- end -->)", re.DOTALL)
-        if not marked.search(text):
-            raise InputError(f"--guide: {path} must have the markers <!-- {name} --> and <!-- end -->.")
-        text = marked.sub(lambda m, block=block: f"{m.group(1)}\n{block}\n\n{m.group(2)}", text, count=1)  # type: ignore[misc]
-    with replacing(path) as file:
-        file.write(text)
-    picture = path.parent / PICTURE
-    if picture.exists():
-        name, quantity = PICTURED
-        rows, notes = read_table(folder / f"{name}.csv", Row)
-        shown = [row for row in rows if row.quantity == quantity]
-        pictures.save(pictures.work_precision(shown, notes[0], pictures.unit_of(notes)), picture)
+        places = [path for path, text in texts.items() if marked.search(text)]
+        if len(places) != 1:
+            raise InputError(
+                f"--guide: one of {[*map(str, paths)]} must have the markers <!-- {name} --> and <!-- end -->."
+            )
+        new = marked.sub(lambda m, block=block: f"{m.group(1)}\n{block}\n\n{m.group(2)}", texts[places[0]])  # type: ignore[misc]
+        texts[places[0]] = new
+    for path, text in texts.items():
+        with replacing(path) as file:
+            file.write(text)
+    name, quantity = PICTURED
+    rows, notes = read_table(folder / f"{name}.csv", Row)
+    shown = [row for row in rows if row.quantity == quantity]
+    pictures.save(pictures.work_precision(shown, notes[0], pictures.unit_of(notes)), picture)

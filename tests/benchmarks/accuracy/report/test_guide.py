@@ -1,17 +1,13 @@
 """The guide says what the shipped tables say, and every marker is filled."""
 
 import math
-import pathlib
 import re
 
 import pytest
 
 from exudyn_ehd.status import InputError
-from tests.benchmarks.accuracy.__main__ import main
 from tests.benchmarks.accuracy.report import guide
 from tests.benchmarks.accuracy.table import DATA, Cost
-
-README = pathlib.Path(__file__).parents[4] / "README.md"
 
 
 def _marked(text, name):
@@ -19,33 +15,29 @@ def _marked(text, name):
 
 
 @pytest.mark.parametrize("name", guide.BLOCKS)
-def test_the_guide_says_what_the_tables_say(name):
-    assert _marked(README.read_text(encoding="utf-8"), name) == guide.BLOCKS[name](DATA)
+def test_the_guides_say_what_the_tables_say(name):
+    texts = [path.read_text(encoding="utf-8") for path in guide.READMES]
+    (text,) = (text for text in texts if f"<!-- {name} -->" in text)
+    assert _marked(text, name) == guide.BLOCKS[name](DATA)
 
 
-def test_the_guide_is_renewed_and_nothing_else_of_its_file(tmp_path):
-    path = tmp_path / "guide.md"
-    empty = "".join(f"Before {name}.\n\n<!-- {name} -->\nstale numbers\n<!-- end -->\n\n" for name in guide.BLOCKS)
-    path.write_text("# Title\n\n" + empty + "Text after.\n", encoding="utf-8")
-    main(["--guide", str(path)])
-    text = path.read_text(encoding="utf-8")
-    assert "stale numbers" not in text
-    for name, block in guide.guide_texts(DATA).items():
-        assert f"Before {name}.\n\n<!-- {name} -->\n\n{block}\n\n<!-- end -->\n\n" in text
-    assert text.startswith("# Title\n\n") and text.endswith("Text after.\n")
-    path.write_text(empty.replace("<!-- growth -->", ""), encoding="utf-8")
-    with pytest.raises(InputError, match="must have the markers <!-- growth -->"):
-        main(["--guide", str(path)])
-    assert path.read_text(encoding="utf-8") == empty.replace("<!-- growth -->", "")
-
-
-def test_the_picture_of_the_guide_is_renewed(tmp_path):
-    path, picture = tmp_path / "guide.md", tmp_path / guide.PICTURE
-    path.write_text("".join(f"<!-- {name} -->\n<!-- end -->\n" for name in guide.BLOCKS), encoding="utf-8")
-    picture.parent.mkdir(parents=True)
-    picture.write_bytes(b"")
-    main(["--guide", str(path)])
+def test_guides_are_renewed_and_nothing_else_of_their_files(tmp_path):
+    paths, picture = [tmp_path / "first.md", tmp_path / "second.md"], tmp_path / "picture.png"
+    stale = [f"Before {name}.\n\n<!-- {name} -->\nstale numbers\n<!-- end -->\n\n" for name in guide.BLOCKS]
+    for path, part in zip(paths, (stale[:3], stale[3:]), strict=True):
+        path.write_text("# Title\n\n" + "".join(part) + "Text after.\n", encoding="utf-8")
+    guide.renew(paths, DATA, picture)
     assert picture.stat().st_size > 10_000
+    texts = [path.read_text(encoding="utf-8") for path in paths]
+    for name, block in guide.guide_texts(DATA).items():
+        assert f"Before {name}.\n\n<!-- {name} -->\n\n{block}\n\n<!-- end -->\n\n" in "".join(texts)
+    for text in texts:
+        assert "stale numbers" not in text and text.startswith("# Title\n\n") and text.endswith("Text after.\n")
+    missing = texts[1].replace("<!-- growth -->", "")
+    paths[1].write_text(missing, encoding="utf-8")
+    with pytest.raises(InputError, match="must have the markers <!-- growth -->"):
+        guide.renew(paths, DATA, picture)
+    assert paths[1].read_text(encoding="utf-8") == missing
 
 
 def test_the_machine_is_named_by_cores_and_clock_only():
