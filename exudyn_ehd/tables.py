@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import csv
+import html
 import itertools
 import pathlib
 from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 # SI units by name; a name of several words may end in one of these.
 UNITS = {
@@ -90,6 +95,65 @@ def text_table(
     for k, remark in enumerate(remarks):
         lines[k + 1] = f"{lines[k + 1]}  {remark}".rstrip()
     return "\n".join(lines)
+
+
+def html_table(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of texts, the first of them heads, as HTML for notebooks."""
+    lines = []
+    for k, row in enumerate(rows):
+        tag = "th" if k == 0 else "td"
+        lines.append("<tr>" + "".join(f"<{tag}>{html.escape(text)}</{tag}>" for text in row) + "</tr>")
+    return "<table>" + "\n".join(lines) + "</table>"
+
+
+def data_frame(columns: Mapping[str, object]) -> DataFrame:
+    """Columns (n,) as a pandas DataFrame, SI units.
+
+    Raises
+    ------
+    InputError
+        Without pandas.
+    """
+    try:
+        # imported here: nothing else needs it
+        import pandas
+    except ImportError:
+        raise InputError(
+            "to_dataframe needs the package pandas: pip install pandas; to_csv writes the same table without it."
+        ) from None
+    return pandas.DataFrame(columns)
+
+
+class Table:
+    """Named columns (n,) of numbers: printed, in notebooks, as CSV, as a data frame."""
+
+    def to_csv(self, path: str | pathlib.Path) -> None:
+        """Write the table: a header of names with units, a row per line, remarks last."""
+        write_csv(path, self._columns(), more=self._units(), remarks=self._remarks())
+
+    def to_dataframe(self) -> DataFrame:
+        """The table as a pandas DataFrame, SI units, remarks in columns of their own; needs pandas."""
+        return data_frame({**self._columns(), **self._remarks()})
+
+    def __str__(self) -> str:
+        remarks = list(zip(*self._remarks().values(), strict=True))
+        return text_table(self._columns(), more=self._units(), remarks=["  ".join(texts) for texts in remarks])
+
+    def _repr_html_(self) -> str:
+        columns, remarks = self._columns(), self._remarks()
+        values = zip(*columns.values(), strict=True)
+        texts = [[f"{value:.5g}" for value in row] for row in values]
+        rows = [[*row, *(texts[k] for texts in remarks.values())] for k, row in enumerate(texts)]
+        return html_table([[*heads(list(columns), self._units()), *remarks], *rows])
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        raise NotImplementedError
+
+    def _units(self) -> Mapping[str, str]:
+        return {}
+
+    def _remarks(self) -> Mapping[str, Sequence[str]]:
+        return {}
 
 
 def write_csv(

@@ -15,7 +15,7 @@ from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
 from exudyn_ehd.pictures.maps import PRESSURE, closed_ring, colour_limits
 from exudyn_ehd.pictures.records import Film, Target
-from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, open_axes, style_ticks, styled
+from exudyn_ehd.pictures.style import BLACK, COLUMN, VERMILION, finish, headed, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import label, unit_for
 from exudyn_ehd.status import InputError
 
@@ -29,7 +29,12 @@ SIDE, CAP = (0.72, 0.74, 0.78), (0.82, 0.84, 0.87)
 
 
 def plot_bearing(
-    film: Film, *, camera: tuple[float, float] | None = None, ax: Axes3D | None = None, path: Target = None
+    film: Film,
+    *,
+    camera: tuple[float, float] | None = None,
+    title: str = "",
+    ax: Axes3D | None = None,
+    path: Target = None,
 ) -> Figure:
     """Draw the pressure as a coloured hill on the bore, the journal in it, and the load on the bush (arrow).
 
@@ -39,6 +44,8 @@ def plot_bearing(
     camera : (float, float), optional
         Elevation and azimuth, degrees, with y upright and x to the right at azimuth -90; by default the hill is in
         view.
+    title : str
+        Stands above the sizes, in a new figure.
     ax : matplotlib Axes3D, optional
     path : path, optional
 
@@ -63,7 +70,7 @@ def plot_bearing(
     journal = journal_surface(film, around, z)
     own = ax is None
     with styled():
-        figure, ax = open_axes(ax, SIZE, projection="3d", computed_zorder=False)
+        figure, ax = open_axes(ax, SIZE, path, projection="3d", computed_zorder=False)
         quads, values = quads_of(hill), quads_of(unit(p)[..., None])[..., 0].mean(axis=1)
         sides, caps = quads_of(journal), np.concatenate([_fan(journal[:-1, 0]), _fan(journal[:-1, -1])])
         # one collection, since matplotlib sorts facets by depth within a collection only; all of them with four
@@ -84,7 +91,8 @@ def plot_bearing(
         style_ticks(figure.colorbar(bar, ax=ax, label=label("pressure", unit), shrink=0.7, pad=0.02).ax)
         if own:
             R, L = 1e3 * film.bearing.journal_radius, 1e3 * film.bearing.length
-            ax.set_title(f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale", y=0.98)
+            sizes = f"R = {R:.4g} mm, L = {L:.4g} mm; clearance and pressure not to scale"
+            ax.set_title(headed(title, sizes), y=0.98)
         return finish(figure, path)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from exudyn_ehd.pictures.bearing3d import look_at, quads_of
-from exudyn_ehd.pictures.style import style_ticks, styled
+from exudyn_ehd.pictures.style import new_figure, style_ticks, styled
 from exudyn_ehd.solid.elements.faces import Face, face_of
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError
@@ -85,7 +85,7 @@ def contour_figure(mesh: BushMesh, frames: Sequence[Frame], *, label: str, view:
     box = _box(mesh, frames, view)
     plots = []
     with styled(TYPE_SIZE):
-        figure = Figure(figsize=(3.4 * columns + 1.0, 3.3 * rows), layout="constrained")
+        figure = new_figure((3.4 * columns + 1.0, 3.3 * rows))
         for i, frame in enumerate(frames):
             axes = figure.add_subplot(rows, columns, i + 1, projection="3d", computed_zorder=False)
             _draw(axes, mesh, frame, view, norm, colours)

@@ -20,6 +20,8 @@ from exudyn_ehd.pictures.style import (
     SKY,
     VERMILION,
     finish,
+    headed,
+    new_figure,
     open_axes,
     style_ticks,
     styled,
@@ -27,15 +29,21 @@ from exudyn_ehd.pictures.style import (
 from exudyn_ehd.pictures.units import QUANTITIES, Unit, label, unit_for
 from exudyn_ehd.status import InputError
 
-# Sizes of the pictures, and of the traces' margin and of one panel of them, inch.
+# Sizes of the pictures, and of the traces' margin, of one panel of them and of their title, inch.
 ORBIT, LOAD = (COLUMN, 1.12 * COLUMN), (COLUMN, 1.15 * COLUMN)
-MARGIN, PANEL = 0.55, 1.35
+MARGIN, PANEL, TITLE = 0.55, 1.35, 0.2
 # Distances of ticks on an axis of angles, degrees.
 _TICKS = [15.0, 30.0, *(45.0 * 2.0**k for k in range(40))]
 
 
 def plot_orbit(
-    history: History, *, ends: bool = False, text: str = "", ax: Axes | None = None, path: Target = None
+    history: History,
+    *,
+    ends: bool = False,
+    text: str = "",
+    title: str = "",
+    ax: Axes | None = None,
+    path: Target = None,
 ) -> Figure:
     """Draw the orbit of the journal's axis in the mid-plane, in the circle that a rigid aligned journal can't leave.
 
@@ -46,6 +54,8 @@ def plot_orbit(
         Also draw the axis at both ends of the bearing.
     text : str
         Name of the orbit in the legend; two orbits in the same ``ax`` share one circle if their clearances agree.
+    title : str
+        Of the figure, if it is a new one.
     ax : matplotlib Axes, optional
     path : path, optional
 
@@ -57,7 +67,7 @@ def plot_orbit(
     unit = unit_for("length", c)
     with styled():
         own = ax is None
-        figure, ax = open_axes(ax, ORBIT)
+        figure, ax = open_axes(ax, ORBIT, path, title=title)
         draw_clearance(ax, c, unit)
         e = history.eccentricity
         if ends:
@@ -81,7 +91,9 @@ def draw_clearance(ax: Axes, c: float, unit: Unit) -> None:
     style_ticks(ax)
 
 
-def plot_load(history: History, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
+def plot_load(
+    history: History, *, text: str = "", title: str = "", ax: PolarAxes | None = None, path: Target = None
+) -> Figure:
     """Draw the tip of the load of the journal on the bush, housing's joint frame: the opposite of ``history.force``.
 
     Parameters
@@ -89,6 +101,8 @@ def plot_load(history: History, *, text: str = "", ax: PolarAxes | None = None, 
     history : History
     text : str
         Name in the legend.
+    title : str
+        Stands before what is drawn.
     ax : matplotlib PolarAxes, optional
     path : path, optional
 
@@ -110,13 +124,13 @@ def plot_load(history: History, *, text: str = "", ax: PolarAxes | None = None, 
     unit = unit_for("force", size)
     with styled():
         own = ax is None
-        figure, ax = open_axes(ax, LOAD, projection="polar")
+        figure, ax = open_axes(ax, LOAD, path, projection="polar")
         angle = np.arctan2(load[:, 1], load[:, 0])
         (line,) = ax.plot(angle, unit(size), color=BLUE if own else None, label=text or "load on the bush")
         ax.set_rlim(bottom=0.0)
         ax.yaxis.set_major_locator(MaxNLocator(4))
         ax.set_rlabel_position(_freest(angle))
-        ax.set_title(f"load of the journal on the bush [{unit.symbol}]")
+        ax.set_title(headed(title, f"load of the journal on the bush [{unit.symbol}]"))
         ax.grid(True, lw=0.4, color="#D0D0D0")
         _mark_ends(ax, np.stack([angle, unit(size)], axis=1), line.get_color(), None if own else text)
         return finish(figure, path)
@@ -150,6 +164,7 @@ def plot_traces(
     angle: np.ndarray | None = None,
     angle_text: str = "angle",
     text: str = "",
+    title: str = "",
     ax: Axes | Sequence[Axes] | np.ndarray | None = None,
     path: Target = None,
 ) -> Figure:
@@ -166,6 +181,8 @@ def plot_traces(
         What the angle is.
     text : str
         Name in the legend.
+    title : str
+        Of the figure, if it is a new one.
     ax : matplotlib Axes or a sequence of them, optional
         One for every quantity.
     path : path, optional
@@ -192,7 +209,8 @@ def plot_traces(
     with styled():
         if given is None:
             width = 0.62 * PAGE if len(names) > 1 else COLUMN
-            figure = Figure(figsize=(width, MARGIN + PANEL * len(names)), layout="constrained")
+            figure = new_figure((width, MARGIN + PANEL * len(names) + (TITLE if title else 0.0)), path)
+            figure.suptitle(title)
             panels = list(figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0])
         else:
             panels = list(given)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.patheffects import withStroke
 
 from exudyn_ehd.film.supply.areas import placed
 from exudyn_ehd.pictures.records import Film, Target
-from exudyn_ehd.pictures.style import BLACK, PAGE, finish, open_axes, style_ticks, styled
+from exudyn_ehd.pictures.style import BLACK, GREY, PAGE, finish, headed, open_axes, style_ticks, styled
 from exudyn_ehd.pictures.units import Unit, label, unit_for
 from exudyn_ehd.status import InputError
 
@@ -21,6 +23,13 @@ TURN = 2.0 * math.pi
 SIZE = (0.75 * PAGE, 0.36 * PAGE)
 # Points of a picture around and along.
 FINE = (721, 121)
+# White dashes with a rim, for maps of any colour and legends on white.
+RUPTURE: dict[str, Any] = {
+    "color": "white",
+    "linestyle": "dashed",
+    "linewidth": 0.9,
+    "path_effects": [withStroke(linewidth=1.7, foreground=GREY)],
+}
 
 
 @dataclass(frozen=True)
@@ -115,15 +124,17 @@ def on_picture(film: Film, values: np.ndarray, *, prescribed_ends: bool = True) 
     return np.stack([np.interp(around, theta, column) for column in rows.T], axis=1)
 
 
-def plot_map(film: Film, field: MapField, *, ax: Axes | None = None, path: Target = None) -> Figure:
+def plot_map(film: Film, field: MapField, *, title: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
     """Draw the unrolled map of a field.
 
-    The dashed line bounds the unbroken film, black lines the supply areas in the housing.
+    The dashed line is the edge of the cavity, black lines bound the supply areas in the housing; a legend says so.
 
     Parameters
     ----------
     film : Film
     field : MapField
+    title : str
+        Stands above the field's telling value.
     ax : matplotlib Axes, optional
         Where to draw; by default a new figure.
     path : path, optional
@@ -136,10 +147,13 @@ def plot_map(film: Film, field: MapField, *, ax: Axes | None = None, path: Targe
     values = field_values(film, field)
     unit = unit_for(field.kind, values)
     with styled():
-        figure, ax = open_axes(ax, SIZE)
+        own = ax is None
+        figure, ax = open_axes(ax, SIZE, path)
         image = draw_map(ax, film, field, unit)
         style_ticks(figure.colorbar(image, ax=ax, label=label(field.text, unit), pad=0.02).ax)
-        ax.set_title(_extreme(film, field, values, unit))
+        if own and ax.get_legend_handles_labels()[0]:
+            figure.legend(loc="outside lower center", ncols=2)
+        ax.set_title(headed(title, _extreme(film, field, values, unit)))
         return finish(figure, path)
 
 
@@ -165,9 +179,11 @@ def draw_map(
         vmin=low,
         vmax=high,
     )
-    if outlines:
-        draw_rupture(ax, film)
-    _draw_supply(ax, film)
+    # lines without points stand for the outlines in a legend
+    if outlines and draw_rupture(ax, film) is not None:
+        ax.plot([], [], **RUPTURE, label="edge of the cavity")
+    if _draw_supply(ax, film):
+        ax.plot([], [], color=BLACK, linewidth=0.8, label="supply area")
     ax.set(
         xlabel="angle θ [°]",
         ylabel="z [mm]",
@@ -200,21 +216,21 @@ def draw_rupture(ax: Axes, film: Film) -> ContourSet | None:
         return None
     # prescribed end rows count as neither: the boundary runs straight into the ends
     whole[:, 0], whole[:, -1] = whole[:, 1], whole[:, -2]
-    return ax.contour(
-        np.degrees(theta), 1e3 * film.z, whole.T, levels=[0.5], colors="white", linewidths=0.9, linestyles="dashed"
-    )
+    edge = ax.contour(np.degrees(theta), 1e3 * film.z, whole.T, levels=[0.5], colors=["white"])
+    edge.set(**{name: value for name, value in RUPTURE.items() if name != "color"})
+    return edge
 
 
-def _draw_supply(ax: Axes, film: Film) -> None:
-    """Outlines of the supply areas that lie in the housing."""
+def _draw_supply(ax: Axes, film: Film) -> bool:
+    """Outlines of the supply areas that lie in the housing; whether there are any."""
     theta = np.linspace(0.0, TURN, FINE[0])
     z = np.linspace(film.z[0], film.z[-1], FINE[1])
-    for area in placed(film.bearing.supply, film.bearing.length):
-        if area.rotating:
-            continue
+    fixed = [area for area in placed(film.bearing.supply, film.bearing.length) if not area.rotating]
+    for area in fixed:
         inside = area.covers(theta, z, film.bearing.journal_radius).astype(float)
         # a frame of zeros closes outlines that run along the map's edge
         ax.contour(np.degrees(theta), 1e3 * z, inside.T, levels=[0.5], colors=BLACK, linewidths=0.8)
+    return bool(fixed)
 
 
 def _extreme(film: Film, field: MapField, values: np.ndarray, unit: Unit) -> str:

@@ -15,11 +15,18 @@ if TYPE_CHECKING:
     from matplotlib.projections.polar import PolarAxes
 
 
-class FilmPictures:
+class Titled:
+    """What may have a name that stands above its pictures."""
+
+    def _title(self) -> str:
+        return ""
+
+
+class FilmPictures(Titled):
     """Pictures of a film at one instant; mixed into a `pictures.records.Film`, or into what has one by `_film`.
 
     Every method draws into ``ax`` if given (a matplotlib Axes, so that pictures can be combined) or into a figure of
-    its own, writes it to ``path`` if given, and returns the figure.
+    its own, which ``plt.show()`` shows, writes it to ``path`` if given, and returns the figure.
     """
 
     def plot_pressure(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
@@ -52,7 +59,7 @@ class FilmPictures:
         """The bearing in space: pressure, journal, load on the bush; ``camera`` is elevation and azimuth, degrees."""
         from exudyn_ehd.pictures.bearing3d import plot_bearing
 
-        return plot_bearing(self._film(), camera=camera, ax=ax, path=path)
+        return plot_bearing(self._film(), camera=camera, title=self._title(), ax=ax, path=path)
 
     def _film(self) -> Film:
         """What is drawn."""
@@ -61,10 +68,10 @@ class FilmPictures:
     def _map(self, field: str, ax: Axes | None, path: Target) -> Figure:
         from exudyn_ehd.pictures import maps
 
-        return maps.plot_map(self._film(), getattr(maps, field), ax=ax, path=path)
+        return maps.plot_map(self._film(), getattr(maps, field), title=self._title(), ax=ax, path=path)
 
 
-class HistoryPictures:
+class HistoryPictures(Titled):
     """Pictures of a history; mixed into a `pictures.records.History`, or into what has one by `_history`.
 
     See `FilmPictures`.
@@ -74,13 +81,13 @@ class HistoryPictures:
         """Orbit of the journal in the clearance circle, with ``ends`` also at both ends; ``text`` is for a legend."""
         from exudyn_ehd.pictures.histories import plot_orbit
 
-        return plot_orbit(self._history(), ends=ends, text=text, ax=ax, path=path)
+        return plot_orbit(self._history(), ends=ends, text=text, title=self._title(), ax=ax, path=path)
 
     def plot_load(self, *, text: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """Polar diagram of the load of the journal on the bush, in the housing's joint frame."""
         from exudyn_ehd.pictures.histories import plot_load
 
-        return plot_load(self._history(), text=text, ax=ax, path=path)
+        return plot_load(self._history(), text=text, title=self._title(), ax=ax, path=path)
 
     def plot_traces(
         self, quantities: Enum | str | Sequence[Enum | str] = ("minimum_gap", "peak_pressure"), **options: Any
@@ -88,7 +95,7 @@ class HistoryPictures:
         """Quantities over time, or over an ``angle``; options as in `pictures.histories.plot_traces`."""
         from exudyn_ehd.pictures.histories import plot_traces
 
-        return plot_traces(self._history(), quantities, **options)
+        return plot_traces(self._history(), quantities, **{"title": self._title(), **options})
 
     def _history(self) -> History:
         """What is drawn."""

@@ -14,6 +14,7 @@ from typing import Any, cast
 import matplotlib
 from cycler import cycler
 from matplotlib.axes import Axes
+from matplotlib.backends import BackendFilter, backend_registry
 from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import Target
@@ -32,6 +33,8 @@ PALETTE = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY, BLACK)
 # Width of one column and of the page, inch.
 COLUMN, PAGE = 3.5, 7.2
 RESOLUTION = 200
+# Matplotlib's backends that show nothing, in lower case.
+FILES_ONLY = [name.lower() for name in backend_registry.list_builtin(BackendFilter.NON_INTERACTIVE)]
 
 # Type of pictures in column or page width, pt; ticks and legends are set an eighth smaller.
 TYPE_SIZE = 8.0
@@ -88,22 +91,48 @@ def styled(type_size: float | None = None) -> Iterator[None]:
         _type_size.reset(token)
 
 
-def open_axes(ax: Axes | None, size: tuple[float, float], **options: Any) -> tuple[Figure, Any]:
+def new_figure(size: tuple[float, float], path: Target = None) -> Figure:
+    """New figure of ``size`` (inch); call it inside `styled`.
+
+    ``plt.show()`` shows it, unless it is written to a ``path`` or matplotlib has nothing to show figures with: pyplot
+    would keep those for ever.
+    """
+    if path is None and matplotlib.get_backend().lower() not in FILES_ONLY:
+        # imported here: it may open windows
+        from matplotlib import pyplot
+
+        return pyplot.figure(figsize=size, layout="constrained")
+    return Figure(figsize=size, layout="constrained")
+
+
+def open_axes(
+    ax: Axes | None, size: tuple[float, float], path: Target = None, *, title: str = "", **options: Any
+) -> tuple[Figure, Any]:
     """Figure and axes to draw into: those given, or new ones of ``size`` (inch); call it inside `styled`.
 
     Parameters
     ----------
     ax : matplotlib Axes or None
     size : (float, float)
+    path : path, optional
+        Where the figure will be written.
+    title : str
+        Of new axes.
     **options
         For ``Figure.add_subplot``.
     """
     if ax is not None:
         return cast(Figure, ax.figure), ax
-    figure = Figure(figsize=size, layout="constrained")
+    figure = new_figure(size, path)
     ax = figure.add_subplot(**options)
+    ax.set_title(title)
     style_ticks(ax)
     return figure, ax
+
+
+def headed(title: str, text: str) -> str:
+    """A text under its title, if there is one."""
+    return f"{title}\n{text}" if title else text
 
 
 def style_ticks(ax: Axes) -> None:

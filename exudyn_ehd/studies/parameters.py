@@ -25,7 +25,7 @@ import math
 import numbers
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,13 +34,19 @@ from exudyn_ehd.joint.static.equilibrium import equilibrium
 from exudyn_ehd.status import EHDError, InputError, require_integer
 from exudyn_ehd.studies import places
 from exudyn_ehd.studies.rows import Row, RowFile
-from exudyn_ehd.tables import text_table, write_csv
+from exudyn_ehd.tables import Table, heads
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from exudyn_ehd.pictures.records import Target
 
 _WHERE = "parameter_study"
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class StudyTable:
+class StudyTable(Table):
     """Results of a study, one row per combination of the parameters; the last parameter changes fastest.
 
     ``table["minimum_gap"]`` is a column, ``len(table)`` the number of rows, ``print(table)`` shows it.
@@ -75,16 +81,63 @@ class StudyTable:
         """A column as an array over the parameters, in their order, for contour plots and the like."""
         return self.columns[name].reshape(self.shape)
 
-    def to_csv(self, path: str | pathlib.Path) -> None:
-        """Write the table: a header of names with units, a row per combination, the reason of a failure last."""
-        write_csv(path, self.columns, more=self.units, remarks={"error": self.errors})
+    def plot(self, name: str, *, along: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
+        """Draw a column over one parameter, with a curve for every combination of the others.
+
+        Parameters
+        ----------
+        name : str
+            Of the column.
+        along : str
+            The parameter; by default the first one.
+        ax : matplotlib Axes, optional
+            Where to draw; by default a new figure, which ``plt.show()`` shows.
+        path : path, optional
+            Where to write the figure.
+
+        Returns
+        -------
+        matplotlib Figure
+
+        Raises
+        ------
+        InputError
+            For names that the study does not have, or more than ten curves.
+        """
+        from exudyn_ehd.pictures.curves import Curve, plot_curves
+
+        along = along or self.parameters[0]
+        if name not in self.columns or along not in self.parameters:
+            raise InputError(
+                f"StudyTable.plot: name must be one of {', '.join(self.columns)}, and along one of "
+                f"{', '.join(self.parameters)}; got {name!r} and {along!r}."
+            )
+        axis = self.parameters.index(along)
+        x, y = (np.moveaxis(self.grid(column), axis, -1).reshape(-1, self.shape[axis]) for column in (along, name))
+        others = [other for other in self.parameters if other != along]
+        if len(x) > 10:
+            raise InputError(
+                f"StudyTable.plot: {len(x)} curves, one for every combination of {', '.join(others)}, at most 10; "
+                "draw table.grid(name) as contours, or a study of fewer values."
+            )
+        places = [np.moveaxis(self.grid(other), axis, -1).reshape(len(x), -1)[:, 0] for other in others]
+        heads_of = heads(others, self.units)
+        texts = [", ".join(f"{head} = {p[k]:.4g}" for head, p in zip(heads_of, places)) for k in range(len(x))]
+        curves = [Curve(*values) for values in zip(texts, x, y, strict=True)]
+        return plot_curves(curves, (along, name), self.units, ax=ax, path=path)
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        return self.columns
+
+    def _units(self) -> Mapping[str, str]:
+        return self.units
+
+    def _remarks(self) -> Mapping[str, Sequence[str]]:
+        return {"error": self.errors}
 
     def __repr__(self) -> str:
         names, failed = ", ".join(self.parameters), sum(map(bool, self.errors))
         return f"<StudyTable over {names}: {len(self)} rows, {failed} failed; print it for a table>"
-
-    def __str__(self) -> str:
-        return text_table(self.columns, more=self.units, remarks=self.errors)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)

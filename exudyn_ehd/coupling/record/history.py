@@ -8,7 +8,7 @@ import math
 import pathlib
 import zipfile
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -21,7 +21,10 @@ from exudyn_ehd.pictures.records import History
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
-from exudyn_ehd.tables import write_csv
+from exudyn_ehd.tables import data_frame, write_csv
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 _SCALARS = (
     "minimum_gap",
@@ -189,6 +192,14 @@ class JointHistory(History, HistoryPictures):
 
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write all columns as text, names and SI units in the first line; vectors by their components."""
+        write_csv(path, self._columns(), more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
+
+    def to_dataframe(self) -> DataFrame:
+        """The columns of `to_csv` as a pandas DataFrame, SI units, a row per step; needs pandas."""
+        return data_frame(self._columns())
+
+    def _columns(self) -> dict[str, np.ndarray]:
+        """Columns (n,) by name, vectors by their components."""
         columns: dict[str, np.ndarray] = {}
         for name in _NAMES:
             values = getattr(self, name)
@@ -197,7 +208,7 @@ class JointHistory(History, HistoryPictures):
                 columns |= dict(zip(_PARTS[name], values.T, strict=True))
             elif name != "eccentricity":
                 columns[name] = values
-        write_csv(path, columns, more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
+        return columns
 
     def revolutions(self, *, period: float | None = None) -> Revolutions:
         """Minimum film thickness and its place, peak pressure, mean loss and leakage of every whole revolution.

@@ -155,6 +155,9 @@ class JointResults(FilmPictures, HistoryPictures):
         """Table of the whole revolutions up to now; see `JointHistory.revolutions`."""
         return self.history.revolutions(period=period)
 
+    def _title(self) -> str:
+        return self.name
+
     def _film(self) -> FilmFields:
         return self.film()
 

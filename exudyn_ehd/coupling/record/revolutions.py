@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
-import pathlib
 from collections.abc import Callable, Mapping
 from typing import TypeAlias
 
 import numpy as np
 
 from exudyn_ehd.status import InputError, require_number
-from exudyn_ehd.tables import text_table, write_csv
+from exudyn_ehd.tables import Table
 
 Columns: TypeAlias = Mapping[str, np.ndarray]
 """The columns of a `JointHistory` by name."""
@@ -20,7 +19,7 @@ _UNITS = {"start": "s", "end": "s"}
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
-class Revolutions:
+class Revolutions(Table):
     """One row per revolution; SI units, nan where the film does not provide a quantity. ``print`` shows a table.
 
     Attributes
@@ -63,12 +62,8 @@ class Revolutions:
     def __repr__(self) -> str:
         return f"<Revolutions: {len(self)}, print them for a table>"
 
-    def __str__(self) -> str:
-        return text_table(self._columns(), more=_UNITS)
-
-    def to_csv(self, path: str | pathlib.Path) -> None:
-        """Write the table with units in its header."""
-        write_csv(path, self._columns(), more=_UNITS)
+    def _units(self) -> Mapping[str, str]:
+        return _UNITS
 
 
 def revolution_times(time: np.ndarray, omega: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import FilmError, Status, require_type
+from exudyn_ehd.tables import html_table
 
 __all__ = ["Audit", "Finding", "audit_record", "audit_states"]
 
@@ -76,9 +77,15 @@ class Audit:
         ]
         return f"<Audit of {len(self.findings)} effects and assumptions: {'; '.join(said) or 'nothing to change'}>"
 
+    def _rows(self) -> list[tuple[str, ...]]:
+        head = ("effect", "", "change", "value", "limit", "time", "verdict", "indicator")
+        return [head, *(_row(finding) for finding in self.findings)]
+
+    def _repr_html_(self) -> str:
+        return html_table(self._rows())
+
     def __str__(self) -> str:
-        rows: list[tuple[str, ...]] = [("effect", "", "change", "value", "limit", "time", "verdict", "indicator")]
-        rows += [_row(finding) for finding in self.findings]
+        rows = self._rows()
         widths = [max(len(row[k]) for row in rows) for k in range(7)]
         lines = ["  ".join(text.ljust(w) for text, w in zip(row, (*widths, 0))).rstrip() for row in rows]
         lines.insert(1, "-" * max(map(len, lines)))

@@ -1,0 +1,72 @@
+"""Figures that ``plt.show()`` shows where there is something to show them with."""
+
+import sys
+import types
+
+import matplotlib
+import numpy as np
+import pytest
+from matplotlib import pyplot as plt
+from matplotlib.backend_bases import FigureManagerBase
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+from exudyn_ehd.pictures.curves import Curve, plot_curves
+from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
+from exudyn_ehd.pictures.maps import PRESSURE, plot_map
+
+
+@pytest.fixture
+def windows(monkeypatch):
+    """A backend whose windows are a list of the figures shown."""
+    shown = []
+
+    class Manager(FigureManagerBase):
+        def show(self):
+            shown.append(self.canvas.figure)
+
+    class Canvas(FigureCanvasAgg):
+        manager_class = Manager
+
+    backend = types.ModuleType("list_of_windows")
+    backend.FigureCanvas, backend.FigureManager = Canvas, Manager
+    monkeypatch.setitem(sys.modules, backend.__name__, backend)
+    before = matplotlib.get_backend()
+    plt.switch_backend(f"module://{backend.__name__}")
+    yield shown
+    plt.close("all")
+    plt.switch_backend(before)
+
+
+def test_show_shows_them_and_savefig_saves(windows, film, history, tmp_path):
+    curve = Curve("a", np.arange(3.0), np.arange(3.0))
+    figures = [
+        plot_orbit(history),
+        plot_load(history),
+        plot_traces(history),
+        plot_map(film, PRESSURE),
+        plot_curves([curve], ("speed", "minimum_gap"), {}),
+    ]
+    # those that are written are no more to be shown
+    plot_orbit(history, path=tmp_path / "orbit.png")
+    plt.show()
+    assert windows == figures
+    figures[0].show()
+    assert windows[-1] is figures[0]
+    figures[0].savefig(tmp_path / "again.png")
+    assert (tmp_path / "again.png").stat().st_size > 1000 and (tmp_path / "orbit.png").stat().st_size > 1000
+
+
+def test_pyplot_keeps_none_that_it_can_not_show(history):
+    assert matplotlib.get_backend().lower() == "agg"
+    plot_orbit(history)
+    assert not plt.get_fignums()
+
+
+def test_titles_and_legends(film, fed_film, history):
+    assert plot_orbit(history, title="main").axes[0].get_title() == "main"
+    assert plot_traces(history, title="main").get_suptitle() == "main"
+    assert plot_load(history, title="main").axes[0].get_title().startswith("main\nload of")
+    for its, expected in ((film, ["edge of the cavity"]), (fed_film, ["edge of the cavity", "supply area"])):
+        figure = plot_map(its, PRESSURE, title="main")
+        assert figure.axes[0].get_title().startswith("main\nlargest")
+        assert [text.get_text() for text in figure.legends[0].get_texts()] == expected
