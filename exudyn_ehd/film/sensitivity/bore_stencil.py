@@ -62,45 +62,6 @@ def gap_stencil(order, count, d, slope, AR, AC, by_gap, by_rate, weight_out, pla
 
 
 @njit(cache=True, fastmath=_FAST)
-def nodal_displacements(indptr, indices, values, normals, q, q_t, place_out, rate_out):
-    """Displacements and rates (p,) along ``normals`` (p, 2) of points that move with nodes.
-
-    Parameters
-    ----------
-    indptr, indices, values
-        CSR matrix (p, nodes) from values at the nodes.
-    normals : (p, 2) array
-    q, q_t : (2 nodes,) arrays
-        x and y of every node.
-    place_out, rate_out : (p,) arrays
-    """
-    for r in range(place_out.size):
-        x, y, x_t, y_t = 0.0, 0.0, 0.0, 0.0
-        for p in range(indptr[r], indptr[r + 1]):
-            w, k = values[p], 2 * indices[p]
-            x += w * q[k]
-            y += w * q[k + 1]
-            x_t += w * q_t[k]
-            y_t += w * q_t[k + 1]
-        place_out[r] = normals[r, 0] * x + normals[r, 1] * y
-        rate_out[r] = normals[r, 0] * x_t + normals[r, 1] * y_t
-
-
-@njit(cache=True, fastmath=_FAST)
-def nodal_loads(indptr, indices, values, normals, field, out):
-    """The transpose of `nodal_displacements`: loads (2 nodes,) of forces (p,); where none act it costs nothing."""
-    out[:] = 0.0
-    for r in range(field.size):
-        if field[r] == 0.0:
-            continue
-        x, y = normals[r, 0] * field[r], normals[r, 1] * field[r]
-        for p in range(indptr[r], indptr[r + 1]):
-            w, k = values[p], 2 * indices[p]
-            out[k] += w * x
-            out[k + 1] += w * y
-
-
-@njit(cache=True, fastmath=_FAST)
 def put_rows(shapes, place, weight, first, out):
     """Rows ``place`` of shapes (., k) times ``weight``, both (count,), to the columns from ``first`` on.
 
@@ -116,17 +77,6 @@ def put_rows(shapes, place, weight, first, out):
             for q in range(size):
                 target[q] = w * own[q]
         done += size
-
-
-@njit(cache=True, fastmath=_FAST)
-def add_transposed(weight, place, fields, out):
-    """Add the transposed stencil times fields (count, k) to out (n m, k)."""
-    for r in range(len(weight)):
-        known = fields[r]
-        for c in range(5):
-            w, target = weight[r, c], out[place[r, c]]
-            for q in range(known.size):
-                target[q] += w * known[q]
 
 
 @njit(cache=True, fastmath=_FAST)

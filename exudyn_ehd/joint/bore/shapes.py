@@ -16,7 +16,6 @@ from scipy.sparse import csr_matrix
 
 from exudyn_ehd.film.banded.many_sides import TILE
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import add_transposed, nodal_displacements, nodal_loads, put_rows
 from exudyn_ehd.film.sensitivity.mirror_symmetry import (
     courses,
     fold_adjoints,
@@ -26,6 +25,13 @@ from exudyn_ehd.film.sensitivity.mirror_symmetry import (
     place_columns,
     stencil_by_vertices,
 )
+from exudyn_ehd.joint.bore.columns import (
+    by_columns,
+    column_displacements,
+    column_loads,
+    project_columns,
+    put_sparse,
+)
 from exudyn_ehd.joint.bore.transfer import end_means, vertex_means
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.mesh import Surface, directed
@@ -34,6 +40,7 @@ from exudyn_ehd.solid.modes.static import BoreModes
 # Part of the wrong symmetry, over a mode's largest displacement, that counts as rounding of the modes' eigenvalue
 # problems.
 ASYMMETRY = 1e-9
+_NO_PLACES, _NO_VALUES = np.zeros(0, dtype=np.int32), np.zeros(0)
 
 
 class Bore(Protocol):
@@ -235,8 +242,8 @@ class NodalBore:
     ----------
     values : csr matrix (n m, nodes)
         Of `exudyn_ehd.joint.bore.transfer.vertex_means`.
-    normals : (n m, 2) array
-        At the film's vertices.
+    columns : Columns
+        The same with the normals.
     shapes : csr matrix (n m, k)
         S, k twice the number of nodes.
     order : (k,) int array
@@ -246,12 +253,10 @@ class NodalBore:
     def __init__(self, surface: Surface, grid: FilmGrid) -> None:
         self.grid_shape, self.grid = grid.shape, grid
         theta, _ = _on_lines(grid, grid.z)
-        self.normals = np.stack([np.cos(theta), np.sin(theta)], axis=1)
         self.surface, self.values = surface, vertex_means(surface, grid)
-        self.shapes: csr_matrix = directed(self.values, self.normals, 2)
-        self.transposed: csr_matrix = self.shapes.T.tocsr()
+        self.columns = by_columns(self.values, grid)
+        self.shapes: csr_matrix = directed(self.values, np.stack([np.cos(theta), np.sin(theta)], axis=1), 2)
         self.order = np.arange(self.size)
-        self._kernel = self.values.indptr, self.values.indices, self.values.data, self.normals
 
     @property
     def size(self) -> int:
@@ -265,7 +270,7 @@ class NodalBore:
     def load(self, field: np.ndarray) -> np.ndarray:
         """S^T f (k,)."""
         out = np.empty(self.size)
-        nodal_loads(*self._kernel, np.ascontiguousarray(field).reshape(-1), out)
+        column_loads(self.columns, np.ascontiguousarray(field), out)
         return out
 
     def contract(self, fields: np.ndarray) -> np.ndarray:
@@ -275,25 +280,38 @@ class NodalBore:
     def displacements(self, q: np.ndarray, q_t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """S q and S q_t (n, m)."""
         place, rate = np.empty(self.grid_shape), np.empty(self.grid_shape)
-        nodal_displacements(*self._kernel, q, q_t, place.reshape(-1), rate.reshape(-1))
+        column_displacements(self.columns, q, q_t, place.reshape(-1), rate.reshape(-1))
         return place, rate
 
     def fill_rows(self, places: np.ndarray, weight: np.ndarray, first: int, out: np.ndarray) -> None:
         """Rows of S at vertices, weighted, into columns of out."""
-        rows = self.shapes[places].toarray()
-        put_rows(rows, np.arange(len(places)), weight, first, out)
+        rows = self.shapes[places]
+        put_sparse(rows.indptr, rows.indices, rows.data, weight, first, out)
 
     def project(self, weight: np.ndarray, places: np.ndarray, fields: np.ndarray, size: int) -> np.ndarray:
         """X^T B S (size, k)."""
-        known = fields.transpose(1, 0, 2).reshape(fields.shape[1], len(fields) * TILE)
-        known = np.ascontiguousarray(known[: len(weight), :size])
-        at_vertices = np.zeros((self.shapes.shape[0], size))
-        add_transposed(weight, places, known, at_vertices)
-        return (self.transposed @ at_vertices).T
+        out = np.empty((size, self.size))
+        self.project_on(weight, places, fields, (np.zeros(size + 1, dtype=np.int32), _NO_PLACES, _NO_VALUES), out)
+        return out
+
+    def project_on(
+        self,
+        weight: np.ndarray,
+        places: np.ndarray,
+        fields: np.ndarray,
+        direct: tuple[np.ndarray, np.ndarray, np.ndarray],
+        out: np.ndarray,
+    ) -> None:
+        """(X^T B + D) S (size, k) into out; D (size, n m) by indptr, indices and data of a CSR matrix."""
+        # without a film no row of the fields is read
+        stencil = stencil_by_vertices(weight, places[:, 0], self.grid_shape)
+        if not len(places):
+            stencil = 0, stencil[1][:0], stencil[2][:0]
+        project_columns(self.columns, stencil, fields, direct, out)
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
-        return (self.transposed.multiply(field.ravel()) @ self.shapes).toarray()
+        return (self.shapes.T.multiply(field.ravel()) @ self.shapes).toarray()
 
     def end_shapes(self) -> np.ndarray:
         """S for linear pressures (2, k)."""

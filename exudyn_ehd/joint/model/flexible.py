@@ -220,7 +220,7 @@ class ElasticBearingModel(BearingModel):
     def bore_forces(self) -> BoreForces:
         """Of a nodal bore: what carries the film's forces to its nodes."""
         assert isinstance(self.bore, NodalBore)
-        return BoreForces(self.bore.values, self.grid)
+        return BoreForces(self.bore)
 
     def _journal(self, motion: np.ndarray) -> JournalMotion:
         """Take over a motion (10 + 2 k,); with (10,) the bore is undeformed and at rest."""

@@ -22,7 +22,7 @@ from scipy.sparse import csr_matrix, diags, vstack
 
 from exudyn_ehd.film.banded.many_sides import make_tiles
 from exudyn_ehd.film.grid import FilmGrid
-from exudyn_ehd.film.sensitivity.bore_stencil import put_rows
+from exudyn_ehd.joint.bore.columns import column_forces, put_sparse
 from exudyn_ehd.joint.bore.shapes import NodalBore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.bore import (
@@ -41,33 +41,30 @@ class BoreForces:
 
     Parameters
     ----------
-    values : csr matrix (n m, nodes)
-        Shape functions at the film's vertices.
-    grid : FilmGrid
+    bore : NodalBore
     """
 
-    def __init__(self, values: csr_matrix, grid: FilmGrid) -> None:
-        self.transposed = values.T.tocsr()
-        self.count = values.shape[1]
+    def __init__(self, bore: NodalBore) -> None:
+        self.bore, grid = bore, bore.grid
+        self.count = bore.values.shape[1]
         self.cos = np.repeat(np.cos(grid.x), grid.shape[1])
         self.sin = np.repeat(np.sin(grid.x), grid.shape[1])
         self.slope_x, self.slope_z = slope_matrices(grid)
 
     def nodal(self, forces: np.ndarray) -> np.ndarray:
         """Forces (nodes, 3) of vertex forces (3, n m), joint frame."""
-        f, t, z = forces
-        return self.transposed @ np.column_stack((self.cos * f - self.sin * t, self.sin * f + self.cos * t, z))
+        out = np.empty((self.count, 3))
+        column_forces(self.bore.columns, forces, out)
+        return out
 
-    def rows(self, forces: list[csr_matrix]) -> csr_matrix:
-        """E^T (3 nodes, r) of three sparse maps (n m, r) to vertex forces; rows by direction x, y, z."""
+    def columns(self, forces: list[csr_matrix]) -> csr_matrix:
+        """Transpose (r, 3 nodes) of E^T times three sparse maps (n m, r) to vertex forces."""
         f, t, z = forces
         cos, sin = diags(self.cos), diags(self.sin)
-        along = (cos @ f - sin @ t, sin @ f + cos @ t, z)
-        return vstack([self.transposed @ part for part in along]).tocsr()
-
-    def by_node(self, rows: np.ndarray) -> np.ndarray:
-        """Rows (3 nodes, ...) of `rows` as (nodes, 3, ...)."""
-        return rows.reshape(3, self.count, *rows.shape[1:]).swapaxes(0, 1)
+        along = [(part.T @ self.bore.values).tocoo() for part in (cos @ f - sin @ t, sin @ f + cos @ t, z)]
+        place = np.concatenate([3 * part.col + axis for axis, part in enumerate(along)])
+        values, rows = (np.concatenate([getattr(part, name) for part in along]) for name in ("data", "row"))
+        return csr_matrix((values, (rows, place)), shape=(f.shape[1], 3 * self.count))
 
 
 def slope_matrices(grid: FilmGrid) -> tuple[csr_matrix, csr_matrix]:
@@ -236,25 +233,30 @@ def nodal_tangent(film: SolvedFilm, bore: NodalBore, forces: BoreForces) -> tupl
     integrals = adjoint_rows(film)
     count, unknowns = integrals.shape
     lam = make_tiles(integrals, count + rows)
-    loads = np.ascontiguousarray(forces.rows(change.by_unknown()).T.toarray())
-    put_rows(loads, np.arange(unknowns), np.ones(unknowns), count, lam)
+    loads = forces.columns(change.by_unknown())
+    put_sparse(loads.indptr, loads.indices, loads.data, np.ones(unknowns), count, lam)
     film.solver.adjoint_columns(lam)
     gradient = -balances.gradient(lam).transpose(0, 2, 1).reshape(-1, size)
-    wrench, nodal = np.empty((6, size + 2 * k)), np.empty((rows, size + 2 * k))
+    wrench, whole = np.empty((6, size + 2 * k)), np.empty((count + rows, size + 2 * k))
+    nodal = whole[count:]
     wrench[:, :size] = wrench_tangent(film, gradient=gradient[:count])
     nodal[:, :size] = gradient[count : count + rows] * film.parts.motion_scale + _by_motion(film, forces, change)
     weights, direct = wrench_weights(film, bore)
-    c = film.parts.bearing.radial_clearance
-    gaps = [diags(field) for field in change.gap]
-    slope = diags(change.slope)
+    gaps = [diags(field / film.parts.bearing.radial_clearance) for field in change.gap]
+    slope = diags(change.slope / film.parts.bearing.radial_clearance)
     gaps[1:] = [gap + slope @ along for gap, along in zip(gaps[1:], (forces.slope_x, forces.slope_z), strict=True)]
-    at_once = (forces.rows(gaps) @ bore.shapes).toarray() / c
-    for i, (by_gap, by_rate) in enumerate(((1.0, 0.0), (0.0, 1.0))):
+    nothing = csr_matrix((count, len(change.slope)))
+    at_once = vstack((nothing, forces.columns(gaps).T), format="csr")
+    for i, (by_gap, by_rate, at_fixed) in enumerate(((1.0, 0.0, at_once), (0.0, 1.0, csr_matrix(at_once.shape)))):
         part = slice(size + i * k, size + (i + 1) * k)
-        by_bore = bore.project(*balances.stencil(-by_gap, -by_rate), lam, count + rows)
-        wrench[:, part] = weights @ by_bore[:count] + by_gap * direct
-        nodal[:, part] = by_bore[count:] + by_gap * at_once
-    return wrench, forces.by_node(nodal)
+        bore.project_on(
+            *balances.stencil(-by_gap, -by_rate),
+            lam,
+            (at_fixed.indptr, at_fixed.indices, at_fixed.data),
+            whole[:, part],
+        )
+        wrench[:, part] = weights @ whole[:count, part] + by_gap * direct
+    return wrench, nodal.reshape(forces.count, 3, -1)
 
 
 class NodalProduct(TangentProduct):
@@ -289,7 +291,7 @@ def _pose_columns(film: SolvedFilm) -> np.ndarray:
 
 
 def _by_motion(film: SolvedFilm, forces: BoreForces, change: TractionChange) -> np.ndarray:
-    """Derivatives (3 nodes, 10) to the motion at fixed unknowns; rows by direction as in `BoreForces.rows`."""
+    """Derivatives (3 nodes, 10) to the motion at fixed unknowns; rows as in `BoreForces.columns`."""
     vertex = np.zeros((MOTION_SIZE, *change.gap.shape))
     columns = _pose_columns(film) * film.parts.pose_scale
     for j in range(4):
@@ -297,5 +299,5 @@ def _by_motion(film: SolvedFilm, forces: BoreForces, change: TractionChange) -> 
     vertex[8], vertex[9] = change.speed[:, :, 0], change.speed[:, :, 1]
     out = np.zeros((3 * forces.count, MOTION_SIZE))
     for j in (0, 1, 2, 3, 8, 9):
-        out[:, j] = forces.nodal(vertex[j]).T.ravel()
+        out[:, j] = forces.nodal(vertex[j]).ravel()
     return out

@@ -36,7 +36,7 @@ def evaluated(option, seed=1):
     step = 0.0 if history is None else 1e-4
     evaluation = model.evaluate(motion, history, step)
     assert evaluation.status is Status.CONVERGED
-    return model, motion, history, step, evaluation, BoreForces(model.bore.values, model.grid)
+    return model, motion, history, step, evaluation, BoreForces(model.bore)
 
 
 def plain(film):
@@ -83,7 +83,7 @@ def test_shear_of_a_concentric_journal_is_that_of_petroff():
     model = build_model(make_bearing(BUSHES["nodal"], film=ehd.FiniteLength(n_theta=96, n_z=12)))
     motion = np.zeros(10)
     motion[8] = 300.0
-    forces = BoreForces(model.bore.values, model.grid)
+    forces = BoreForces(model.bore)
     shear = traction(model.evaluate(motion).film, forces)
     R, mu = 0.03, 9e-3
     expected = mu * 300.0 * R / C * model.grid.weight.ravel() * R**2
