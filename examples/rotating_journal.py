@@ -242,12 +242,12 @@ if __name__ == "__main__":
     outcome = main(quick=arguments.quick, results=arguments.results)
     outcome.pop("pictures")
     print(
-        f"{'':55s}{'peak':>8s}{'load':>8s}{'min. film':>11s}{'extent':>8s}{'asymmetry':>11s}"
+        f"{'':55s}{'peak':>8s}{'load':>8s}{'minimum film thickness':>24s}{'extent':>8s}{'asymmetry':>11s}"
         f"{'evaluation':>12s}{'solve':>8s}"
     )
-    print(f"{'':55s}{'MPa':>8s}{'kN':>8s}{'um':>11s}{'°':>8s}{'-':>11s}{'ms':>12s}{'s':>8s}")
+    print(f"{'':55s}{'MPa':>8s}{'kN':>8s}{'um':>24s}{'°':>8s}{'-':>11s}{'ms':>12s}{'s':>8s}")
     for (closure, name, label), case in outcome.items():
         print(
-            f"{closure:17s}{name:10s}{label:28s}{case['peak_MPa']:8.2f}{case['load_kN']:8.2f}{case['minimum_film_thickness_um']:11.2f}"
+            f"{closure:17s}{name:10s}{label:28s}{case['peak_MPa']:8.2f}{case['load_kN']:8.2f}{case['minimum_film_thickness_um']:24.2f}"
             f"{case['extent_deg']:8.0f}{case['asymmetry']:11.1e}{case['evaluation_ms']:12.2f}{case['solve_s']:8.2f}"
         )

@@ -1,5 +1,6 @@
 """READMEs: their Python runs as it stands, what they name and link to exists, one word for one thing."""
 
+import ast
 import pathlib
 import re
 
@@ -73,3 +74,30 @@ def test_the_main_guide_is_short_and_its_difference_is_the_example_s(example):
     (shown,) = blocks("README.md", "diff")
     # without the head of the difference and the return of the joints
     assert shown.splitlines() == example("upgrade_existing_model").difference().splitlines()[3:-1]
+
+
+# What is written otherwise, in prose: the class is `Gumbel`, the man is Gümbel.
+VARIANTS = re.compile(
+    r"(?<!FullSommerfeld, )\bGumbel\b(?![.`(=])"
+    r"|\bmin(?:imal|imum)?\.? film\b(?! thickness)|\b(?:smallest|least|minimal) film thickness"
+)
+
+
+def prose(path):
+    """What a person reads of a file: text without code, docstrings, messages and comments."""
+    text = path.read_text(encoding="utf-8")
+    if path.suffix == ".py" and re.search("umbel|min[a-z.]* *film|film *thickness", text):
+        comments = " ".join(re.findall(r"#+ (.*)", text))
+        known = [n.value for n in ast.walk(ast.parse(text)) if isinstance(n, ast.Constant) and isinstance(n.value, str)]
+        # a string of one word is a name of the code
+        text = " | ".join([comments, *(value for value in known if value != "Gumbel")])
+    elif path.suffix == ".py":
+        text = ""
+    return re.sub(r"\s+", " ", re.sub(r"`+[^`]*`+", "", FENCE.sub("", text)))
+
+
+def test_one_spelling_for_one_thing():
+    folders = [ROOT / folder for folder in ("exudyn_ehd", "examples", "tests/benchmarks")]
+    paths = [path for folder in folders for path in folder.rglob("*.py")] + GUIDES
+    found = [f"{path}: {match.group(0)!r}" for path in paths for match in VARIANTS.finditer(prose(path))]
+    assert not found, "\n".join(found)

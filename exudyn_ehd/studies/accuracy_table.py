@@ -28,7 +28,7 @@ from exudyn_ehd.tables import read_rows
 
 DATA = pathlib.Path(__file__).parent / "data"
 FILE = "cells.csv"
-NAMES = ("load", "attitude", "friction", "peak pressure", "minimum film", "leakage", "stiffness", "damping")
+NAMES = ("load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "stiffness", "damping")
 AXES = ("length_to_diameter", "tilt_ratio", "elasticity", "eccentricity_ratio")
 HEAD = ("kind", *AXES, "setting", "seconds", *NAMES)
 GRIDS = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16))

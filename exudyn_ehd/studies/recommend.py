@@ -105,7 +105,7 @@ def recommend(
     error : float
         Relative.
     quantity : str
-        "load", "attitude", "friction", "peak pressure", "minimum film", "leakage", "stiffness" or "damping".
+        "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "stiffness" or "damping".
     eccentricity_ratio : float or (lowest, highest)
         Where the bearing works; the worst of a range counts.
     tilt_ratio : float

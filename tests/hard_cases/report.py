@@ -55,8 +55,9 @@ def record_rows(states: int) -> tuple[list[str], bool]:
     for name, campaign in hard_random.CAMPAIGNS.items():
         r = campaign(states, SEED)
         good = good and not r.failures
+        closure = re.sub(r"^\w+", r"`\g<0>`", name)
         rows.append(
-            f"| {name} | {r.states} | {r.failures} | {r.solid} | {r.worst} | {r.mean:.1f} | {r.balance:.0e} | "
+            f"| {closure} | {r.states} | {r.failures} | {r.solid} | {r.worst} | {r.mean:.1f} | {r.balance:.0e} | "
             f"{1e3 * r.seconds / r.states:.2f} |"
         )
         print(rows[-1], flush=True)

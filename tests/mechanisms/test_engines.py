@@ -82,7 +82,7 @@ HEAT = ehd.FilmEnergy(
     supply_temperature=373.15, bush_coefficient=5e3, bush_temperature=373.15,
     journal_coefficient=5e3, journal_temperature=373.15,
 )  # fmt: skip
-# Peak of the gas, bar, law and effects, and the converged minimum film, um, and peak pressure, MPa (2880 steps a turn).
+# Peak of the gas (bar), law and effects; converged minimum film thickness (um), peak pressure (MPa), 2880 steps a turn.
 CELLS = {
     "plain": (60.0, None, {}, 0.8012, 207.7),
     "barus": (30.0, LAWS["barus"], {**ROUGH, "thermal": HEAT}, 1.8115, 109.3),
@@ -202,7 +202,8 @@ def test_gudgeon_pin_in_steps_of_all_sizes(name):
         check_pin(name, steps, rho, 0.05)
 
 
-# Converged minimum film, um, and peak pressure, MPa, behind the tenth of a turn in which the gas comes up (1440 steps).
+# Converged minimum film thickness (um) and peak pressure (MPa), 1440 steps, behind the tenth of a turn in which the gas
+# comes up.
 TWO_CYLINDERS = {
     "main 1": (3.553, 28.25),
     "main 2": (5.289, 30.75),

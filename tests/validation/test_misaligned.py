@@ -21,7 +21,7 @@ SPEED = 100.0
 def test_forces_and_moments(table, make_bearing, measured, sign):
     force = moment = peak = 0.0
     for row in table("own_misaligned_reference"):
-        tau = row["tau(e varies linearly: eps(z)=eps+tau*2z/L in direction of min film)"]
+        tau = row["tau(e varies linearly: eps(z)=eps+tau*2z/L in direction of minimum film thickness)"]
         bearing = make_bearing(row["L_over_D"], inlet=ehd.MaximumGap())
         slope = sign * tau * bearing.radial_clearance * 2.0 / bearing.length
         film = ehd.steady(bearing, speed=SPEED, eccentricity_ratio=row["eps_mid"], tilt=(slope, 0.0))

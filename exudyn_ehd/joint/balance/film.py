@@ -58,7 +58,7 @@ def evaluate_at(
             remedy = _without_a_shape(evaluation)
         raise FilmError(
             f"{where}: {evaluation.status.name} at x = {motion[0]:.4g} m, y = {motion[1]:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum gap {evaluation.minimum_gap:.3g} m: "
+            f"({motion[2]:.3g}, {motion[3]:.3g}), minimum film thickness {evaluation.minimum_gap:.3g} m: "
             f"{remedy}"
         )
     return evaluation, evaluation.film

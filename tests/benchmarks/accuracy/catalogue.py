@@ -96,7 +96,7 @@ def steady_bush(scene: SteadyScene) -> Study:
         scene=scene,
         settings=ladders.bush_ladder(paper_bush, STEEL, tilted=tilted, films=ladders.BUSH_FILMS),
         references=ladders.bush_references(paper_bush, STEEL, tilted=tilted),
-        quantities=("load", "peak pressure", "minimum film", "friction", "stiffness"),
+        quantities=("load", "peak pressure", "minimum film thickness", "friction", "stiffness"),
     )
 
 
@@ -168,7 +168,7 @@ def _classic() -> list[Setting]:
         out.append(
             Setting(
                 label=f"SOR {ladders.grid_label(grid)}, {tolerance:.0e}{paper}",
-                family="FD + SOR, Gumbel",
+                family="FD + SOR, Gümbel",
                 model=ladders.GUMBEL,
                 options={"film": film, "cavitation": Gumbel()},
                 integration=Integration(newton_tolerance=newton),

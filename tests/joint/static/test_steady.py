@@ -69,7 +69,7 @@ class TestSteady:
         assert film.power_loss == 0.0
 
     def test_tilted_against_the_wall(self, make_bearing):
-        with pytest.raises(ehd.FilmError, match=r"steady: NO_FILM at x = .*minimum gap.*RegularisedWall"):
+        with pytest.raises(ehd.FilmError, match=r"steady: NO_FILM at x = .*minimum film thickness.*RegularisedWall"):
             ehd.steady(make_bearing(1.0), speed=SPEED, eccentricity_ratio=1.0)
         with pytest.raises(ehd.FilmError, match="NO_FILM"):
             ehd.steady(make_bearing(1.0), speed=SPEED, eccentricity_ratio=0.5, tilt=(1e-3, 0.0))

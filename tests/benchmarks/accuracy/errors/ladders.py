@@ -27,7 +27,7 @@ GRIDS: tuple[Grid, ...] = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192,
 REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((192, 16), (384, 32), (768, 64))
 EFFECT_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
 QUICK_REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
-SWIFT, GUMBEL, SHORT, LONG = "Swift-Stieber", "Gumbel", "short bearing", "long bearing"
+SWIFT, GUMBEL, SHORT, LONG = "Swift-Stieber", "Gümbel", "short bearing", "long bearing"
 # The paper prints its tolerance, not its film grid; this one has a point at every node that its bush has on the bore.
 PAPER_GRID, PAPER_TOLERANCE = (80, 8), 1e-5
 CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 1e-7)), ((192, 48), (1e-5, 1e-7)))
@@ -79,7 +79,7 @@ def film_ladder(
     ]
     out += [
         Setting(
-            label=f"Gumbel {grid_label(g)}", family="2D, Gumbel", model=GUMBEL, options={"film": _film(g), **gumbel}
+            label=f"Gümbel {grid_label(g)}", family="2D, Gümbel", model=GUMBEL, options={"film": _film(g), **gumbel}
         )
         for g in grids
     ]
@@ -105,7 +105,7 @@ def film_ladder(
             paper = grid == PAPER_GRID and tolerance == PAPER_TOLERANCE
             film = ClassicSOR(n_theta=grid[0], n_z=grid[1], tolerance=tolerance)
             label = f"SOR {grid_label(grid)}, {tolerance:.0e}" + (" (paper)" if paper else "")
-            out.append(Setting(label=label, family="FD + SOR, Gumbel", model=GUMBEL, options={"film": film, **gumbel}))
+            out.append(Setting(label=label, family="FD + SOR, Gümbel", model=GUMBEL, options={"film": film, **gumbel}))
     return tuple(out)
 
 
@@ -140,7 +140,7 @@ def _film(grid: Grid) -> FiniteLength:
 
 CLOSURES = {
     "full Sommerfeld": FullSommerfeld(),
-    "Gumbel": Gumbel(cavity_pressure=CAVITY),
+    "Gümbel": Gumbel(cavity_pressure=CAVITY),
     "Swift-Stieber": SwiftStieber(cavity_pressure=CAVITY),
     "mass conserving": ElrodAdams(cavity_pressure=CAVITY),
 }
@@ -160,7 +160,7 @@ def closure_ladder(*, grids: Iterable[Grid] = ((64, 8), (96, 10), (192, 16))) ->
 def closure_references(grids: tuple[Grid, Grid, Grid] = ((128, 10), (256, 20), (512, 40))) -> tuple[Reference, ...]:
     """Mass conservation first, then every other closure."""
     out = []
-    for name in ("mass conserving", "Swift-Stieber", "Gumbel", "full Sommerfeld"):
+    for name in ("mass conserving", "Swift-Stieber", "Gümbel", "full Sommerfeld"):
         a, b, c = (
             Setting(
                 label=f"{name} {grid_label(g)}",

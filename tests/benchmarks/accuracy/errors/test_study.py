@@ -49,7 +49,7 @@ def test_errors(rows):
     # same model: both errors are one
     assert fine.own_error == fine.error
     # Gümbel lacks 15 % of the load at this eccentricity, however fine its grid
-    gumbel = _find(rows, "Gumbel 64 x 8")
+    gumbel = _find(rows, "Gümbel 64 x 8")
     assert gumbel.error == pytest.approx(0.15, abs=0.02)
     assert gumbel.own_error < 0.005
 

@@ -124,7 +124,7 @@ def extremes(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
     loss = np.trapezoid(history.power_loss[kept], span) / (span[-1] - span[0])
     return {
         "path": at(history, instants, "eccentricity"),
-        "minimum film": history.minimum_gap[kept].min(),
+        "minimum film thickness": history.minimum_gap[kept].min(),
         "peak pressure": history.peak_pressure[kept].max(),
         "mean loss": loss,
     }
@@ -136,7 +136,7 @@ def extremes_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
         QuantityOfInterest(
             name="path", unit="m", scale=clearance, text="path of the journal, error over the clearance"
         ),
-        QuantityOfInterest(name="minimum film", unit="m", text="minimum film thickness of the run"),
+        QuantityOfInterest(name="minimum film thickness", unit="m", text="minimum film thickness of the run"),
         QuantityOfInterest(name="peak pressure", unit="Pa", text="largest pressure of the run"),
         QuantityOfInterest(name="mean loss", unit="W", text="mean friction loss"),
     )

@@ -31,7 +31,7 @@ QUANTITIES = (
     QuantityOfInterest(name="attitude", unit="rad", scale=1.0, text="direction of the film force, error in rad"),
     QuantityOfInterest(name="friction", unit="Nm", text="friction torque on the journal"),
     QuantityOfInterest(name="peak pressure", unit="Pa", text="peak pressure"),
-    QuantityOfInterest(name="minimum film", unit="m", text="minimum film thickness"),
+    QuantityOfInterest(name="minimum film thickness", unit="m", text="minimum film thickness"),
     QuantityOfInterest(name="leakage", unit="m3/s", text="flow out of both ends"),
     QuantityOfInterest(name="stiffness", unit="N/m", text="stiffness, largest entry"),
     QuantityOfInterest(name="damping", unit="N s/m", text="damping, largest entry"),
@@ -40,7 +40,7 @@ _FROM_MODEL = {
     "friction": "friction_torque",
     "peak pressure": "peak_pressure",
     "leakage": "leakage",
-    "minimum film": "minimum_gap",
+    "minimum film thickness": "minimum_gap",
 }
 
 
