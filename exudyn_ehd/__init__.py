@@ -58,6 +58,7 @@ from exudyn_ehd.joint.static.stribeck import StribeckResult, stribeck
 from exudyn_ehd.status import (
     EHDError,
     FilmError,
+    HotFilmWarning,
     InputError,
     MemoryWarning,
     OverloadWarning,
@@ -217,6 +218,7 @@ __all__ = [
     "Held",
     "Hole",
     "HollowCylinder",
+    "HotFilmWarning",
     "ImpedanceMap",
     "InputError",
     "JointHistory",

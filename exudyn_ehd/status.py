@@ -82,6 +82,10 @@ class OverloadWarning(UserWarning):
     """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing."""
 
 
+class HotFilmWarning(UserWarning):
+    """A film is hotter than oils bear for long."""
+
+
 class StrainWarning(UserWarning):
     """A bush that is taken as linear strains by more than that describes."""
 

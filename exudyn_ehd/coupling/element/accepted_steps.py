@@ -29,7 +29,7 @@ from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch
 from exudyn_ehd.joint.audit import ringing
 from exudyn_ehd.joint.balance.film import lacks_oil
-from exudyn_ehd.joint.balance.temperature import is_too_hot
+from exudyn_ehd.joint.balance.hot_oil import HOT
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart, next_start
@@ -141,7 +141,7 @@ class AcceptedSteps:
         self.tangent: np.ndarray | None = None
         self._thin = -np.inf
         self._told = True
-        self._overloaded = False
+        self._overloaded, self._cool = False, HOT
         self.asked: tuple[float, list[float]] = (np.nan, [])
         self.forget()
 
@@ -227,6 +227,7 @@ class AcceptedSteps:
         self._may_starve = self._uses_memory and lacks_oil(bearing)
         self.tangent = None
         self._thin, self._told, self._overloaded = thin_films.limit(bearing), False, False
+        self._cool = HOT
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory
         if not resumed and not goes_on:
@@ -285,9 +286,7 @@ class AcceptedSteps:
             raise failures.no_film(start, trial, explicit=False)
         if row is not None and (absurd := failures.absurd(start, row, trial)) is not None:
             raise absurd
-        temperature = getattr(self.memory, "temperature", None)
-        if temperature is not None and is_too_hot(temperature):
-            raise failures.too_hot(start, trial, temperature)
+        self._cool = failures.check_heat(start, trial, self.memory, self._cool)
         if self._may_starve and self.memory is not None and (lost := starvation.lost_share(self.memory)) > 0.0:
             self._may_starve = False
             starvation.warn(failures.name, start, lost)

@@ -11,8 +11,9 @@ from exudyn_ehd.bearing import JournalBearing, advice
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
-from exudyn_ehd.joint.balance.temperature import HOTTEST, WAY_OUT
-from exudyn_ehd.status import FilmError, InputError, MemoryWarning, Status
+from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above
+from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
 
 # Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
 # none.
@@ -125,18 +126,25 @@ class Failures:
             f"{self._place(trial.motion)}check masses, loads and units, take more steps, or a larger limit.",
         )
 
-    def too_hot(self, time: float, trial: Trial, temperature: float | np.ndarray) -> FilmError:
-        """The film's heat has no way out."""
-        contact = ""
-        if getattr(self.bearing, "asperity", None) is not None and np.ndim(temperature) > 0:
-            contact = "with the friction of asperities: they heat spots through which hardly any oil flows; "
-        return self._at(
-            time,
-            (
-                f"the film is hotter than {HOTTEST:g} K, {contact}{self._place(trial.motion)}its heat has no way out; "
-                f"{WAY_OUT}"
-            ),
-        )
+    def check_heat(self, time: float, trial: Trial, memory: History | None, limit: float) -> float:
+        """Warn of a film hotter than ``limit`` (K), which oil does not bear for long; the limit from now on.
+
+        Raises
+        ------
+        FilmError
+            Where the film is no oil.
+        """
+        film, T = getattr(trial.evaluation, "film", None), None if memory is None else memory.temperature
+        if T is None or film is None or not is_above(limit, T):
+            return limit
+        if is_above(HOTTEST, T):
+            rubs = "; asperities rub, and heat spots through which hardly any oil flows"
+            contact = "" if getattr(self.bearing, "asperity", None) is None else rubs
+            place = f"{hottest(T, film.grid)}, {self._place(trial.motion)}"
+            raise self._at(time, f"the film is at {place}{NO_OIL}{contact}")
+        where = f"LubricatedJoint '{self.name}' at t = {time:.9g} s"
+        warnings.warn(hot_film(T, film.grid, where), HotFilmWarning, stacklevel=2)
+        return HOTTEST
 
     def warn_of_memory(self, start: float, end: float) -> None:
         """A run starts elsewhere than the run before has started and ended."""

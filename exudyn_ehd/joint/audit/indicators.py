@@ -107,6 +107,7 @@ INDICATORS = (
     Indicator(surfaces.shape, lambda b: replace(b, profile=None)),
     Indicator(oil.piezoviscosity, isoviscous),
     Indicator(oil.heating, lambda b: replace(b, thermal=None)),
+    Indicator(oil.temperature),
     Indicator(oil.shear_thinning, newtonian),
     Indicator(surfaces.roughness, smooth),
     Indicator(surfaces.contact, untouching),

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.joint.audit.findings import Case, Finding, judged
+from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
     TYPICAL_SHEAR_ONSET,
@@ -19,6 +19,7 @@ from exudyn_ehd.joint.audit.switches import (
     thinning,
     warmer,
 )
+from exudyn_ehd.joint.balance.hot_oil import COOLER
 
 
 def piezoviscosity(case: Case) -> Finding:
@@ -77,6 +78,16 @@ def heating(case: Case) -> Finding:
         "or the viscosity at its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
     )
+
+
+def temperature(case: Case) -> Finding | None:
+    """Highest temperature of the film against what oil bears; None for an isothermal one."""
+    thermal = case.bearing.thermal
+    if thermal is None:
+        return None
+    value = thermal.supply_temperature + case.largest("rise")
+    advice = f"mineral oils do not bear this for long: {COOLER}"
+    return finding("oil temperature", "highest temperature of the film, K", value, None, mattering=advice)
 
 
 def shear_thinning(case: Case) -> Finding:

@@ -4,5 +4,6 @@ Module map
 ----------
 film         film at a motion, its temperature and oil content settled
 temperature  steady temperature
+hot_oil      temperatures that oil does not bear
 position     journal's position under a load
 """

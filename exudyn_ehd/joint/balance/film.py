@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap, advice
+from exudyn_ehd.joint.balance.hot_oil import require_oil_bears
 from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -47,7 +48,7 @@ def history_at(model: BearingModel, motion: np.ndarray, where: str, near: Histor
 def evaluate_at(
     model: BearingModel, motion: np.ndarray, where: str, near: History | None = None
 ) -> tuple[Evaluation, SolvedFilm]:
-    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none.
+    """The steady film at ``motion``; `FilmError`, in the name of ``where``, if there is none that is oil.
 
     ``near`` as for `history_at`.
     """
@@ -61,6 +62,7 @@ def evaluate_at(
             f"({motion[2]:.3g}, {motion[3]:.3g}), minimum film thickness {evaluation.minimum_gap:.3g} m: "
             f"{remedy}"
         )
+    require_oil_bears(evaluation.film.temperature, model.grid, where)
     return evaluation, evaluation.film
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.balance.hot_oil import HOTTEST, is_above
 from exudyn_ehd.joint.balance.temperature import ACCELERATED, DEPTH, LARGEST_CHANGE, foreseen, is_settled
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -140,6 +141,8 @@ class LoadSearch:
             change, tangent = thermal.steady_temperature(reached.film) - T, reached.steady_tangent()
             size = max(float(np.abs(change).max()), 1e-300)
             if is_settled(T, change, cold) and np.abs(reached.wrench[:2] + self.force).max() <= tolerance * self.size:
+                if is_above(HOTTEST, T):
+                    break
                 self._history = history
                 return place
             if not size < math.inf:

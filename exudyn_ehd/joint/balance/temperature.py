@@ -16,8 +16,8 @@ SETTLED = 1e-11
 MAX_ROUNDS = 200
 # Differences of past rounds that the acceleration combines.
 DEPTH = 10
-# K; far beyond what any oil bears.
-HOTTEST = 2000.0
+# K, up to which a search goes on, far beyond what any oil bears: on its way a film is hotter than where it ends.
+DIVERGED = 2000.0
 LARGEST_CHANGE = 50.0
 # Largest change of a round, K, that the acceleration starts from, and rounds without progress before the damping grows.
 ACCELERATED = 5.0
@@ -72,13 +72,8 @@ WAY_OUT = (
 )
 
 
-def is_too_hot(temperature: float | np.ndarray | None) -> bool:
-    """Whether a film's temperature, K, is beyond `HOTTEST` somewhere, or no number; False without a thermal effect."""
-    return temperature is not None and not float(np.max(temperature)) < HOTTEST
-
-
 def _require_way_out(T: float) -> None:
-    if is_too_hot(T):
+    if not T < DIVERGED:
         raise FilmError(f"steady temperature: the heat of the film has no way out; {WAY_OUT}")
 
 

@@ -15,6 +15,7 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
+from exudyn_ehd.joint.balance.hot_oil import warn_of_heat
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
@@ -215,6 +216,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
     evaluation, film = evaluate_at(model, motion, where, near)
     _warn_of_strain(film, where)
+    warn_of_heat(film.temperature, film.grid, where)
     q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = refined_peak(film)
     force = math.hypot(wrench[0], wrench[1])

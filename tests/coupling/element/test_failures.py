@@ -1,5 +1,7 @@
 """Accepted steps whose film no material bears: warned of by name, time and remedy, and ended where they are absurd."""
 
+from types import SimpleNamespace
+
 import exudyn.itemInterface as eii
 import numpy as np
 import pytest
@@ -10,6 +12,9 @@ from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.element.failures import HARDEST, HIGHEST_MEAN, HIGHEST_PEAK, Failures
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, make_row
 from exudyn_ehd.joint.audit.ringing import RingingWatch
+from exudyn_ehd.joint.balance.hot_oil import HOT, HOTTEST
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.solved_film import History
 
 BEARING = ehd.JournalBearing(
     journal_radius=0.025,
@@ -42,6 +47,26 @@ def test_pressures_over_what_a_material_bears(peak, mean, share):
     for part in ("'big end' at t = 0.5 s", "neither oil nor steel", "ConfigureSolver", "initial velocities"):
         assert part in text
     assert (failures.absurd(0.5, row, trial) is not None) == (peak > HARDEST)
+
+
+def test_films_that_oil_does_not_bear_are_told_once_and_end_the_run_where_there_is_no_oil():
+    film = SimpleNamespace(grid=build_model(BEARING).grid)
+    trial = Trial(
+        [], [], None, 0.0, None, np.zeros(10), np.zeros(10), SimpleNamespace(status=ehd.Status.CONVERGED, film=film)
+    )
+    failures, field = Failures("big end", BEARING), np.full(film.grid.shape, 400.0)
+    assert failures.check_heat(0.5, trial, None, HOT) == failures.check_heat(0.5, trial, History(None), HOT) == HOT
+    assert failures.check_heat(0.5, trial, History(temperature=field), HOT) == HOT
+    field[7, 2] = HOT + 1.0
+    place = rf"'big end' at t = 0.5 s: .* K at theta = {film.grid.x[7]:.3g} rad"
+    with pytest.warns(ehd.HotFilmWarning, match=place):
+        limit = failures.check_heat(0.5, trial, History(temperature=field), HOT)
+    # told once
+    assert failures.check_heat(0.5, trial, History(temperature=field), limit) == limit
+    field[7, 2] = HOTTEST + 1.0
+    for now in (HOT, limit):
+        with pytest.raises(ehd.FilmError, match=place + ".*no oil is a liquid above 700 K"):
+            failures.check_heat(0.5, trial, History(temperature=field), now)
 
 
 def thrown(load):
