@@ -41,9 +41,10 @@ def load(b):
             # a band of hot oil that turns with the journal, cold oil beside it; upwind 9, 5 and 2 % and still falling
             ({"cavitation": UNSUPPLIED}, (0.05, 0.018, 0.005)),
             ({"cavitation": UNSUPPLIED, "cooling": 2000.0}, (0.015, 0.006, 0.002)),
-            ({"cavitation": UNSUPPLIED, "supply": GROOVE}, (0.002, 0.001, 3e-4)),
-            ({"cavitation": ehd.ElrodAdams(), "supply": GROOVE}, (0.002, 2e-4, 1e-4)),
-            ({"cavitation": ehd.SwiftStieber(), "supply": GROOVE}, (0.002, 3e-4, 1e-4)),
+            # a groove of 0.8 L leaves four intervals to each land beside it: without heat 0.2 and 0.02 %, order three
+            ({"cavitation": UNSUPPLIED, "supply": GROOVE}, (0.004, 0.001, 3e-4)),
+            ({"cavitation": ehd.ElrodAdams(), "supply": GROOVE}, (0.004, 6e-4, 1e-4)),
+            ({"cavitation": ehd.SwiftStieber(), "supply": GROOVE}, (0.004, 6e-4, 1e-4)),
             ({"cavitation": ehd.SwiftStieber()}, (1e-3, 3e-4, 1e-4)),
         ],
         1,
