@@ -10,8 +10,8 @@ which in a step is averaged over it (`exudyn_ehd.film.cavitation.lagging_void`),
 `exudyn_ehd.film.solvers.linear.FilmSolver.keep`. Without a history the film is steady and the last term is
 ``area fill dH/dt``. For given sets the system is linear; the sets follow from its solution (a semi-smooth Newton method
 in one unknown per vertex). Every matrix is a column diagonally dominant M-matrix, whatever the sets, so that the film
-exists and is unique. Should the sets not converge, the steady film is approached through growing pseudo time steps,
-whose storage makes the matrices dominant enough.
+exists and is unique. Should the sets come back or not converge, the film is approached through growing pseudo time
+steps, whose storage makes the matrices dominant enough.
 
 Two factors solve a linear system, to rounding the same: `exudyn_ehd.film.cavitation.cavity_transport`, which follows
 the oil through the cavity and is left with a symmetric film, and for the rest (oil that circulates in a cavity,
@@ -56,6 +56,8 @@ SET_TOLERANCE = 1e-12
 # Rounding of the fill in a dry cavity. Less oil than none only comes from rates that last in a film without history: no
 # such film exists.
 LARGEST_DEFICIT = 1e-6
+# Of the storage in pseudo time, over the largest flow into a vertex by the smallest vertex.
+FIRST_RATE = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,12 +86,11 @@ class ElrodAdams:
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
-        steps = 0
-        if not work.warm:
+        steps, was_warm = 0, work.warm
+        if not was_warm:
             np.logical_not(system.fixed, out=work.active)
             steps = SwiftStieber().solve(system, work)[1]
             system.fill[:] = 1.0
-        was_warm = work.warm
         ok, count = self._newton(system, work, system.inverse_step, system.mass_old)
         steps += count
         if not ok and was_warm:
@@ -145,7 +146,7 @@ class ElrodAdams:
                 np.multiply(s.fill, s.H, out=mass)
             return ok, steps
 
-        return pseudo_time(attempt, rate if rate > 0.0 else 1.0)
+        return pseudo_time(attempt, rate if rate > 0.0 else 1.0, FIRST_RATE)
 
     def _factor(self, work: Workspace) -> tuple[np.ndarray, np.ndarray]:
         """L and U of the folded ring."""
@@ -256,10 +257,37 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
 
 
 @njit(cache=True)
+def _change_sets(x, order, count, pc, sets, changed, pressures, fills):
+    """Write the unknowns x of the sets; vertices that belong to the other set change.
+
+    ``changed`` marks who has done so an odd number of times. Returns how many change, and by how many the marks grow.
+    """
+    peak = 0.0
+    for r in range(count):
+        if sets[order[r]]:
+            peak = max(peak, abs(x[r] - pc))
+    changes, marks = 0, 0
+    for r in range(count):
+        c = order[r]
+        if sets[c]:
+            pressures[c], fills[c] = x[r], 1.0
+            misplaced = x[r] < pc - SET_TOLERANCE * peak
+        else:
+            pressures[c], fills[c] = pc, x[r]
+            misplaced = x[r] > 1.0 + SET_TOLERANCE
+        if misplaced:
+            sets[c], changed[c] = not sets[c], not changed[c]
+            marks += 1 if changed[c] else -1
+            changes += 1
+    return changes, marks
+
+
+@njit(cache=True)
 def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill):
     """Newton on the sets from ``full``, which also returns them; returns (ok, steps, count, width, convected).
 
     ``film``: `Coefficients`. ``t`` holds the factor if ``convected``, else ``lower``, ``upper`` and ``inv_diag`` do.
+    Sets that come back (Brent's search for cycles) end it.
     """
     n, m = full.shape
     for i in range(n):
@@ -271,29 +299,14 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
         hold_back(film, inverse_step, mass_old)
     directions = flow_direction(film.fx), flow_direction(film.fz)
     sets, pressures, fills = full.reshape(-1), P.reshape(-1), fill.reshape(-1)
+    changed, marked, since = np.zeros(n * m, dtype=np.bool_), 0, 1
     for step in range(MAX_NEWTON_STEPS):
         ok, count, width, convected = _solve_sets(
             film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P
         )
         if not ok:
             return False, step + 1, count, width, convected
-        peak = 0.0
-        for r in range(count):
-            if sets[order[r]]:
-                peak = max(peak, abs(x[r] - pc))
-        changes = 0
-        for r in range(count):
-            c = order[r]
-            if sets[c]:
-                pressures[c], fills[c] = x[r], 1.0
-                if x[r] < pc - SET_TOLERANCE * peak:
-                    sets[c] = False
-                    changes += 1
-            else:
-                pressures[c], fills[c] = pc, x[r]
-                if x[r] > 1.0 + SET_TOLERANCE:
-                    sets[c] = True
-                    changes += 1
+        changes, marks = _change_sets(x, order, count, pc, sets, changed, pressures, fills)
         if changes == 0:
             sound = True
             for i in range(n):
@@ -304,4 +317,10 @@ def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, up
                         sound = sound and fill[i, j] > -LARGEST_DEFICIT
                         fill[i, j] = min(max(fill[i, j], 0.0), 1.0)
             return sound, step + 1, count, width, convected
+        marked += marks
+        if marked == 0:
+            return False, step + 1, count, width, convected
+        if step >= 2 * since:
+            since, marked = step, 0
+            changed[:] = False
     return False, MAX_NEWTON_STEPS, count, width, convected

@@ -16,7 +16,7 @@ FIRST, HOPELESS, LAST = 100.0, 1e6, 1e-3
 FADES, GROWS = 0.3, 8.0
 
 
-def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tuple[bool, int]:
+def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float, first: float = FIRST) -> tuple[bool, int]:
     """Follow a film in pseudo time; returns (found, Newton steps).
 
     Parameters
@@ -26,8 +26,10 @@ def pseudo_time(attempt: Callable[[float], tuple[bool, int]], rate: float) -> tu
         start of the next; returns (found, Newton steps).
     rate : float
         Of the film itself, 1/s, > 0.
+    first : float
+        Rate of the first storage over ``rate``.
     """
-    extra, total = FIRST * rate, 0
+    extra, total = first * rate, 0
     for _ in range(MOST_STEPS):
         ok, steps = attempt(extra)
         total += steps
