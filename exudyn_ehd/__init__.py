@@ -20,6 +20,9 @@ Conventions
 SI units, radians, gauge pressures. Joint frame: origin on the bearing's mid-plane, z = bearing axis, x and y fixed in
 the housing; theta counts from x about z; arrays are ``[theta, z]``, z from -L/2 to L/2. Forces act on the journal,
 moments are taken about the joint's origin.
+
+Examples in docstrings take ``import numpy as np``, ``import exudyn as exu`` and ``import exudyn_ehd as ehd`` for
+granted, and go on from the examples that they name.
 """
 
 import difflib

@@ -15,7 +15,17 @@ from exudyn_ehd.plausible import doubt
 
 
 class Status(enum.IntEnum):
-    """Outcome of one film evaluation; ``advice`` says what to do about it."""
+    """Outcome of one film evaluation; ``advice`` says what to do about it.
+
+    Examples
+    --------
+    After the example of `solve_film`:
+
+    >>> film.status is ehd.Status.CONVERGED
+    True
+    >>> ehd.Status.OUTSIDE_MAP.advice.split(";")[0]
+    'the journal left the domain of its impedance map'
+    """
 
     CONVERGED = 0
     NOT_CONVERGED = 1
@@ -47,51 +57,136 @@ _ADVICE = {
 
 
 class EHDError(Exception):
-    """Base of all errors of this package."""
+    """Base of all errors of this package.
+
+    Examples
+    --------
+    >>> try:
+    ...     ehd.Lubricant(viscosity=-0.02)
+    ... except ehd.EHDError as error:
+    ...     print(type(error).__name__)
+    InputError
+    """
 
 
 class InputError(EHDError, ValueError):
-    """A scene was described with values that can't be meant; raised before anything runs."""
+    """A scene was described with values that can't be meant; raised before anything runs.
+
+    Examples
+    --------
+    >>> ehd.Lubricant(viscosity=-0.02)
+    Traceback (most recent call last):
+        ...
+    exudyn_ehd.status.InputError: Lubricant.viscosity must be > 0 Pa s, got -0.02....
+    """
 
 
 class FilmError(EHDError, RuntimeError):
-    """A film could not be evaluated; names the joint, the state and the remedy."""
+    """A film could not be evaluated; names the joint, the state and the remedy.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> ehd.steady(bearing, speed=314.0, eccentricity_ratio=1.1)
+    Traceback (most recent call last):
+        ...
+    exudyn_ehd.status.FilmError: steady: NO_FILM at x = 2.75e-05 m, y = 0 m, tilt = (0, 0), m...
+    """
 
 
 class RunError(EHDError, RuntimeError):
-    """A solver of Exudyn failed although every film could be evaluated; names the joints and their state."""
+    """A solver of Exudyn failed although every film could be evaluated; names the joints and their state.
+
+    Examples
+    --------
+    >>> issubclass(ehd.RunError, ehd.EHDError)
+    True
+    """
 
 
 class MemoryWarning(UserWarning):
-    """The film of a joint goes on with what it remembers of another state than that of the run."""
+    """The film of a joint goes on with what it remembers of another state than that of the run.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.MemoryWarning)  # ends a run where it would warn
+    """
 
 
 class RingingWarning(UserWarning):
-    """Steps are too large for the time integration: forces of a joint alternate, or its mesh turns too far in one."""
+    """Steps are too large for the time integration: forces of a joint alternate, or its mesh turns too far in one.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.RingingWarning)  # ends a run where it would warn
+    """
 
 
 class StarvationWarning(UserWarning):
-    """The film of a joint has lost its oil through the ends, and nothing brings it back."""
+    """The film of a joint has lost its oil through the ends, and nothing brings it back.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.StarvationWarning)  # ends a run where it would warn
+    """
 
 
 class ThinFilmWarning(UserWarning):
-    """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact."""
+    """The film of a joint is thinner than good surfaces are rough, and the bearing models no contact.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.ThinFilmWarning)  # ends a run where it would warn
+    """
 
 
 class OverloadWarning(UserWarning):
-    """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing."""
+    """The film of a joint presses with what neither oil nor steel bears: most likely the time integration's doing.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.OverloadWarning)  # ends a run where it would warn
+    """
 
 
 class HotFilmWarning(UserWarning):
-    """A film is hotter than oils bear for long."""
+    """A film is hotter than oils bear for long.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.HotFilmWarning)  # ends a run where it would warn
+    """
 
 
 class StrainWarning(UserWarning):
-    """A bush that is taken as linear strains by more than that describes."""
+    """A bush that is taken as linear strains by more than that describes.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.StrainWarning)  # ends a run where it would warn
+    """
 
 
 class PlausibilityWarning(UserWarning):
-    """An argument has a size that bearings do not have; most likely it is in another unit."""
+    """An argument has a size that bearings do not have; most likely it is in another unit.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> warnings.simplefilter("error", ehd.PlausibilityWarning)
+    >>> ehd.Lubricant(viscosity=50.0)
+    Traceback (most recent call last):
+        ...
+    exudyn_ehd.status.PlausibilityWarning: Lubricant.viscosity: 50.0 Pa s is unusual, bearings have 0.0...
+    """
 
 
 def warn_user(text: str, kind: type[Warning]) -> None:

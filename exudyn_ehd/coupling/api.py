@@ -37,7 +37,14 @@ _WHERE = "CreateLubricatedJoint"
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
 class Free:
-    """``axial``: the journal slides freely along the axis; ``tilt``: it tilts as far as the film lets it."""
+    """``axial``: the journal slides freely along the axis; ``tilt``: it tilts as far as the film lets it.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> motion = ehd.Free()  # what CreateLubricatedJoint(axial=..., tilt=...) has by default
+    """
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -48,6 +55,17 @@ class Held:
 
     For implicit and static solvers; Exudyn's explicit ones stop at once and name the constraint object
     (``constraintNumber`` of the joint).
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> housing = mbs.CreateGround()
+    >>> other = ehd.CreateLubricatedJoint(
+    ...     mbs, "held", [housing, shaft], [0, 0, 0.2], [0, 0, 1], joint.bearing, axial=ehd.Held()
+    ... )
+    >>> other.constraintNumber is None
+    False
     """
 
 
@@ -183,6 +201,16 @@ def CreateLubricatedJoint(
         Before anything runs: wrong or identical items, position or axis that can't be meant, a planar body with an
         axis other than z, the two axes not parallel within the clearance or the journal outside the bore in the initial
         configuration, an assembled system.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> from exudyn.utilities import InertiaCylinder
+    >>> SC = exu.SystemContainer()
+    >>> mbs = SC.AddSystem()
+    >>> shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.025, 2), initialAngularVelocity=[0, 0, 314])
+    >>> joint = ehd.CreateLubricatedJoint(mbs, "main", [mbs.CreateGround(), shaft], [0, 0, 0], [0, 0, 1], bearing)
     """
     require_system(_WHERE, mbs)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show), ("returnDict", returnDict)):

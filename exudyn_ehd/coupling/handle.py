@@ -48,6 +48,15 @@ class LubricatedJoint(JointResults):
         The film in Exudyn's renderer.
     bush : FlexibleBush or None
         The nodal bush, if the bearing has one.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> joint
+    <LubricatedJoint 'main': object 2, journal 50 mm x 25 mm, clearance 25 µm>
+    >>> sensor = joint.AddSensor("minimum_gap")
+    >>> joint.record_films(period=1e-3)
     """
 
     def __init__(

@@ -68,6 +68,16 @@ def ReplaceJoint(
     InputError
         For an object that is no such joint, that does not leave one rotation free and hold the journal across it, that
         has an offset function or is read by a sensor, and as `CreateLubricatedJoint`.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> crank = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.05, 2))
+    >>> ideal = mbs.CreateRevoluteJoint(itemNumbers=[mbs.CreateGround(), crank], position=[0, 0, 0], axis=[0, 0, 1])
+    >>> film = ehd.ReplaceJoint(mbs, ideal, bearing=joint.bearing, tilt=ehd.Held())
+    >>> mbs.GetObject(ideal)["activeConnector"]
+    False
     """
     joint, where = _joint(mbs, objectNumber)
     if journal not in (0, 1):
@@ -122,6 +132,16 @@ def ReplaceJoints(
     -------
     dict
         Films by the object numbers of the joints that they replace.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> crank = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.1, 0.05, 2))
+    >>> ideal = mbs.CreateRevoluteJoint(itemNumbers=[mbs.CreateGround(), crank], position=[0, 0, 0], axis=[0, 0, 1])
+    >>> films = ehd.ReplaceJoints(mbs, bearing=joint.bearing)
+    >>> len(films)
+    1
     """
     unknown = [kind for kind in types if kind not in TYPES]
     if isinstance(types, str) or unknown:

@@ -249,6 +249,16 @@ def bearing_grid(
         True: the first column carries a prescribed pressure (the film starts there).
     rows : tuple of (m,) arrays, optional
         Axial vertices over R, from end to end, and their weights; they replace ``n_z`` and ``stretch``.
+
+    Returns
+    -------
+    FilmGrid
+
+    Examples
+    --------
+    >>> grid = ehd.bearing_grid(0.025, 0.025, n_theta=48, n_z=6)
+    >>> grid.shape
+    (48, 7)
     """
     for name, value in (("radius", radius), ("length", length)):
         require_number(f"bearing_grid: {name}", value, "m", above=0.0)
@@ -320,6 +330,16 @@ def slider_grid(
         No side flow instead of prescribed side pressures.
     reference_length : float, optional
         Scale of all lengths, m; default ``length``.
+
+    Returns
+    -------
+    FilmGrid
+
+    Examples
+    --------
+    >>> grid = ehd.slider_grid(0.1, 0.05, n_x=40, n_z=8)
+    >>> grid.shape
+    (42, 9)
     """
     scale = length if reference_length is None else reference_length
     for name, value in (("length", length), ("width", width), ("reference_length", scale)):

@@ -25,6 +25,12 @@ class Rayleigh:
     stiffness_time : float
         [s]; taken as the Kelvin-Voigt law of `TotalLagrange`, which equals stiffness_time K in the small and does no
         work in a rigid motion.
+
+    Examples
+    --------
+    >>> damping = ehd.Rayleigh(stiffness_time=1e-6)
+    >>> damping.mass_rate  # 1/s
+    0.0
     """
 
     mass_rate: float = 0.0
@@ -80,6 +86,15 @@ class ANCFBush(_Solid):
     damping : Rayleigh, optional
     parallel : bool
         Loops over elements on numba's threads.
+
+    Examples
+    --------
+    After the examples of `HollowCylinder` and `SaintVenantKirchhoff`:
+
+    >>> bush = ehd.ANCFBush(mesh=mesh, material=steel)
+    >>> b = dict(journal_radius=0.02997, length=0.06, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=9e-3))
+    >>> ehd.JournalBearing(**b, bush=bush).bush is bush
+    True
     """
 
     damping: Rayleigh | None = None
@@ -143,6 +158,15 @@ class ModalBush(_Solid):
         far as the others lack them: 4 or 5, with tilt up to 10. The bore's deflection under them at rest is then the
         mesh's within 0.5 %; without them it is within 5 to 20 %, 30 % for thin walls. A joint on ground leaves them
         out.
+
+    Examples
+    --------
+    After the examples of `HollowCylinder` and `SaintVenantKirchhoff`:
+
+    >>> bush = ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.05, tilted=False)
+    >>> b = dict(journal_radius=0.02997, length=0.06, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=9e-3))
+    >>> ehd.JournalBearing(**b, bush=bush).bush.tolerance
+    0.05
     """
 
     tolerance: float = 0.02

@@ -62,6 +62,12 @@ class FEBore:
     settled : bool
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
+
+    Examples
+    --------
+    After the example of `mesh_from_fem`:
+
+    >>> bore = ehd.FEBore(fem=fem)  # JournalBearing(..., bush=bore); the housing is the reduced body made of fem
     """
 
     fem: BodyMesh
@@ -191,6 +197,13 @@ class BoreModesReport:
         without its rigid motion. The error counts over the shape, but over no more than 2.2 times the part of it beyond
         two waves around, as in a bush whose outer surface is held: a slender eye gets oval by far more than the film is
         thick, and over that every error would look small, while the film sees what the local deformation lacks.
+
+    Examples
+    --------
+    After the example of `add_bore_modes`:
+
+    >>> report.added == report.total
+    True
     """
 
     added: int
@@ -233,10 +246,25 @@ def add_bore_modes(
     radius_tolerance, nodes
         As in `FEBore`.
 
+    Returns
+    -------
+    BoreModesReport
+
     Raises
     ------
     InputError
         No bore there, a body that isn't held, or a tolerance that takes more waves than the search allows.
+
+    Examples
+    --------
+    After the examples of `SaintVenantKirchhoff` and `mesh_from_fem`:
+
+    >>> solid = ehd.ANCFBush(mesh=mesh, material=steel).solid(bush)
+    >>> fem.stiffnessMatrix, fem.massMatrix = solid.tangent(0.0 * bush.nodes).tocsr(), solid.mass.tocsr()
+    >>> place = dict(position=[0, 0, 0], axis=[0, 0, 1], radius=0.03, length=0.06, fixed_nodes=bush.outer.nodes)
+    >>> report = ehd.add_bore_modes(fem, **place, tolerance=0.1, tilted=False)
+    >>> report.error < 0.1
+    True
     """
     where = "add_bore_modes"
     point = require_vector(f"{where} position", position, 3, "m")

@@ -38,6 +38,12 @@ class LineLoad:
         [N/m] per reference length, global frame.
     history : function of time, optional
         Factor on the force.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> load = ehd.LineLoad(line=bush.generatrix(bush.outer, np.pi / 2), force_per_length=(0, -1000, 0))
     """
 
     line: Line
@@ -71,6 +77,12 @@ class SurfaceLoad:
         Factor at every node of the surface, interpolated between them; without it the traction is uniform.
     history : function of time, optional
         Factor on the force.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> load = ehd.SurfaceLoad(surface=bush.end_high, traction=(0, 0, 1e5), history=lambda t: min(1.0, t / 1e-3))
     """
 
     surface: Surface
@@ -129,6 +141,14 @@ class DeadPressure(_SurfacePressure):
         Factor at every node of the surface, interpolated between them.
     history : function of time, optional
         Factor on the pressure.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> load = ehd.DeadPressure(surface=bush.bore, pressure=1e6)
+    >>> bool(abs(load.nodal_forces(bush).sum(axis=0)).max() < 1e-6)
+    True
     """
 
     def nodal_forces(self, mesh: BushMesh) -> np.ndarray:
@@ -143,6 +163,12 @@ class FollowerPressure(_SurfacePressure):
     ----------
     surface, pressure, distribution, history
         As in `DeadPressure`.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> load = ehd.FollowerPressure(surface=bush.bore, pressure=1e6)
     """
 
     def stiffness(self, positions: np.ndarray) -> np.ndarray:
@@ -172,6 +198,10 @@ class Gravity:
         [m/s^2], global frame.
     history : function of time, optional
         Factor on it.
+
+    Examples
+    --------
+    >>> load = ehd.Gravity(acceleration=(0, -9.81, 0))
     """
 
     acceleration: tuple[float, float, float] | np.ndarray

@@ -159,6 +159,14 @@ class BushMesh:
         Connectivity, a = 20 in the order of the Abaqus element C3D20, a = 10 in that of C3D10.
     bore, outer, end_low, end_high : Surface
         Inner cylinder, outer surface, and the end faces at the smallest and largest z.
+
+    Examples
+    --------
+    After the example of `HollowCylinder`:
+
+    >>> bush = mesh.mesh()
+    >>> bush.nodes.shape, bush.bore.nodes.shape
+    ((304, 3), (128,))
     """
 
     nodes: np.ndarray
@@ -238,6 +246,12 @@ class HollowCylinder:
     axial, radial, circumferential : int
         Elements in each direction. One radial layer is 2 % too stiff for a bore pressure cos(4 theta), three give 1 %
         up to cos(5 theta) with 40 elements around.
+
+    Examples
+    --------
+    >>> mesh = ehd.HollowCylinder(inner_radius=0.03, thickness=0.01, length=0.06, axial=2, radial=1, circumferential=16)
+    >>> round(mesh.outer_radius, 3), mesh.mesh().elements.shape
+    (0.04, (32, 20))
     """
 
     inner_radius: float

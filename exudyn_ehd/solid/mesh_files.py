@@ -46,10 +46,25 @@ def mesh_from_file(
     bore_radius, origin, axis
         As in `mesh_from_arrays`, in metres after scaling, in the frame of the assembly; it also says what comes back.
 
+    Returns
+    -------
+    BushMesh
+
     Raises
     ------
     InputError
         No such file, set or instance, several instances, other or mixed elements, or what `mesh_from_arrays` refuses.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> rows = ["*Node", *(", ".join(map(str, [k, *x])) for k, x in enumerate(bush.nodes.tolist(), 1))]
+    >>> rows += ["*Element, type=C3D20", *(", ".join(map(str, [k, *(e + 1)])) for k, e in enumerate(bush.elements, 1))]
+    >>> with open("bush.inp", "w") as file:
+    ...     print(*rows, sep=chr(10), file=file)
+    >>> ehd.mesh_from_file("bush.inp", bore_radius=0.03).elements.shape
+    (32, 20)
     """
     path = pathlib.Path(path)
     if not path.is_file():

@@ -33,6 +33,13 @@ class OnCylinder:
         [m]
     tolerance : float
         On a node's radius, over the radius.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> held = ehd.OnCylinder(radius=0.04)
+    >>> own = ehd.mesh_from_arrays(bush.nodes, bush.elements, bore_radius=0.03, held=held)
     """
 
     radius: float
@@ -56,6 +63,14 @@ class OnPlane:
         A point of the plane [m] and its normal, bush frame.
     tolerance : float
         Distance from the plane [m].
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> held = ehd.OnPlane(point=(0, 0, -0.03), normal=(0, 0, 1))
+    >>> held.tolerance  # m
+    1e-05
     """
 
     point: tuple[float, float, float]
@@ -95,6 +110,21 @@ def mesh_from_fem(
         Exudyn's, with Hex20 elements (Abaqus C3D20 order) or Tet10 elements (C3D10) only.
     bore_radius, held, origin, axis
         As in `mesh_from_arrays`, which also says what comes back and what is refused.
+
+    Returns
+    -------
+    BushMesh
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> from exudyn.FEM import FEMinterface
+    >>> fem = FEMinterface()
+    >>> fem.nodes = {"Position": bush.nodes}
+    >>> fem.elements = [{"Name": "bush", "Hex20": bush.elements}]
+    >>> ehd.mesh_from_fem(fem, bore_radius=0.03).elements.shape
+    (32, 20)
     """
     kinds = sorted({key for block in fem.elements for key in block if key != "Name" and len(block[key])})
     if len(kinds) != 1 or kinds[0] not in [element.fem for element in ELEMENTS]:
@@ -150,6 +180,14 @@ def mesh_from_arrays(
     ------
     InputError
         No bore at this radius, no held face, inverted elements, or array shapes that don't fit.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> own = ehd.mesh_from_arrays(bush.nodes, bush.elements, bore_radius=0.03, held=ehd.OnCylinder(radius=0.04))
+    >>> own.outer.nodes.size == bush.outer.nodes.size
+    True
     """
     return bush_mesh(nodes, elements, None, bore_radius=bore_radius, held=held, origin=origin, axis=axis)
 

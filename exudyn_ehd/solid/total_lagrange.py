@@ -38,6 +38,12 @@ class SaintVenantKirchhoff:
         In (-1, 0.5); the element locks above about 0.49.
     density : float
         [kg/m^3], reference configuration.
+
+    Examples
+    --------
+    >>> steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800)
+    >>> [round(1e-9 * value, 1) for value in steel.lame]  # GPa
+    [121.2, 80.8]
     """
 
     youngs_modulus: float
@@ -83,6 +89,12 @@ class NeoHooke(SaintVenantKirchhoff):
     ----------
     youngs_modulus, poisson_ratio, density
         As in `SaintVenantKirchhoff`, of small strain.
+
+    Examples
+    --------
+    >>> rubber = ehd.NeoHooke(youngs_modulus=5e6, poisson_ratio=0.45, density=1100)
+    >>> rubber.density  # kg/m^3
+    1100
     """
 
     def energy_density(self, H: np.ndarray) -> np.ndarray:

@@ -63,6 +63,16 @@ class StudyTable(Table):
         Why a row failed; empty for one that did not.
     units : dict
         Units by name, of columns whose unit the package does not know.
+
+    Examples
+    --------
+    After the example of `parameter_study`:
+
+    >>> len(table), table.shape, table.parameters
+    (4, (2, 2), ('length', 'speed'))
+    >>> table.grid("power_loss").round(1)  # W, over length and speed
+    array([[ 86.7, 301.9],
+           [107.1, 395.8]])
     """
 
     columns: dict[str, np.ndarray]
@@ -154,6 +164,14 @@ class EquilibriumPoint:
         Relative spin, rad/s.
     load : (float, float)
         Force on the journal, N.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> point = ehd.EquilibriumPoint(bearing=bearing, speed=314.0, load=(0.0, -2000.0))
+    >>> round(1e6 * point({"radial_clearance": 30e-6})["minimum_gap"], 2)  # um
+    13.91
     """
 
     bearing: JournalBearing
@@ -187,10 +205,22 @@ def varied(bearing: JournalBearing, parameters: Mapping[str, float]) -> JournalB
     parameters : dict
         ``journal_radius``, ``length``, ``radial_clearance`` (m), ``viscosity`` (Pa s), or some of them.
 
+    Returns
+    -------
+    JournalBearing
+        A new one.
+
     Raises
     ------
     InputError
         For names that it does not have.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> ehd.varied(bearing, {"radial_clearance": 30e-6}).radial_clearance
+    3e-05
     """
     values: dict[str, Any] = dict(parameters)
     known = ("journal_radius", "length", "radial_clearance", "viscosity")
@@ -255,6 +285,14 @@ def parameter_study(
         once, missing packages, MPI without mpiexec, files of another function.
     EHDError
         If every row failed, or no host answers.
+
+    Examples
+    --------
+    After the example of `EquilibriumPoint`:
+
+    >>> table = ehd.parameter_study(point, {"length": [0.02, 0.03], "speed": [200.0, 400.0]}, show_progress=False)
+    >>> (1e6 * table["minimum_gap"]).round(2)
+    array([ 8.29, 11.6 , 13.88, 17.91])
     """
     lists = _checked_parameters(parameters)
     where = _checked_place(processes, mpi, hosts)

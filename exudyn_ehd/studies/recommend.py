@@ -69,6 +69,16 @@ class Recommendation:
         The measurements that it rests on.
     reason : str
         What was looked for and why this setting, or why none.
+
+    Examples
+    --------
+    After the example of `recommend`:
+
+    >>> import dataclasses
+    >>> dataclasses.replace(bearing, **advice.options).film is advice.film
+    True
+    >>> advice.error < 0.01
+    True
     """
 
     found: bool
@@ -124,6 +134,14 @@ def recommend(
     ------
     InputError
         For arguments that can't be meant.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> advice = ehd.recommend(bearing, error=0.01, quantity="peak pressure", eccentricity_ratio=(0.5, 0.9))
+    >>> advice.found, advice.film
+    (True, FiniteLength(n_theta=96, n_z=10, stretch=0.75))
     """
     require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative.")
     if not isinstance(bearing, JournalBearing):

@@ -40,6 +40,12 @@ class Support:
         Mesh node numbers, for example ``mesh.end_low.nodes`` or ``mesh.generatrix(...).nodes``.
     directions : three bools
         Which of x, y, z are held.
+
+    Examples
+    --------
+    After the example of `BushMesh`:
+
+    >>> held = ehd.Support(nodes=bush.end_low.nodes, directions=(False, False, True))  # axially
     """
 
     nodes: np.ndarray
@@ -55,12 +61,21 @@ class FreeOuter:
     0.82 % at 40, 0.21 % at 80, and 0.25, 0.035 and 0.005 % in every turn behind it (spectral radius 0.6). Motion and
     strains are nonsense below 15 steps a turn, with a spectral radius of 0.8 below 40, of 0.9 below 80, of 1 still at
     120: elements turn inside out, which ends the run. A joint on such a mesh warns.
+
+    Examples
+    --------
+    >>> outer = ehd.FreeOuter()  # for CreateFlexibleBush(outer=...), with supports or in flight
     """
 
 
 @dataclass(frozen=True, kw_only=True)
 class FixedOuter:
-    """The outer surface is fixed in space."""
+    """The outer surface is fixed in space.
+
+    Examples
+    --------
+    >>> outer = ehd.FixedOuter()  # for CreateFlexibleBush(outer=...)
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +90,12 @@ class CarriedOuter:
         untouched: the bush adds its own, and weighs by a `Gravity` among its loads. With a Lie group node
         (RotationRotationVector) use full Newton: Exudyn 1.13.6 was seen to end at a wrong attitude, without a message,
         when its modified Newton restarts often. Euler parameters and Rxyz show no such effect.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> outer = ehd.CarriedOuter(itemNumber=shaft)  # for CreateFlexibleBush(outer=...)
     """
 
     itemNumber: Index
@@ -95,6 +116,14 @@ class FlexibleBush:
     nodeNumbers : ndarray of int, shape (n,)
         Exudyn's node of every mesh node; -1 where it is slaved to the carrier.
     equations : BushEquations
+
+    Examples
+    --------
+    After the example of `CreateFlexibleBush`:
+
+    >>> mbs.Assemble()
+    >>> float(abs(flexible.displacements()).max())  # m
+    0.0
     """
 
     mbs: exu.MainSystem
@@ -195,6 +224,17 @@ def CreateFlexibleBush(
     Returns
     -------
     FlexibleBush
+
+    Examples
+    --------
+    After the examples of `HollowCylinder` and `SaintVenantKirchhoff`:
+
+    >>> SC = exu.SystemContainer()
+    >>> mbs = SC.AddSystem()
+    >>> bush = ehd.ANCFBush(mesh=mesh, material=steel)
+    >>> flexible = ehd.CreateFlexibleBush(mbs, "bush", bush=bush, outer=ehd.FixedOuter())
+    >>> flexible.nodeNumbers.shape
+    (304,)
     """
     require_type("CreateFlexibleBush.bush", bush, ANCFBush)
     require_type("CreateFlexibleBush.outer", outer, FreeOuter, FixedOuter, CarriedOuter)

@@ -60,7 +60,16 @@ _MOTION_UNITS = ("m", "m", "rad", "rad", "m/s", "m/s", "rad/s", "rad/s", "rad/s"
 
 
 class Quantity(enum.Enum):
-    """What a sensor can record; the value is the name in `JointHistory`."""
+    """What a sensor can record; the value is the name in `JointHistory`.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedJoint`:
+
+    >>> sensor = joint.AddSensor(ehd.Quantity.PEAK_PRESSURE)
+    >>> ehd.Quantity("force").name
+    'FORCE'
+    """
 
     MOTION = "motion"
     ECCENTRICITY = "eccentricity"
@@ -136,6 +145,17 @@ class JointHistory(History, HistoryPictures):
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> history = joint.history
+    >>> history.time.shape, history.force.shape
+    ((21,), (21, 3))
+    >>> round(float(1e-6 * history.peak_pressure.max()), 2)  # MPa
+    1.17
+    >>> history.save("main.npz")
     """
 
     eccentricity_ratio: np.ndarray
@@ -236,12 +256,24 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
     ----------
     path : path
 
+    Returns
+    -------
+    JointHistory
+
     Raises
     ------
     FileNotFoundError
         If there is no such file.
     InputError
         If it holds something else.
+
+    Examples
+    --------
+    After the example of `JointHistory`:
+
+    >>> again = ehd.load_history("main.npz")
+    >>> bool((again.force == history.force).all())
+    True
     """
     require_path("load_history", path)
     try:

@@ -36,6 +36,14 @@ class Revolutions(Table):
         Of the force in the plane normal to the axis, N.
     mean_power_loss, mean_leakage, mean_friction_torque : (k,) arrays
         Means over time, W, m3/s and N m.
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> table = joint.revolutions(period=1e-3)
+    >>> table.minimum_gap.shape, bool(table.minimum_gap[1] < table.minimum_gap[0])
+    ((2,), True)
     """
 
     start: np.ndarray

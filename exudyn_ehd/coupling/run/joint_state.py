@@ -41,6 +41,15 @@ class JointState:
         Where the next step begins, if its rates follow the positions.
     modes : (p, k) array or None
         Displacements and stiffness of the bore's modes, whose coordinates are part of the state.
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> state = joint.state()
+    >>> state.name, round(state.time, 6)
+    ('main', 0.002)
+    >>> joint.restore_state(state)
     """
 
     name: str

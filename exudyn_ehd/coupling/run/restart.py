@@ -42,6 +42,13 @@ class SystemState:
     algorithmic : (n,) array or None
         Algorithmic accelerations of an implicit integrator.
     joints : tuple of JointState
+
+    Examples
+    --------
+    After the example of `SaveState`:
+
+    >>> round(state.time, 6), len(state.joints)
+    (0.002, 1)
     """
 
     time: float

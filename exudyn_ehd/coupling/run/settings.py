@@ -61,6 +61,15 @@ def ConfigureSolver(
     -------
     exudyn.SimulationSettings
         The same object.
+
+    Examples
+    --------
+    >>> settings = exu.SimulationSettings()
+    >>> settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 2e-3, 20
+    >>> settings.solution.file.write, settings.staticSolver.verboseMode = False, 0
+    >>> settings = ehd.ConfigureSolver(settings)
+    >>> settings.timeIntegration.generalizedAlpha.spectralRadius
+    0.6
     """
     require_settings("ConfigureSolver", simulationSettings)
     modified = require_bool("ConfigureSolver.useModifiedNewton", useModifiedNewton)

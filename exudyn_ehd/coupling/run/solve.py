@@ -114,6 +114,17 @@ def SolveDynamic(
         If the solver ended otherwise without success.
     InputError
         If the restart belongs to another system, or the step control is none of a run.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> load = mbs.CreateForce(itemNumber=shaft, loadVector=[0, -500, 0])
+    >>> mbs.Assemble()
+    >>> ehd.SolveDynamic(mbs, settings)
+    True
+    >>> round(float(1e6 * joint.history.minimum_gap[-1]), 2)  # um
+    23.72
     """
     require_system("SolveDynamic", mbs)
     require_settings("SolveDynamic", simulationSettings)
@@ -154,6 +165,19 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     ------
     FilmError, RunError
         As `SolveDynamic`.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> ground = mbs.CreateGround()
+    >>> _ = mbs.CreateGenericJoint(itemNumbers=[ground, shaft], position=[0, 0, 0], constrainedAxes=[0, 0, 1, 1, 1, 1])
+    >>> load = mbs.CreateForce(itemNumber=shaft, loadVector=[0, -500, 0])
+    >>> mbs.Assemble()
+    >>> ehd.SolveStatic(mbs, settings)
+    True
+    >>> joint.history.force[-1, :2].round()  # N
+    array([  0., 500.])
     """
     require_system("SolveStatic", mbs)
     require_settings("SolveStatic", simulationSettings)
@@ -194,6 +218,15 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     -------
     SystemState
         What was stored.
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> state = ehd.SaveState(mbs, "state.npz")
+    >>> settings.timeIntegration.endTime = 4e-3
+    >>> ehd.SolveDynamic(mbs, settings, restart="state.npz")  # goes on, also in another process
+    True
     """
     state = SystemState.of(mbs, joints_of(mbs))
     state.save(path)

@@ -71,6 +71,13 @@ class FactorReuse:
     worth : int
         Number of iterations that cost as much as a factor. Renew at the start of a step when the iterations spent
         beyond those of the factor's first step add up to this; a count, not a clock, so that runs repeat exactly.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> mbs.Assemble()
+    >>> run = ehd.SolveDynamicSparse(mbs, settings, reuse=ehd.FactorReuse(contractivity=0.3))
     """
 
     contractivity: float = 0.5
@@ -158,6 +165,15 @@ def SolveDynamicSparse(
         ask for what it does not offer; the message names it.
     FilmError, RunError
         As `SolveDynamic`; ``joint.history`` holds all accepted steps.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> mbs.Assemble()
+    >>> run = ehd.SolveDynamicSparse(mbs, settings)
+    >>> joint.history.time.shape
+    (21,)
     """
     require_system("SolveDynamicSparse", mbs)
     settings = exu.SimulationSettings() if simulationSettings is None else simulationSettings

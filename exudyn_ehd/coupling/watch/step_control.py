@@ -46,6 +46,16 @@ class StepControl:
         step (or of the contact's range, if that is larger); 0.01 to 1. Of a joint.
     error : float, optional
         Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> mbs.Assemble()
+    >>> ehd.SolveDynamic(mbs, settings, stepControl=ehd.StepControl(error=0.02))
+    True
+    >>> bool(np.nanmax(joint.history.step_error) < 0.05)
+    True
     """
 
     largest_gap_change: float = LARGEST_GAP_CHANGE

@@ -51,6 +51,14 @@ class FullSommerfeld(SymmetricClosure):
     """No cavitation: the film carries tension.
 
     For comparison with closed forms and for fully flooded, pressurised films.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, cavitation=ehd.FullSommerfeld())
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
+    >>> round(np.hypot(*film.force[:2]))  # N
+    14369
     """
 
     cavity_pressure = -np.inf
@@ -77,6 +85,14 @@ class Gumbel(SymmetricClosure):
         Gauge pressure of the cavity, Pa.
     cavity_shear : float
         Share of the full film's Couette shear that the ruptured part transmits, 0 to 1.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, cavitation=ehd.Gumbel())
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
+    >>> round(np.hypot(*film.force[:2]))  # N
+    12029
     """
 
     cavity_pressure: float = 0.0
@@ -103,6 +119,10 @@ class SwiftStieber(SymmetricClosure):
     The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is
     factored.
 
+    With ``line_in_cells`` stiffness and damping are within 1 % in any direction (default grid, eccentricity ratio up to
+    0.8, L/D from 0.5; 2 % at 0.25) instead of 8 %, in twice the time. It does not go with liners, density and shear
+    laws and short bearings yet, and says so.
+
     Parameters
     ----------
     cavity_pressure : float
@@ -112,6 +132,14 @@ class SwiftStieber(SymmetricClosure):
     line_in_cells : bool
         True: the rupture line lies where it is, inside the cells of the grid (order two in stiffness and damping); see
         `exudyn_ehd.film.cavitation.rupture_line`. False: on its vertices.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, cavitation=ehd.SwiftStieber())
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
+    >>> round(np.hypot(*film.force[:2])), round(film.leakage, 8)  # N, m^3/s
+    (13599, 3.79e-06)
     """
 
     cavity_pressure: float = 0.0

@@ -68,10 +68,26 @@ class ElrodAdams:
     joint it needs an implicit solver. A steady film needs oil from somewhere: end or supply pressures above the cavity
     pressure; a moving one without it runs dry within some turns, and the joint warns.
 
+    In time its history is the void of the gap; full films are squeezed as under `SwiftStieber`. Flows balance what they
+    bring to rounding; the content keeps to that within half a step of the gap's rate, over any number of steps.
+
     Parameters
     ----------
     cavity_pressure : float
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
+
+    Source
+    ------
+    H. G. Elrod, J. Lubrication Technology 103 (1981) 350; one unknown per vertex after Alakhramsing et al., Lubricants
+    3 (2015) 256, and Woloszynski et al., Tribology Letters 58 (2015) 18.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, cavitation=ehd.ElrodAdams(cavity_pressure=-1e5))
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
+    >>> round(np.hypot(*film.force[:2])), round(float(film.fill.min()), 2)  # N, least share of oil
+    (12171, 0.12)
     """
 
     cavity_pressure: float = 0.0

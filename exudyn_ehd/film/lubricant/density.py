@@ -51,12 +51,24 @@ class DowsonHigginson:
     When: pressures above some 100 MPa, or the compliance of the oil itself in fast transients (with `ElrodAdams`, whose
     history is the oil's mass).
 
+    Oil is compressed by 0.6 % at 10 MPa and 5 % at 100 MPa. Flows and contents are masses then.
+
     Parameters
     ----------
     coefficient : float
         a, 1/Pa: the compressibility at ambient pressure.
     saturation : float
         b, 1/Pa; the density grows to 1 + a / b at most.
+
+    Source
+    ------
+    D. Dowson, G. R. Higginson, Elasto-Hydrodynamic Lubrication, 1966.
+
+    Examples
+    --------
+    >>> law = ehd.DowsonHigginson()
+    >>> round(float(law.ratio(1e8)), 3)  # as dense at 100 MPa as at ambient pressure
+    1.051
     """
 
     coefficient: float = 0.6e-9

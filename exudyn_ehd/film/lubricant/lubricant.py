@@ -53,6 +53,12 @@ class Lubricant:
     ------
     InputError
         For values that can't be meant, or if neither a viscosity nor a temperature law is given.
+
+    Examples
+    --------
+    >>> oil = ehd.Lubricant(viscosity=0.02, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))
+    >>> oil.viscosity, oil.density  # Pa s, kg/m^3
+    (0.02, 870.0)
     """
 
     viscosity: float = None  # type: ignore[assignment]

@@ -89,6 +89,17 @@ def oil(name: str, *, temperature: float = CELSIUS_40) -> Lubricant:
     ------
     InputError
         For a name that is not in the tables.
+
+    Source
+    ------
+    ISO 3448; makers' data sheets; A. S. Seireg and S. Dandage, J. Lubrication Technology 104 (1982) 135.
+
+    Examples
+    --------
+    >>> round(ehd.oil("ISO VG 46").viscosity, 4)  # Pa s, at 40 degrees Celsius
+    0.0397
+    >>> round(ehd.oil("SAE 5W-30", temperature=373.15).viscosity, 4)
+    0.0085
     """
     require_number("oil: temperature", temperature, "K", above=0.0)
     known = {_key(k): k for k in (*ISO_GRADES, *SAE_GRADES, *MULTIGRADES)}

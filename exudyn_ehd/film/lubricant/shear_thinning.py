@@ -48,6 +48,9 @@ class CarreauShear:
     The viscosity follows the shear rate at every height of the film, under sliding, squeeze and pressure flow; see the
     module.
 
+    When: multigrade oils above 1e5 to 1e6 1/s, that is 10 m/s over 10 um. Loads of long bearings are within 0.3 % of
+    the exact flow across the film, from hardly thinning to a power law.
+
     Parameters
     ----------
     relaxation_time : float
@@ -56,6 +59,18 @@ class CarreauShear:
         n, above 0 and up to 1 (Newtonian): at high rates the viscosity falls with the power n - 1 of the rate.
     residual : float
         r_inf = mu at infinite rate / mu_0, 0 to 1.
+
+    Source
+    ------
+    P. J. Carreau, Trans. Soc. Rheology 16 (1972) 99; D. Dowson, Int. J. Mech. Sci. 4 (1962) 159.
+
+    Examples
+    --------
+    >>> law = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.5)
+    >>> law.onset  # 1/s
+    1000000.0
+    >>> ehd.Lubricant(viscosity=0.02, shear_law=law).shear_law is law
+    True
     """
 
     relaxation_time: float

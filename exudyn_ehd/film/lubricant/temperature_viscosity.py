@@ -29,6 +29,12 @@ class ReynoldsTemperature:
         Temperature T_1, K, and dynamic viscosity mu_1, Pa s.
     coefficient : float
         beta, 1/K; 0.02 to 0.05 for mineral oils.
+
+    Examples
+    --------
+    >>> law = ehd.ReynoldsTemperature(point=(313.15, 0.04), coefficient=0.03)
+    >>> round(float(law.viscosity(333.15, 870.0)), 4)  # Pa s at 60 degrees Celsius
+    0.022
     """
 
     point: tuple[float, float]
@@ -55,6 +61,12 @@ class VogelTemperature:
         Temperature, K, and dynamic viscosity, Pa s; the second one hotter and thinner.
     pole : float
         T_0, K; -95 degrees Celsius suits mineral oils (A. Cameron, Principles of Lubrication).
+
+    Examples
+    --------
+    >>> law = ehd.VogelTemperature(first=(313.15, 0.04), second=(373.15, 0.006))
+    >>> round(float(law.viscosity(333.15, 870.0)), 4)  # Pa s at 60 degrees Celsius
+    0.0181
     """
 
     first: tuple[float, float]
@@ -97,6 +109,12 @@ class WaltherTemperature:
     expansion : float
         1/K; 0.6278 kg/m3 over the density at 15 degrees for lubricating oils, 7e-4; 0: the density is the same at all
         temperatures, which makes mineral oils 2 % thicker at 40 and 7 % thicker at 100 degrees.
+
+    Examples
+    --------
+    >>> law = ehd.WaltherTemperature(first=(313.15, 46e-6), second=(373.15, 6.8e-6))
+    >>> round(float(law.viscosity(333.15, 870.0)), 4)  # Pa s at 60 degrees Celsius
+    0.0179
     """
 
     first: tuple[float, float]

@@ -62,6 +62,18 @@ class ImpedanceMap:
         End of the table, 0.5 to 0.995.
     n_eccentricity, n_direction : int
         Nodes in eccentricity and in direction.
+
+    Source
+    ------
+    J. F. Booker, J. Basic Engineering 87 (1965) 537; D. Childs, H. Moes and H. van Leeuwen, J. Lubrication Technology
+    99 (1977) 198.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, film=ehd.ImpedanceMap())
+    >>> bearing.film.largest_eccentricity_ratio
+    0.99
     """
 
     n_theta: int = 320

@@ -66,6 +66,13 @@ class ClassicSOR:
     relaxation : float or None
         lambda in (0, 2); None: 2 / (1 + sqrt(1 - rho^2)) with the spectral radius rho of Jacobi's iteration for a
         constant gap.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, film=ehd.ClassicSOR(), cavitation=ehd.Gumbel())
+    >>> bearing.film.tolerance
+    1e-05
     """
 
     n_theta: int = 96

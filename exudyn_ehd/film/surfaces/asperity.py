@@ -39,6 +39,9 @@ class GreenwoodTripp:
 
     The film between the asperities then has the average gap, which is positive for any position of the journal.
 
+    When: films below three times the composite roughness; nothing while all gaps exceed 8 times it. The contact
+    pressure is the exact integral F_5/2; load, torque and loss of the contact are reported apart.
+
     Parameters
     ----------
     composite_roughness : float
@@ -56,6 +59,19 @@ class GreenwoodTripp:
         less than the coefficient says, in a joint, `steady` and `equilibrium`, but not in `stribeck`.
     residual_film : float
         Film that touching spots keep, share of sigma, 0.001 to 0.2.
+
+    Source
+    ------
+    J. A. Greenwood and J. H. Tripp, Proc. Instn Mech. Engrs 185 (1970) 625.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> rough = ehd.GreenwoodTripp(
+    ...     composite_roughness=0.5e-6, composite_modulus=ehd.composite_modulus((2.1e11, 1.1e11), (0.3, 0.34))
+    ... )
+    >>> ehd.JournalBearing(**b, asperity=rough).asperity.friction_coefficient
+    0.1
     """
 
     composite_roughness: float
@@ -102,6 +118,16 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
         Pa.
     poisson_ratios : (float, float)
         Each between -1 and 0.5.
+
+    Returns
+    -------
+    float
+        E', Pa.
+
+    Examples
+    --------
+    >>> round(1e-9 * ehd.composite_modulus((2.1e11, 1.1e11), (0.3, 0.34)), 1)  # GPa, steel on bronze
+    80.8
     """
     compliance = 0.0
     for E, nu in zip(youngs_moduli, poisson_ratios, strict=True):

@@ -20,6 +20,14 @@ from exudyn_ehd.status import require_number, require_numbers
 class ElasticLiner:
     """Bush with an elastic liner on a rigid housing, by Winkler elements.
 
+    Each element deflects under its own pressure, solved with the film. When: soft or thick layers whose deflection
+    reaches a tenth of the minimum film thickness; for structures take a bush with a mesh.
+
+    A contact presses on the liner too, so that journals sink into soft liners and onto their edges, deeper than the
+    clearance; under `ElrodAdams` they can starve. It takes every law and effect but the reduced films: with
+    `BarusPressure` or `RoelandsPressure` it is the classical elastohydrodynamic film, whose thick oil opens its own
+    gap.
+
     Parameters
     ----------
     thickness : float
@@ -28,6 +36,14 @@ class ElasticLiner:
         E, Pa.
     poisson_ratio : float
         nu, 0 to 0.49; Winkler elements say nothing about incompressible liners.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> liner = ehd.ElasticLiner(thickness=0.002, youngs_modulus=3e9, poisson_ratio=0.35)
+    >>> f"{liner.compliance:.2g}"  # m/Pa
+    '4.2e-13'
+    >>> bearing = ehd.JournalBearing(**b, bush=liner)
     """
 
     thickness: float

@@ -85,6 +85,8 @@ class PatirCheng:
 
     Without an asperity contact the film ends where the nominal gap does; with one, both must name the same roughness.
 
+    When: films below three to five times the composite roughness.
+
     Parameters
     ----------
     composite_roughness : float
@@ -95,6 +97,17 @@ class PatirCheng:
     journal_share : float
         sigma_journal^2 / sigma^2, 0 to 1; 0.5: equally rough surfaces, whose shear flow factors cancel. The rougher
         surface drags more oil along and is pulled more by a pressure gradient.
+
+    Source
+    ------
+    N. Patir and H. S. Cheng, J. Lubrication Technology 100 (1978) 12 and 101 (1979) 220.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, roughness=ehd.PatirCheng(composite_roughness=0.5e-6, pattern=3))
+    >>> bearing.roughness.journal_share
+    0.5
     """
 
     composite_roughness: float

@@ -35,6 +35,14 @@ class OutOfRound:
         m; half of the difference between largest and smallest radius.
     phase : float
         Angle of the first lobe's largest radius, rad.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, profile=ehd.OutOfRound(order=2, amplitude=3e-6))
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
+    >>> round(1e6 * film.minimum_gap, 2)  # um
+    8.0
     """
 
     order: int
@@ -57,12 +65,21 @@ class OutOfRound:
 class Crown:
     """Crowned (barrelled) journal or bore: ``d = drop |2 z / L|^exponent``.
 
+    When: shapes as deep as a tenth of the minimum film thickness and more, against edge pressure of tilted journals.
+
     Parameters
     ----------
     drop : float
         Additional gap at the bearing's ends, m; negative: waisted.
     exponent : float
         At least 1; 2 is a parabola, larger ones leave a longer cylinder.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> crowned = ehd.JournalBearing(**b, profile=ehd.Crown(drop=2e-6))
+    >>> round(1e6 * ehd.steady(crowned, speed=314.0, eccentricity_ratio=0.8, tilt=(0, 1e-4)).minimum_gap, 2)  # um
+    5.0
     """
 
     drop: float
@@ -81,12 +98,21 @@ class Crown:
 class EdgeRelief:
     """Relieved ends: a parabola over the last part of the length, ``d = drop (1 - (L/2 - |z|) / relief_length)^2``.
 
+    When: as `Crown`.
+
     Parameters
     ----------
     drop : float
         Additional gap at the bearing's ends, m.
     relief_length : float
         Axial length of the relief at each end, m.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> relieved = ehd.JournalBearing(**b, profile=ehd.EdgeRelief(drop=5e-6, relief_length=0.004))
+    >>> relieved.profile.drop  # m
+    5e-06
     """
 
     drop: float
@@ -112,6 +138,13 @@ class AxialProfile:
         Increasing z, m, from the bearing's mid-plane; at least 2.
     depths : sequence of float
         Additional gap at these positions, m.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> worn = ehd.AxialProfile(positions=(-0.0125, 0.0, 0.0125), depths=(3e-6, 0.0, 1e-6))
+    >>> ehd.JournalBearing(**b, profile=(worn, ehd.Crown(drop=1e-6))).profiles[0] is worn
+    True
     """
 
     positions: Sequence[float]
@@ -145,6 +178,12 @@ class ProfileTable:
         Increasing z, m; at least 2. Constant beyond.
     depths : (angles, positions) array-like
         Additional gap, m.
+
+    Examples
+    --------
+    >>> angles, positions = np.linspace(0, 5.5, 12), (-0.0125, 0.0125)
+    >>> depths = 2e-6 * np.cos(2 * angles)[:, None] * np.ones(2)
+    >>> table = ehd.ProfileTable(angles=angles, positions=positions, depths=depths)
     """
 
     angles: Sequence[float]

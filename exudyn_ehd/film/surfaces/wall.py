@@ -26,6 +26,9 @@ from exudyn_ehd.status import require_number, require_numbers
 class RegularisedWall:
     """Stiff smooth wall for gaps below an onset.
 
+    A stop for journals that touch now and then: a regularisation, not a model of the surfaces. It does nothing while
+    all gaps exceed its onset.
+
     Parameters
     ----------
     onset : float
@@ -34,6 +37,13 @@ class RegularisedWall:
         Contact pressure at zero gap, Pa.
     residual : float
         Share of the onset that the film gap never falls below, 0.01 to 0.9.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> bearing = ehd.JournalBearing(**b, contact=ehd.RegularisedWall(onset=2e-6))
+    >>> bearing.contact.pressure  # Pa at zero gap
+    1000000000.0
     """
 
     onset: float

@@ -22,6 +22,8 @@ from exudyn_ehd.status import require_number
 class ArchardWear:
     """Wear of the bore by its asperity contact; needs ``asperity=GreenwoodTripp(...)``.
 
+    The depth is worn off over the accepted steps.
+
     Parameters
     ----------
     wear_rate : float
@@ -29,6 +31,18 @@ class ArchardWear:
     acceleration : float
         Factor on the wear per time: 1e6 lets a second stand for twelve days of the same motion. The depth stays an
         estimate as long as it changes by much less than the roughness per period of the load.
+
+    Source
+    ------
+    J. F. Archard, J. Applied Physics 24 (1953) 981.
+
+    Examples
+    --------
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> rough = ehd.GreenwoodTripp(composite_roughness=0.5e-6, composite_modulus=8e10)
+    >>> bearing = ehd.JournalBearing(**b, asperity=rough, wear=ehd.ArchardWear(wear_rate=1e-16, acceleration=1000))
+    >>> bearing.wear.wear_rate  # m^2/N
+    1e-16
     """
 
     wear_rate: float

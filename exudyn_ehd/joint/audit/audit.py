@@ -38,6 +38,15 @@ class Audit:
     Attributes
     ----------
     findings : tuple of Finding
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> audit = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8).audit()
+    >>> [finding.effect for finding in audit.neglected]
+    ['elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
+    >>> better = audit.improved(bearing)
     """
 
     findings: tuple[Finding, ...]

@@ -96,6 +96,16 @@ class Finding:
         What ``advice`` does to a bearing.
     time_share : float or None
         Share of the time of a film evaluation with tangent that the effect takes, 0 to 1; None if not measured.
+
+    Examples
+    --------
+    After the example of `Audit`:
+
+    >>> heating = audit["heating"]
+    >>> heating.on, heating.matters
+    (False, True)
+    >>> heating.advice.split(" and ")[0]
+    'give the bearing thermal=LumpedThermal(...)'
     """
 
     effect: str

@@ -43,6 +43,16 @@ class FilmFields(JointFilm, FilmPictures):
     bearing : JournalBearing
     bush_displacement : (k, 3) array or None
         Of all nodes of a bush's mesh against the housing, joint frame, m; None without a bush.
+
+    Examples
+    --------
+    After the example of `SolveDynamic`:
+
+    >>> film = joint.film()
+    >>> film.pressure.shape, film.time
+    ((96, 11), 0.002)
+    >>> round(float(1e-6 * film.pressure.max()), 2)  # MPa
+    0.77
     """
 
     def __repr__(self) -> str:

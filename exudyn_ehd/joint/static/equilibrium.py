@@ -55,6 +55,15 @@ class EquilibriumResult:
     film : SteadyResult
     response : FilmResponse or None
         What `dynamic_stiffness` reads; None where K and C do not depend on the frequency.
+
+    Examples
+    --------
+    After the example of `equilibrium`:
+
+    >>> rest.damping.shape, round(rest.whirl_ratio, 2)
+    ((2, 2), 0.51)
+    >>> rest.dynamic_stiffness([150.0, 300.0]).shape  # K + i nu C at these frequencies, rad/s
+    (2, 2, 2)
     """
 
     position: np.ndarray
@@ -139,12 +148,27 @@ def equilibrium(
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
 
+    Returns
+    -------
+    EquilibriumResult
+
     Raises
     ------
     InputError
         For a zero load or speed, or an inlet that a moving journal can't have.
     FilmError
         If no equilibrium was found.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -2000.0))
+    >>> round(rest.eccentricity_ratio, 3), round(float(np.degrees(rest.attitude_angle)), 1)
+    (0.454, 58.6)
+    >>> (1e-6 * rest.stiffness).round()  # N/um
+    array([[ 175.,   99.],
+           [-295.,  181.]])
     """
     force = require_vector("equilibrium: load", load, 2, "N")
     omega = require_number("equilibrium: speed", speed, "rad/s")

@@ -43,6 +43,15 @@ class FilmResult:
     content : (n, m) array
         fill times gap, m, and times the density over that at ambient pressure if the lubricant has a density law: the
         ``history`` of the next step.
+
+    Examples
+    --------
+    After the example of `solve_film`:
+
+    >>> film.pressure.shape, film.status.name
+    ((42, 9), 'CONVERGED')
+    >>> round(float(1e-5 * film.pressure.max()), 1)  # bar
+    21.3
     """
 
     status: Status
@@ -100,12 +109,24 @@ def solve_film(
     step : float
         Time since ``history``, s, > 0 with it.
 
+    Returns
+    -------
+    FilmResult
+
     Raises
     ------
     InputError
         For shapes that do not fit or a gap that is not positive.
     FilmError
         If the film could not be solved.
+
+    Examples
+    --------
+    >>> grid = ehd.slider_grid(0.1, 0.05, n_x=40, n_z=8)
+    >>> gap = np.linspace(80e-6, 40e-6, grid.shape[0])[:, None] * np.ones(grid.shape)
+    >>> film = ehd.solve_film(grid, gap, lubricant=ehd.Lubricant(viscosity=0.05), surface_speed=(10.0, 0.0))
+    >>> round(film.load)  # N
+    4421
     """
     gap = np.asarray(gap, dtype=float)
     closure = SwiftStieber() if cavitation is None else cavitation

@@ -74,6 +74,16 @@ class SteadyResult(Film, FilmPictures):
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
         rates.
+
+    Examples
+    --------
+    After the example of `steady`:
+
+    >>> print(film)
+    <SteadyResult: load 13.6 kN, minimum film thickness 4.96 µm, peak pressure 39.8 MPa, power loss 346 W>
+    >>> film.pressure.shape, round(1e-6 * film.peak_pressure, 1)  # [theta, z], MPa
+    ((96, 11), 39.8)
+    >>> figure = film.plot_pressure()
     """
 
     minimum_gap: float
@@ -153,12 +163,24 @@ def steady(
     axial_speed : float
         w, m/s.
 
+    Returns
+    -------
+    SteadyResult
+
     Raises
     ------
     InputError
         For values that are not numbers.
     FilmError
         If there is no film at this position.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8, tilt=(0.0, 1e-4))
+    >>> (1e-3 * film.force[:2]).round(1), round(1e6 * film.minimum_gap, 2)  # kN, um
+    (array([-11.4,   7.4]), 4.96)
     """
     e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
     angle = require_number("steady: direction", direction, "rad")

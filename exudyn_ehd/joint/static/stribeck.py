@@ -46,6 +46,15 @@ class StribeckResult:
         Mean of the film, K, nan for an isothermal bearing; of a liner or flexible bore, m, the largest, 0 for others.
     position : (n, 2) array
         x, y of the journal axis, m.
+
+    Examples
+    --------
+    After the example of `stribeck`:
+
+    >>> curve.hersey.round(6), (1e6 * curve.minimum_gap).round(1)
+    (array([5.0e-06, 1.0e-05, 1.5e-05]), array([15.1, 18.9, 20.7]))
+    >>> curve.contact_load_share  # nothing touches here
+    array([0., 0., 0.])
     """
 
     speeds: np.ndarray
@@ -92,6 +101,10 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     speeds : sequence of float
         Spins, rad/s, all > 0, in any order.
 
+    Returns
+    -------
+    StribeckResult
+
     Raises
     ------
     InputError
@@ -99,6 +112,14 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
         mass and has no source of oil.
     FilmError
         If no equilibrium was found at a speed.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> curve = ehd.stribeck(bearing, load=500.0, speeds=[100.0, 200.0, 300.0])
+    >>> curve.friction_coefficient.round(4)
+    array([0.0173, 0.0325, 0.0479])
     """
     size = require_number("stribeck: load", load, "N", above=0.0)
     values = np.atleast_1d(np.array(speeds, dtype=float))
