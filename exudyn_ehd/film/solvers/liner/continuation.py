@@ -38,16 +38,24 @@ def cold_start(film: LinerBalance) -> tuple[bool, int]:
 
 def _dry_guess(film: LinerBalance) -> None:
     """Pressure that would keep a thin film open: half the gap's mean where the
-    undeformed surfaces come closer than that."""
+    undeformed surfaces come closer than that; of a film at rest no more than the largest prescribed one."""
     H0 = film.rigid[0]
     guess = np.zeros(H0.shape)
     if film.contact is None and H0.min() < THIN and film.beta > 0.0:
         guess = np.maximum((THIN - H0) / film.beta, 0.0)
     if film.oil is not None and film.beta > 0.0:
         guess = _transformed(film, film.oil, guess)
-    free = ~film.film.grid.fixed
+    fixed = film.film.grid.fixed
+    if _at_rest(film):
+        guess = np.minimum(guess, film.u.P[fixed].max(initial=0.0))
     lowest = film.film.system.cavity_pressure if film.film.ruptures else 0.0
-    film.u.P[free] = np.maximum(guess, lowest)[free]
+    film.u.P[~fixed] = np.maximum(guess, lowest)[~fixed]
+
+
+def _at_rest(film: LinerBalance) -> bool:
+    """Whether nothing moves: the pressure then lies between the prescribed ones."""
+    still = film.film.vx == film.film.vz == film.rates.liner == film.rates.mass == 0.0
+    return still and not film.rigid[2].any()
 
 
 def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.ndarray:
