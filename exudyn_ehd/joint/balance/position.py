@@ -23,12 +23,13 @@ PATIENCE = 25
 # Film solves of one search; a position on a flexible bore takes some ten, one with a temperature field some thirty.
 LARGEST_EFFORT = 6000
 STEP_HALVINGS = 8
-# Rounds of a search for position and temperature together, and the change, K, that weighs as much as a clearance.
-HEATED_ROUNDS = 60
+# Rounds of a search for position and temperature together, from anywhere and from a film nearby, where those that find
+# one take some ten; and the change, K, that weighs as much as a clearance.
+HEATED_ROUNDS, NEARBY_ROUNDS = 60, 20
 TYPICAL_CHANGE = 30.0
 LOAD_TOLERANCE = 1e-10
 # Of a way from small loads: first step and smallest, shares of the load.
-FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.005
+FIRST_SHARE, SMALLEST_SHARE = 0.25, 0.01
 # Rounding of the film's force in units of L D mu omega / psi^2, which a tiny load can't fall below.
 FORCE_ROUNDING = 1e-16
 
@@ -94,10 +95,13 @@ class LoadSearch:
         b = self.model.bearing
         tolerance = max(LOAD_TOLERANCE, FORCE_ROUNDING * b.reference_force(motion[8]) / self.size)
         self.first = self.model.parts.evaluations.count
+        self.carried, most = 0.0, LARGEST_LOAD_STEPS
         fresh, place = self._history is None, self.heated(motion, tolerance)
         if place is motion and fresh and self.model.effects.thermal is not None:
             place = self.climb(motion, tolerance)
-        found = self.newton(self._start(place), tolerance)
+            # a search from the last of the films that follow from smaller loads takes long and finds none
+            most = 0 if 0.0 < self.carried < self.size else most
+        found = self.newton(self._start(place), tolerance, most)
         if self.residual(found) > tolerance and self.carried == 0.0:
             self._follows = np.zeros((2, 2))
             held_back = 10.0 * self.size / b.radial_clearance
@@ -115,7 +119,7 @@ class LoadSearch:
             )
         return found
 
-    def heated(self, motion: np.ndarray, tolerance: float) -> np.ndarray:
+    def heated(self, motion: np.ndarray, tolerance: float, rounds: int = HEATED_ROUNDS) -> np.ndarray:
         """Motion (10,) in which a film with the temperature that it gives itself carries the load, which is kept.
 
         The motion that came in for an isothermal bearing, or where none was found.
@@ -132,7 +136,7 @@ class LoadSearch:
         T = np.array(known, dtype=float)
         scale = np.append(np.full(2, c), np.full(T.size, TYPICAL_CHANGE * math.sqrt(T.size)))
         past: list[tuple[np.ndarray, np.ndarray]] = []
-        for _ in range(HEATED_ROUNDS):
+        for _ in range(rounds):
             self.count += 1
             history = History(temperature=T if T.ndim else float(T))
             reached = self._near(place, history)
@@ -176,25 +180,29 @@ class LoadSearch:
     def climb(self, motion: np.ndarray, tolerance: float) -> np.ndarray:
         """Motion (10,) of the largest load up to the whole one, ``carried``, to which films follow from smaller ones.
 
-        Every load starts from where the last two lead, at the last temperature, which is kept. Where heat lets a film
-        carry no more, the steps shorten to nothing.
+        Every load starts from where the last two lead, at the last temperature, which is kept. A load without a film
+        halves the way to it, and is tried again from nearby; where heat lets a film carry no more, the smallest step
+        fails.
         """
         whole, size, place, motion = self.force, self.size, motion, motion.copy()
-        share, step, self.carried, self._history = 0.0, FIRST_SHARE, 0.0, None
+        share, step, failed, self._history = 0.0, FIRST_SHARE, math.inf, None
         motion[:2] = first_guess(self.model.bearing, motion[8], FIRST_SHARE * whole, motion[2:4])
         rate = np.zeros(2)
-        while share < 1.0 and step > SMALLEST_SHARE and not self._spent():
+        while share < 1.0 and not self._spent():
             target = min(1.0, share + step)
             self.force, self.size = target * whole, target * size
             start = motion.copy()
             start[:2] += (target - share) * rate
-            found = self.heated(start, tolerance)
+            found = self.heated(start, tolerance, NEARBY_ROUNDS)
             if found is start:
-                step *= 0.5
+                if step <= SMALLEST_SHARE:
+                    break
+                failed, step = target, max(0.5 * step, SMALLEST_SHARE)
                 continue
             rate = (found[:2] - motion[:2]) / (target - share) if share else rate
             place = motion = found
-            share, step, self.carried = target, 1.5 * step, self.size
+            failed = failed if target < failed else math.inf
+            share, step, self.carried = target, max(min(1.5 * step, 0.5 * (failed - target)), SMALLEST_SHARE), self.size
         self.force, self.size = whole, size
         return place
 
@@ -277,7 +285,7 @@ def _hot(place: Carried, carried: float) -> str:
     T = place.film.temperature
     if T is None:
         return ""
-    most = f" Followed from smaller loads, the film carries up to {carried:.4g} N." if carried else ""
+    most = f" Followed from smaller loads, the film carries at least {carried:.4g} N." if carried else ""
     return (
         f"{most} The film is at {float(np.max(T)):.0f} K there: with heat a load has a limit, beyond which the film "
         "thins faster by its heat, that of touching asperities too, than the gap closes, and the bearing seizes; a "
