@@ -68,7 +68,9 @@ def slope_rotation(s, d0):
     d = d0 - _dot(d0, t) * t
     d /= np.sqrt(_dot(d, d))
     a = np.empty((3, 3))
-    a[:, 0], a[:, 1], a[:, 2] = t, d, cross(t, d)
+    c = cross(t, d)
+    for i in range(3):
+        a[i, 0], a[i, 1], a[i, 2] = t[i], d[i], c[i]
     return a
 
 
@@ -85,13 +87,16 @@ def slope_frame(S, Sx, q, q_t, d0, rho, a_loc, frame_out, jac_out):
     G = _roll_map(t, d0) @ _direction_map(t, length)
     w = a @ rho
     omega = G @ s_t
-    frame_out[:, :3] = a @ a_loc
-    frame_out[:, 3] = S @ q + w
-    frame_out[:, 4] = S @ q_t + cross(omega, w)
-    frame_out[:, 5] = omega
-    jac_out[1] = G @ Sx
+    axes, place, speed, turn = a @ a_loc, S @ q, S @ q_t, G @ Sx
+    spun = cross(omega, w)
+    for i in range(3):
+        for j in range(3):
+            frame_out[i, j] = axes[i, j]
+        frame_out[i, 3], frame_out[i, 4], frame_out[i, 5] = place[i] + w[i], speed[i] + spun[i], omega[i]
     for k in range(q.size):
-        jac_out[0, :, k] = S[:, k] + cross(jac_out[1, :, k].copy(), w)
+        arm = cross(turn[:, k].copy(), w)
+        for i in range(3):
+            jac_out[0, i, k], jac_out[1, i, k] = S[i, k] + arm[i], turn[i, k]
 
 
 @njit(cache=True)
@@ -122,8 +127,9 @@ def slope_variation(Sx, q, q_t, d0, rho, jac_out):
     for k in range(q.size):
         turn = jac_out[1, :, k].copy()
         dw = _map_change(t, length, d0, Sx[:, k].copy()) @ s_t
-        jac_out[3, :, k] = dw
-        jac_out[2, :, k] = cross(dw, w) + cross(omega, cross(turn, w))
+        turned, moved = cross(dw, w), cross(omega, cross(turn, w))
+        for i in range(3):
+            jac_out[2, i, k], jac_out[3, i, k] = turned[i] + moved[i], dw[i]
 
 
 @njit(cache=True)

@@ -227,10 +227,12 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
                     dmj += turn_m - cross(r, turn_f) + cross(jac[0, :, k], force)
                 else:
                     dmj -= cross(jac[0, :, k], force)
-            load[0], load[1], load[2], load[3] = -df, -dm, df, dmj
+            for i in range(3):
+                load[0, i], load[1, i], load[2, i], load[3, i] = -df[i], -dm[i], df[i], dmj[i]
             column = np.empty(n_h + n_j)
             generalized_force(jac_h, jac_j, load, column)
-            if kind == 0:
-                k_out[:, c] += column
-            else:
-                d_out[:, c] = column
+            for i in range(n_h + n_j):
+                if kind == 0:
+                    k_out[i, c] += column[i]
+                else:
+                    d_out[i, c] = column[i]

@@ -15,6 +15,8 @@ What follows for the joint: `joint_kinematics`.
 Lie group nodes: q_t holds the local angular velocity, and dq the local incremental rotation, as in Exudyn's Newton.
 Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;
 on the sphere, where Exudyn's constraint holds it, all quantities equal Exudyn's.
+
+Vectors are written in loops: numba takes seconds to compile the message of an assignment to a slice that does not fit.
 """
 
 from __future__ import annotations
@@ -181,7 +183,9 @@ def _spin_variation(kind, theta, theta_t, a, jr):
         for k in range(3):
             e = np.zeros(3)
             e[k] = 1.0
-            w[:, k] = times(a, cross(e, theta_t))
+            turn = times(a, cross(e, theta_t))
+            for i in range(3):
+                w[i, k] = turn[i]
     return w
 
 
@@ -256,8 +260,9 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
     for i in range(nt):
         jac_out[0, i, i] = 1.0
     for k in range(jr.shape[1]):
-        jac_out[0, :, nt + k] = cross(jr[:, k], s)
-        jac_out[1, :, nt + k] = jr[:, k]
+        arm = cross(jr[:, k], s)
+        for i in range(3):
+            jac_out[0, i, nt + k], jac_out[1, i, nt + k] = arm[i], jr[i, k]
 
 
 @njit(cache=True)
@@ -270,12 +275,14 @@ def node_variation(kind, q, q_t, reference, rho, jac_out):
     w = _spin_variation(kind, theta, q_t[nt:], a, jr)
     omega = np.zeros(3)
     for k in range(jr.shape[1]):
-        omega += jr[:, k] * q_t[nt + k]
+        for i in range(3):
+            omega[i] += jr[i, k] * q_t[nt + k]
     jac_out[2:] = 0.0
     for k in range(jr.shape[1]):
         # v = r_t + omega x s, ds = dphi x s
-        jac_out[2, :, nt + k] = cross(w[:, k], s) + cross(omega, cross(jr[:, k], s))
-        jac_out[3, :, nt + k] = w[:, k]
+        turned, moved = cross(w[:, k], s), cross(omega, cross(jr[:, k], s))
+        for i in range(3):
+            jac_out[2, i, nt + k], jac_out[3, i, nt + k] = turned[i] + moved[i], w[i, k]
 
 
 @njit(cache=True)

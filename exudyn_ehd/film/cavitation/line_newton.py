@@ -214,7 +214,8 @@ def approach_film(links, line, active, factor, last, x, p):
     if not _same_set(active, order, count):
         return
     lack, s = np.empty(p.shape), line[2]
-    old = p.copy(), s.copy(), active.copy()
+    known, places, free = p.reshape(-1), s.reshape(-1), active.reshape(-1)
+    old = known.copy(), places.copy(), free.copy()
     lacks(links, p, lack)
     line_rows(lack, line, order, count, x)
     before = np.abs(x[:count]).sum()
@@ -223,7 +224,8 @@ def approach_film(links, line, active, factor, last, x, p):
     lacks(links, p, lack)
     line_rows(lack, line, order, count, x)
     if left > 0 or not np.abs(x[:count]).sum() < APPROACH * before:
-        p[:], s[:], active[:] = old
+        for c in range(known.size):
+            known[c], places[c], free[c] = old[0][c], old[1][c], old[2][c]
 
 
 @njit(cache=True)

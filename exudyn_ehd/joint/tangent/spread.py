@@ -43,10 +43,10 @@ def spread_matrix(x):
     both = np.eye(6)
     both[0, 4], both[0, 5], both[1, 5] = mean[2], -mean[1], mean[0]
     both[1, 3], both[2, 3], both[2, 4] = -mean[2], mean[1], -mean[0]
-    both[3:, :3] = both[:3, 3:].T
     trace = second[0, 0] + second[1, 1] + second[2, 2]
     for i in range(3):
         for j in range(3):
+            both[3 + i, j] = both[j, 3 + i]
             both[3 + i, 3 + j] = (trace if i == j else 0.0) - second[i, j]
     ab = np.linalg.inv(both) / count
     out = np.empty((count, 3, 6))
