@@ -47,10 +47,10 @@ SMALLEST_ECCENTRICITY = 1e-9
 class ImpedanceMap:
     """Table of the two-dimensional film, for plain aligned bearings in multibody models where speed matters most.
 
-    Built once per L/D and closure (a few seconds) and kept on disk. A joint with it refuses tilted journals and states
-    beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and minimum film thickness, but no
-    pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient pressure at the ends and in the
-    cavity, the squeeze term, a closed ring and no further effect.
+    Built once per L/D and closure (a few seconds) and kept on disk; its error is sampled when it is built. A joint with
+    it refuses tilted journals and states beyond ``largest_eccentricity_ratio``, and reports force, friction, loss and
+    minimum film thickness, but no pressure. `steady` and `equilibrium` solve the film behind the map. Needs ambient
+    pressure at the ends and in the cavity, the squeeze term, a closed ring and no further effect.
 
     Parameters
     ----------

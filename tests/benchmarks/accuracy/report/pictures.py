@@ -37,7 +37,7 @@ MARKERS = "osD^vP*X<>ph8"
 
 
 def work_precision(rows: Sequence[Row], title: str, per: str) -> Figure:
-    """Error against time of one study and quantity: labelled points, families by colour, the Pareto front as a line.
+    """Error against time of one study and quantity: families by colour, the Pareto front as a line with labels.
 
     Parameters
     ----------
@@ -148,7 +148,10 @@ def short_label(row: Row) -> str:
 
 
 def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
-    """Write every label next to its point where it covers neither a label nor a point; far ones get a thin line."""
+    """Write the labels of the Pareto front next to their points, where they cover neither a label nor a point.
+
+    Labels far from their points get a thin line. Points off the front have none: no one could tell whose they are.
+    """
     to_screen, scale, size = axes.transData.transform, axes.figure.dpi / 72.0, 5.5
     place = np.array([to_screen((row.seconds, _error(row))) for row in points])
     taken = [(x - 3 * scale, y - 3 * scale, x + 3 * scale, y + 3 * scale) for x, y in place]
@@ -159,7 +162,7 @@ def _place_labels(axes: Axes, points: Sequence[Row]) -> None:
     line = to_screen(_front_line(points, axes.get_ylim()[1], axes.get_xlim()[1]))
     for (x0, y0), (x1, y1) in itertools.pairwise(line):
         taken.append((min(x0, x1) - scale, min(y0, y1) - scale, max(x0, x1) + scale, max(y0, y1) + scale))
-    for k in np.argsort(place[:, 0] + 0.3 * place[:, 1]):
+    for k in pareto_front([row.seconds for row in points], [_error(row) for row in points]):
         text = short_label(points[k])
         w, h = (0.60 * size * len(text) + 1.0) * scale, 1.15 * size * scale
         found = _free_place(place[k], (w, h), taken, axes.get_window_extent(), scale)
