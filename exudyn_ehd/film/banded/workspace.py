@@ -102,6 +102,8 @@ class Workspace:
     ----------
     active : (n, m) bool array
         The active set of the last solution: the warm start of the next one.
+    known : bool
+        Of a film with its line in its cells: whether pressures and factor are the last solution's, too.
     convected : bool
         Whether the last mass-conserving film was factored along the flow of its cavity, in ``transport``.
     """
@@ -116,7 +118,7 @@ class Workspace:
         self.inv_diag = np.zeros(size)
         self.unknowns = np.zeros(size)
         self.active = np.zeros((n, m), dtype=np.bool_)
-        self.warm = False
+        self.warm = self.known = False
         self.convected = False
         self.count = 0
         self.width = 1

@@ -6,6 +6,7 @@ closures          FullSommerfeld, Gumbel, SwiftStieber
 active_set        the film on a set of unknown pressures, and how the set is found
 rupture_line      where the film's edge lies inside a cell, and what it adds to balances and derivatives
 line_newton       Newton's method for a film with it
+line_steps        what one of its steps does
 elrod_adams       mass-conserving closure
 lagging_void      its flows out of a cavity, averaged over the step
 pseudo_time       the way to a film that is far from where its solution starts

@@ -24,7 +24,7 @@ from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, clip_pressure, solve_active_set, solve_on_active
-from exudyn_ehd.film.cavitation.line_newton import solve_with_line
+from exudyn_ehd.film.cavitation.line_newton import solve_transposed_with_line, solve_with_line
 from exudyn_ehd.status import Status, require_bool, require_number
 
 
@@ -177,6 +177,13 @@ class SwiftStieber(SymmetricClosure):
         )
         work.count, work.width, work.warm = count, width, ok
         return (Status.CONVERGED if ok else Status.NOT_CONVERGED), steps
+
+    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
+        """Solve the transposed system for every row of rhs (k, count), in place."""
+        if system.line is None:
+            super().adjoint(system, work, rhs)
+        else:
+            solve_transposed_with_line(system, system.line, work, rhs)
 
 
 def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:

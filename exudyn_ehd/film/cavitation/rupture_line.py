@@ -32,6 +32,9 @@ from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.grid import Directions, Mesh
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
+# A vertex joins with s beyond it: what lies below is the rounding of its neighbours' pressures.
+LEAST = 1e-8
+
 
 class LineGradients(NamedTuple):
     """Derivatives of what N, f and k add to the balances of c unknowns, at fixed pressure.
@@ -50,28 +53,53 @@ class LineGradients(NamedTuple):
     by: np.ndarray
 
 
+class Line(NamedTuple):
+    """The arrays of a rupture line as kernels take them.
+
+    Attributes
+    ----------
+    f, k, s : (n m,) arrays
+        Symbols of the module; f is 0 where there can be no line, s is 1 where there is none.
+    whole, limit : (n m,) arrays
+        Pressure at s = 1; what the balance of a vertex without film has to lack for it to join, never at known ones.
+    places : (n m + 1,) int array
+        Vertices at the line, and last of all their number.
+    shift, share : (n m,) arrays
+        The line's share of the unknowns' diagonals, in the factor and of the present film.
+    """
+
+    f: np.ndarray
+    k: np.ndarray
+    s: np.ndarray
+    whole: np.ndarray
+    limit: np.ndarray
+    places: np.ndarray
+    shift: np.ndarray
+    share: np.ndarray
+
+
 class RuptureLine:
     """The rupture line of one film.
 
     Attributes
     ----------
+    fields : Line
     f, k, s : (n, m) arrays
-        Symbols of the module; f is 0 where there can be no line, s is 1 where there is none.
-    shift, share : (n m,) arrays
-        The line's share of the unknowns' diagonals, in the factor and of the present film.
-    exact : bool
-        Whether the factor is that of the last solution.
+        Of ``fields``.
+    peak : float
+        Largest pressure of the last solution above the cavity's.
+    own_links, exact : bool
+        Whether the factor holds the last solution's conductances, and also its line.
     """
 
     def __init__(self, shape: tuple[int, int]) -> None:
-        self.f, self.k, self.s = np.zeros(shape), np.zeros(shape), np.ones(shape)
-        self.shift, self.share = np.zeros((2, shape[0] * shape[1]))
-        self.exact = False
-
-    @property
-    def fields(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """These arrays as kernels take them."""
-        return self.f, self.k, self.s, self.shift, self.share
+        size = shape[0] * shape[1]
+        f, k, s, whole, limit, shift, share = np.zeros((7, size))
+        self.fields = Line(f, k, s, whole, limit, np.zeros(size + 1, dtype=np.int64), shift, share)
+        self.f, self.k, self.s = (field.reshape(shape) for field in (f, k, s))
+        s[:] = 1.0
+        self.own_links = self.exact = False
+        self.peak = 0.0
 
     def found(self) -> np.ndarray:
         """N (n, m) of the last solution: the oil that appears where the line crosses a cell, a scaled flow."""
@@ -88,52 +116,50 @@ class RuptureLine:
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
         """`LineGradients` of the last solution, to the film's ``gaps`` at vertices and links."""
-        rows, by = np.empty(work.count, dtype=np.int64), np.empty((8, work.count))
+        places = self.fields.places[: self.fields.places[-1]].copy()
+        rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        count = line_gradients(
-            work.order, work.count, self.fields, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, rows, by
-        )
-        rows = rows[:count]
-        return LineGradients(rows, work.order[rows], by[:, :count])
+        line_gradients(places, (self.f, self.k, self.s), *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
+        return LineGradients(rows, places, by)
 
 
 @njit(cache=True)
-def line_terms(kx, b, fixed, f_out, k_out):
-    """f and k of all vertices (n, m)."""
+def line_terms(kx, b, fixed, line):
+    """f and k of all vertices, and what follows from them."""
     n, m = b.shape
-    for i in range(n):
-        prv = i - 1 if i > 0 else n - 1
-        nxt = i + 1 if i + 1 < n else 0
-        for j in range(m):
-            before, behind = kx[prv, j], kx[i, j]
-            known = fixed[i, j] or fixed[prv, j] or fixed[nxt, j] or not min(before, behind) > 0.0
-            f_out[i, j] = 0.0 if known else max(-b[i, j], 0.0)
-            k_out[i, j] = 0.5 * (before + behind)
+    behind, rest, known = kx.reshape(-1), b.reshape(-1), fixed.reshape(-1)
+    f, k, _, whole, limit, _, _, _ = line
+    size, last = n * m, n * m - m
+    for c in range(size):
+        prv = c - m if c >= m else c + last
+        nxt = c + m if c < last else c - last
+        k[c] = 0.5 * (behind[prv] + behind[c])
+        f[c] = whole[c] = 0.0
+        limit[c] = np.inf if known[c] else 0.0
+        if rest[c] < 0.0 and min(behind[prv], behind[c]) > 0.0 and not (known[c] | known[prv] | known[nxt]):
+            f[c] = -rest[c]
+            whole[c] = 0.5 * f[c] / k[c]
+            limit[c] = (LEAST - 0.5) * f[c]
 
 
 @njit(cache=True)
-def line_gradients(order, count, line, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, rows, by):
-    """`LineGradients` of the last solution; returns their number.
+def line_gradients(places, line, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
+    """`LineGradients` of the last solution at ``places`` (c,) into zeros ``by`` (8, c); ``line``: f, k and s (n, m).
 
     ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
-    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`; ``rows`` (n m,), ``by`` (8, n m).
+    `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
     """
-    f, k, s, _, _ = line
+    f, k, s = line
     mesh = Mesh(*mesh)
-    n, m = f.shape
-    found = 0
-    for r in range(count):
-        i = order[r] // m
-        j = order[r] - i * m
-        if s[i, j] >= 1.0:
-            continue
+    n, m = H.shape
+    for found in range(places.size):
+        i = places[found] // m
+        j = places[found] - i * m
         prv = i - 1 if i > 0 else n - 1
         # of the balance to the sources b and to the mean conductance
         source = 0.5 * (1.0 - s[i, j])
         conduct = source * f[i, j] * s[i, j] / k[i, j]
         wx, wz = mesh.width_x[i], mesh.width_z[j]
-        rows[found] = r
-        by[:, found] = 0.0
         for q, face, side in ((0, i, -1.0), (1, prv, 1.0)):
             half = 0.5 * conduct * mesh.link_x[face] * flow_x * wz
             if slopes is None:
@@ -156,8 +182,6 @@ def line_gradients(order, count, line, H, HF, slopes, by_speed, vx, vz, flow_x, 
                 by[7, found] += side * source * wx * carrier
         if squeeze:
             by[5, found] = -source * wx * wz
-        found += 1
-    return found
 
 
 def contract_line(

@@ -153,7 +153,7 @@ class FilmSolver:
 
     def forget(self) -> None:
         """Drop the warm start; the next solution starts from a coarser grid."""
-        self.work.warm = False
+        self.work.warm = self.work.known = False
 
     def refresh_fixed(self) -> None:
         """Hand a change of ``grid.fixed`` on to the coarser grids."""
@@ -292,7 +292,7 @@ class FilmSolver:
     def _factored(self) -> Workspace:
         """The workspace, with the factor of the last solution itself."""
         if self.line is not None:
-            refine_factor(self.system, self.line, self.work)
+            refine_factor(self.system, self.line, self.work, 1.0)
         return self.work
 
     def adjoint(self, rhs: np.ndarray) -> np.ndarray:
@@ -305,7 +305,7 @@ class FilmSolver:
 
     def solve_transposed(self, rhs: np.ndarray) -> None:
         """Solve ``A^T lam = rhs`` with the stored factor for rhs (k, count), in place."""
-        self.closure.adjoint(self.system, self._factored, rhs)
+        self.closure.adjoint(self.system, self.work, rhs)
 
     def direct(self, rhs: np.ndarray) -> None:
         """Solve ``A du = rhs`` with the matrix of the last solution for rhs (count,), in place."""

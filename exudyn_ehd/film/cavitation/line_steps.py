@@ -1,0 +1,280 @@
+"""What one step of `exudyn_ehd.film.cavitation.line_newton` does to a film with its rupture line inside its cells.
+
+Symbols as there and in `exudyn_ehd.film.cavitation.rupture_line`; pressures are those above the cavity's.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
+from exudyn_ehd.film.cavitation.rupture_line import LEAST
+
+# s that a vertex starts from whose pressure says nothing of it.
+START = 1e-3
+# Steps after which vertices no longer leave the film at once: two may drive each other out and in again for ever. Of an
+# s that would vanish so much is left. Steps after which pressures are the unknowns everywhere: then Newton's method
+# can't miss, since balances are concave in them, but it takes longer.
+PATIENT, KEPT, SAFE = 8, 0.1, 30
+# Pressure below the cavity's, over the peak, by which a vertex without a line leaves the film: about 100 roundings.
+ROUNDING = 1e-13
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+
+
+@njit(cache=True, fastmath=_FAST)
+def lacks(links, p, out):
+    """What the balances lack without the line: b less what the pressure flows take away, (n, m)."""
+    kx, kz, b = links[0].reshape(-1), links[1].reshape(-1), links[2].reshape(-1)
+    n, m = p.shape
+    size, x, lack = n * m, p.reshape(-1), out.reshape(-1)
+    last = size - m
+    along, across = np.empty(size + m), np.empty(size + 1)
+    for c in range(last):
+        along[m + c] = kx[c] * (x[c] - x[c + m])
+    for c in range(m):
+        along[c] = along[size + c] = kx[last + c] * (x[last + c] - x[c])
+    across[0] = across[size] = 0.0
+    for c in range(size - 1):
+        # nothing flows over the last row's links
+        across[c + 1] = kz[c] * (x[c] - x[c + 1])
+    for c in range(size):
+        lack[c] = b[c] - along[m + c] + along[c] - across[c + 1] + across[c]
+
+
+@njit(cache=True)
+def _meet(c, m, kx, kz, line, rest, free, pressures):
+    """Let the vertex c at the line meet its own balance between given neighbours: ``g s^2 / 2 + s = e``.
+
+    It leaves if s would be negative. ``rest`` follows.
+    """
+    f, k, s, whole, _, _, _, _ = line
+    size, old = rest.size, pressures[c]
+    on = c + m if c + m < size else c + m - size
+    diagonal = kx[c - m] + kx[c] + kz[c - 1] + kz[c]
+    known = rest[c] + diagonal * old
+    excess = 0.5 + known / f[c]
+    place = 2.0 * excess / (1.0 + np.sqrt(max(1.0 + 2.0 * (diagonal / k[c] - 1.0) * excess, 0.0)))
+    free[c] = place > 0.0
+    if place >= 1.0:
+        s[c], new = 1.0, known / diagonal
+    elif free[c]:
+        s[c], new = place, whole[c] * place * place
+    else:
+        s[c], new = 1.0, 0.0
+    step = new - old
+    pressures[c] = new
+    rest[c] -= diagonal * step
+    rest[c - m] += kx[c - m] * step
+    rest[on] += kx[c] * step
+    rest[c - 1] += kz[c - 1] * step
+    rest[c + 1 if c + 1 < size else 0] += kz[c] * step
+
+
+@njit(cache=True)
+def relax_line(links, line, active, lack, p):
+    """The vertices at the line meet their own balances, one after the other: those whose s is small follow their
+    neighbours at once, whatever their factor. ``lack`` (n, m) of `lacks`, in and out; returns how many leave."""
+    kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
+    rest, free, pressures, places, s = lack.reshape(-1), active.reshape(-1), p.reshape(-1), line[5], line[2]
+    kept, left = 0, 0
+    for q in range(places[-1]):
+        c = places[q]
+        _meet(c, m, kx, kz, line, rest, free, pressures)
+        left += not free[c]
+        if s[c] < 1.0:
+            places[kept] = c
+            kept += 1
+    places[-1] = kept
+    return left
+
+
+@njit(cache=True)
+def join_film(links, line, active, lack, p):
+    """Vertices at which oil piles up join the film; returns their number. ``lack`` (n, m) of `lacks`, in and out."""
+    rest, free, limit = lack.reshape(-1), active.reshape(-1), line[4]
+    waiting = 0
+    for c in range(rest.size):
+        waiting += (rest[c] >= limit[c]) & (not free[c])
+    if waiting == 0:
+        return 0
+    kx, kz, m = links[0].reshape(-1), links[1].reshape(-1), p.shape[1]
+    f, s, places, joined = line[0], line[2], line[5], 0
+    for c in range(rest.size):
+        if free[c] | (rest[c] < limit[c]):
+            continue
+        joined += 1
+        free[c] = True
+        if f[c] > 0.0:
+            _meet(c, m, kx, kz, line, rest, free, p.reshape(-1))
+            if s[c] < 1.0:
+                places[places[-1]] = c
+                places[-1] += 1
+    return joined
+
+
+@njit(cache=True)
+def line_rows(lack, line, number, order, count, active, rhs_out):
+    """What the balances of the unknowns lack (count,) with the line; its share of their diagonals.
+
+    Returns the largest change of an s since the factor, over s.
+    """
+    rest, free, rows = lack.reshape(-1), active.reshape(-1), number.reshape(-1)
+    f, k, s, _, _, places, shift, share = line
+    stale = 0.0
+    for r in range(count):
+        rhs_out[r] = rest[order[r]] if free[order[r]] else 0.0
+        share[r] = 0.0
+    for q in range(places[-1]):
+        c = places[q]
+        r = rows[c]
+        # one that has joined since the factor has no row yet
+        if r >= 0:
+            rhs_out[r] += 0.5 * f[c] * (1.0 - s[c]) * (1.0 - s[c])
+            share[r] = k[c] * (1.0 - s[c]) / s[c]
+            stale = max(stale, abs(1.0 - k[c] / (k[c] + shift[r]) / s[c]))
+    for r in range(count):
+        if shift[r] > 0.0 and share[r] == 0.0:
+            stale = max(stale, shift[r] / (k[order[r]] + shift[r]))
+    return stale
+
+
+@njit(cache=True)
+def factor_line(links, line, factor, count, width, first, kept, peak, least):
+    """Assemble and factor from the first row that changes, which is ``first`` or whose s does, by more than ``kept``.
+
+    What counts is the change over s. With a ``peak`` it is this change, or ``least`` if it is larger, times what the
+    change of s makes of the pressure over the peak: what is left of solutions that are corrected once, or (1) never.
+    Returns whether there is a factor, and the largest change over s that it does not know of.
+    """
+    kx, kz, _ = links
+    order, _, number, band, inv_diag = factor
+    f, k, s, _, _, _, shift, share = line
+    row, stale = 0, 0.0
+    while row < first:
+        if share[row] != shift[row]:
+            c = order[row]
+            change = abs(s[c] - k[c] / (k[c] + shift[row]))
+            counts = over_s = change / s[c]
+            if peak > 0.0:
+                counts = max(counts, least) * change * f[c] / (k[c] * peak)
+            if counts > kept:
+                break
+            stale = max(stale, over_s)
+        row += 1
+    first = min(first, row - row % 4)
+    assemble_band(kx, kz, number, order, count, width, first, band)
+    for r in range(first, count):
+        band[r, 0] += share[r]
+        shift[r] = share[r]
+    return factor_band(band, count, width, first, inv_diag), stale
+
+
+@njit(cache=True)
+def _move_line(line, rows, steps, taken, free, pressures):
+    """s of the vertices at the line after a step, and their pressures' true change into ``steps``.
+
+    Returns in_line, stale and left of `move_film`.
+    """
+    _, k, s, whole, _, places, shift, _ = line
+    in_line, stale, stay, left = 0.0, 0.0, 0, 0
+    kept = KEPT if taken > PATIENT else 0.0
+    for q in range(places[-1]):
+        c = places[q]
+        r, own = rows[c], s[c]
+        if r < 0:
+            places[stay] = c
+            stay += 1
+            continue
+        new = pressures[c] + steps[r]
+        place = own + 0.5 * steps[r] / (whole[c] * own)
+        if taken > SAFE:
+            place = np.sqrt(max(new, 0.0) / whole[c])
+        if own > LEAST and place < kept * own:
+            # on its way out, whatever little it moves
+            place, in_line = kept * own, 1.0
+        if not place > 0.0:
+            free[c], new, place = False, pressures[c], 1.0
+            pressures[c] = 0.0
+            left += 1
+        elif place < 1.0:
+            new = whole[c] * place * place
+            places[stay] = c
+            stay += 1
+        else:
+            new, place = max(new, whole[c]), 1.0
+        stale = max(stale, abs(1.0 - k[c] / (k[c] + shift[r]) / place))
+        in_line = max(in_line, abs(place - own))
+        s[c], steps[r] = place, new - pressures[c]
+    places[-1] = stay
+    return in_line, stale, left
+
+
+@njit(cache=True)
+def move_film(line, number, order, count, steps, taken, active, p):
+    """Take a step, the one that is ``taken`` after so many.
+
+    Returns
+    -------
+    in_line, in_film : float
+        Largest change of an s, and of a pressure over the peak.
+    stale : float
+        Largest change of an s since the factor, over s.
+    left : int
+        Number of vertices that leave the film.
+    """
+    _, _, s, whole, _, places, _, _ = line
+    pressures, free = p.reshape(-1), active.reshape(-1)
+    in_line, stale, left = _move_line(line, number.reshape(-1), steps, taken, free, pressures)
+    step, peak, lowest = 0.0, 0.0, 0.0
+    for r in range(count):
+        c = order[r]
+        if not free[c]:
+            continue
+        new = pressures[c] + steps[r]
+        step = max(step, abs(steps[r]))
+        peak = max(peak, new)
+        if 0.0 < whole[c] > new and s[c] == 1.0:
+            # the line comes into reach
+            place = np.sqrt(max(new, 0.0) / whole[c])
+            in_line = max(in_line, 1.0 - place)
+            if place > 0.0:
+                s[c], stale = place, max(stale, 1.0 / place - 1.0)
+                places[places[-1]] = c
+                places[-1] += 1
+            else:
+                free[c], new = False, 0.0
+                left += 1
+        lowest = min(lowest, new)
+        pressures[c] = new
+    if lowest < -ROUNDING * peak:
+        for r in range(count):
+            c = order[r]
+            if pressures[c] < -ROUNDING * peak and free[c]:
+                free[c] = False
+                pressures[c] = 0.0
+                left += 1
+    return in_line, step / peak if peak > 0.0 else 0.0, stale, left
+
+
+@njit(cache=True)
+def place_line(line, fixed, active, p):
+    """s of all vertices from the last film's, or from their pressures."""
+    _, _, s, whole, _, places, _, _ = line
+    known, free, pressures = fixed.reshape(-1), active.reshape(-1), p.reshape(-1)
+    count = 0
+    for c in range(s.size):
+        own = s[c]
+        s[c] = 1.0
+        if known[c]:
+            free[c] = False
+        elif not free[c]:
+            pressures[c] = 0.0
+        elif whole[c] > 0.0 and (own < 1.0 or pressures[c] < whole[c]):
+            if not own < 1.0:
+                own = np.sqrt(max(pressures[c], 0.0) / whole[c])
+            s[c] = own = max(own, START)
+            pressures[c] = whole[c] * own * own
+            places[count] = c
+            count += 1
+    places[-1] = count
