@@ -20,6 +20,9 @@ from exudyn_ehd.joint.step_error import enough_steps
 TOO_FINE = 6.0
 # Grids that are so much finer than needed, and not coarser than the default, are not compared with finer ones.
 SURELY_FINE = 2.0
+# Film thicknesses across the last interval along z: the pressure there rises by int dz / h^3, which the vertices at
+# its ends know to 2 % of the film thickness on the end up to here.
+NARROWS = 1.6
 
 
 def _reynolds(case: Case) -> float:
@@ -61,14 +64,14 @@ def inertia(case: Case) -> Finding:
     )
 
 
-def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
+def _grid(case: Case, name: str, field: str, effect: str, narrows: bool = False) -> Finding | None:
     film = case.bearing.film
     if isinstance(film, ImpedanceMap):
         return None
     value, size = case.smallest(field), getattr(film, name)
     sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
     needed = LIMITS[effect].value
-    plain = value > SURELY_FINE * needed and size >= getattr(FiniteLength(), name, 0)
+    plain = not narrows and value > SURELY_FINE * needed and size >= getattr(FiniteLength(), name, 0)
     change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     found = replace(finding(effect, indicator, value, None), change=change)
@@ -78,7 +81,8 @@ def _grid(case: Case, name: str, field: str, effect: str) -> Finding | None:
     wanted = unit * math.ceil(1.5 * size * needed / (unit * max(value, 0.25)))
     if found.matters:
         wanted = max(wanted, unit * math.ceil(1.5 * size / unit))
-        advice = f"the pressure peak is too narrow for the grid: {name}={wanted}."
+        cause = "film narrows too fast towards its ends" if narrows else "pressure peak is too narrow"
+        advice = f"the {cause} for the grid: {name}={wanted}."
         return replace(found, advice=advice, remedy=refined(**sizes | {name: wanted}))
     wanted = max(wanted, 48 if name == "n_theta" else 6)
     if value > TOO_FINE * needed and wanted < size:
@@ -98,7 +102,9 @@ def grid_columns(case: Case) -> Finding | None:
 
 def grid_rows(case: Case) -> Finding | None:
     """Rows across the pressure peak; the slices of a long bearing are no grid."""
-    return None if isinstance(case.bearing.film, LongBearing) else _grid(case, "n_z", "rows", "grid along")
+    if isinstance(case.bearing.film, LongBearing):
+        return None
+    return _grid(case, "n_z", "rows", "grid along", narrows=case.largest("narrowing") > NARROWS)
 
 
 def supply_resolution(case: Case) -> Finding | None:

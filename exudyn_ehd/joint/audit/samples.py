@@ -154,6 +154,8 @@ class Sample:
         Largest deflection of a liner and largest departure of the surfaces from cylinders, m.
     columns, rows : float
         Intervals of the grid across the pressure peak at half its height.
+    narrowing : float
+        Film thickness one interval before an end over that on the end, where the pressure peaks.
     """
 
     speed: float
@@ -173,6 +175,7 @@ class Sample:
     shape: float
     columns: float
     rows: float
+    narrowing: float
 
 
 def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
@@ -205,6 +208,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         shape=_shape(film),
         columns=intervals_at_half(np.roll(pressure[:, j], pressure.shape[0] // 2 - i), pressure.shape[0] // 2),
         rows=intervals_at_half(pressure[i], int(j)),
+        narrowing=float(np.max(s.H[i, [1, -2]] / s.H[i, [0, -1]])),
     )
 
 

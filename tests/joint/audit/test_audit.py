@@ -413,3 +413,28 @@ def test_thresholds_stand_for_a_few_per_cent(eps, measured):
         change = abs(film.peak_pressure / plain.peak_pressure - 1.0)
         # between "nobody would see it" and "a wrong film"
         assert 0.02 < change < 0.12, (made, change)
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*of the bush's wall")
+def test_films_that_narrow_within_the_last_interval_ask_for_more_rows():
+    """A thin soft bush: the film is twice as thick one interval before its end, where it is 7 % too thin."""
+    R, L = 0.02, 0.02
+    mesh = ehd.HollowCylinder(inner_radius=R + 50e-6, thickness=1e-3, length=L, axial=4, radial=1, circumferential=24)
+    rubber = ehd.SaintVenantKirchhoff(youngs_modulus=5e6, poisson_ratio=0.3, density=1200.0)
+    thin = {}
+    for n_z in (10, 24):
+        described = ehd.JournalBearing(
+            journal_radius=R,
+            length=L,
+            radial_clearance=50e-6,
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=48, n_z=n_z),
+            bush=ehd.ModalBush(mesh=mesh, material=rubber, tolerance=0.02, tilted=False),
+        )
+        film = ehd.steady(described, speed=100.0 * np.pi, eccentricity_ratio=0.9)
+        found = film.audit()["grid along"]
+        assert found.matters == (n_z == 10)
+        assert not found.matters or "narrows too fast" in found.advice
+        thin[n_z] = film.minimum_gap
+    assert thin[10] < 0.95 * thin[24]
