@@ -14,7 +14,7 @@ from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings
-from exudyn_ehd.coupling.run.start_guess import StartGuess, UserFunction
+from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error, user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
@@ -142,7 +142,7 @@ def SolveDynamic(
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
         _refuse_inactive(mbs)
-    with going_on, control, _better_start(mbs), refusing(mbs), own_errors(mbs, "SolveDynamic"):
+    with going_on, control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic"):
         return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
 
 
@@ -335,14 +335,17 @@ def step_control(
 
 
 @contextmanager
-def _better_start(mbs: exu.MainSystem) -> Iterator[None]:
-    """Let Newton's method start at lasting accelerations in the run within; the user's function comes back then."""
+def _better_start(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Iterator[None]:
+    """Let Newton's method start at lasting accelerations in the run within; the user's functions come back then."""
     own = user_function(mbs.GetPreNewtonResidualUserFunction())
+    after = user_function(mbs.GetPostNewtonUserFunction())
     mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own or None))
+    mbs.SetPostNewtonUserFunction(ConstraintJumps(mbs, settings, after or None))
     try:
         yield
     finally:
         mbs.SetPreNewtonResidualUserFunction(own)
+        mbs.SetPostNewtonUserFunction(after)
 
 
 @contextmanager

@@ -17,12 +17,17 @@ size (less straight ones prolong the ringing behind a halved step). Else it is t
 they agree in sign. If these differ by more than half of the last one, as in an impact or a vibration of a few steps per
 period, there is no guess. Norms are those of all coordinates together, since what one would gain is lost where it meets
 another; but deformations of bodies, which ring while the body moves smoothly, are judged by themselves.
+
+Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
+start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
+the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
+Newton's method goes on where the opening jumps (`ConstraintJumps`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -30,6 +35,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import NodeIndex
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.step_refusal import PostNewton
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
@@ -39,6 +45,10 @@ UserFunction: TypeAlias = Callable[[exu.MainSystem, float, int, int], object]
 LARGEST_CHANGE = 0.5
 # Largest change of their change with which they go on in a line, share of their change.
 LARGEST_BEND = 0.1
+# Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
+LARGEST_JUMP = 1e-3
+# Error for Exudyn's discontinuous iterations that lets Newton's method go on from where it is.
+GO_ON = 1e100, -1.0
 
 
 class StartGuess:
@@ -110,6 +120,47 @@ class StartGuess:
         state["ODE2Coords"] += solver.newmarkBeta * h * h * change
         state["ODE2Coords_t"] += solver.newmarkGamma * h * change
         state["ODE2Coords_tt"] += self.guess
+
+
+class ConstraintJumps:
+    """User function after Newton's method that lets it go on where constraints have opened or closed at a jump.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    settings : exudyn.SimulationSettings
+        Of the run.
+    before : callable or None
+        The user's own function, called first.
+    """
+
+    def __init__(self, mbs: exu.MainSystem, settings: exu.SimulationSettings, before: PostNewton | None) -> None:
+        self.before = before
+        self.old_solver = mbs.sys.get("dynamicSolver")
+        self.by_velocities = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        self.start = np.nan
+        self.accepted = self.latest = np.zeros(1)
+
+    def __call__(self, mbs: exu.MainSystem, t: float) -> list[float]:
+        error, size = (0.0, -1.0) if self.before is None else self.before(mbs, t)
+        solver, data = mbs.sys.get("dynamicSolver"), mbs.systemData
+        if solver is self.old_solver or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
+            return [error, size]
+        # Exudyn's type stubs forget the method's own argument
+        known: Any = solver
+        opening = np.asarray(known.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
+        if not opening.size:
+            return [error, size]
+        start = data.GetTime(_START_OF_STEP)
+        if start != self.start:
+            self.start, self.accepted = start, self.latest
+        self.latest = opening
+        if error > 0.0 or solver.it.discontinuousIteration > 0:
+            return [error, size]
+        h = solver.it.currentStepSize
+        reach = solver.newmarkGamma * h if self.by_velocities else solver.newmarkBeta * h * h
+        largest = LARGEST_JUMP * reach * np.abs(data.GetODE2Coordinates_tt()).max(initial=0.0)
+        return list(GO_ON) if np.abs(opening - self.accepted).max() > largest else [error, size]
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:

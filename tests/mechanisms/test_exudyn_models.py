@@ -1,0 +1,28 @@
+"""Exudyn's own models on films: their ideal joints in the limit of no clearance, and their energy."""
+
+import pytest
+
+from tests.mechanisms.exudyn_models import TABLE, distance, run
+
+
+# The films start unloaded while loads and speeds are there at once: that of the spatial crank rings for 0.03 of 0.2 s.
+@pytest.mark.filterwarnings("ignore:.*the film's force alternates from step to step")
+@pytest.mark.slow
+@pytest.mark.parametrize("name", TABLE)
+def test_model_on_films(name, measured):
+    """Places and loads go to those of ideal joints with the clearance, at a constant Sommerfeld number.
+
+    What remains at the end of a run is proportional to the clearance: half of it halves the distance, to 10 %, which
+    hold what the steps in time leave. Energy is what the films have taken to 1 % of it.
+    """
+    case = TABLE[name]
+    ideal, coarse, fine = run(case), run(case, 80e-6), run(case, 40e-6)
+    far, near = distance(coarse, ideal), distance(fine, ideal)
+    measured("place", abs(near[0] / far[0] - 0.5), 0.05)
+    if case.determinate:
+        measured("load", abs(near[1] / far[1] - 0.5), 0.05)
+    assert far[0] > 0.0 and coarse.eccentricity > 0.04
+    assert fine.steps <= 1.05 * case.steps
+    real = run(case, 20e-6)
+    measured("energy", abs(real.lost / real.dissipated - 1.0), 0.01)
+    assert real.iterations < 4 * case.steps
