@@ -133,6 +133,11 @@ def ReplaceJoints(
     dict
         Films by the object numbers of the joints that they replace.
 
+    Raises
+    ------
+    InputError
+        For types that it does not know, and as `ReplaceJoint`.
+
     Examples
     --------
     After the example of `CreateLubricatedJoint`:

@@ -254,6 +254,11 @@ def bearing_grid(
     -------
     FilmGrid
 
+    Raises
+    ------
+    InputError
+        For lengths that are not positive and finite.
+
     Examples
     --------
     >>> grid = ehd.bearing_grid(0.025, 0.025, n_theta=48, n_z=6)
@@ -334,6 +339,11 @@ def slider_grid(
     Returns
     -------
     FilmGrid
+
+    Raises
+    ------
+    InputError
+        For lengths that are not positive and finite.
 
     Examples
     --------

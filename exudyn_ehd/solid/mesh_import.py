@@ -115,6 +115,11 @@ def mesh_from_fem(
     -------
     BushMesh
 
+    Raises
+    ------
+    InputError
+        For other elements, and as `mesh_from_arrays`.
+
     Examples
     --------
     After the example of `BushMesh`:

@@ -225,6 +225,12 @@ def CreateFlexibleBush(
     -------
     FlexibleBush
 
+    Raises
+    ------
+    InputError
+        For what is no bush, outer surface, rotation matrix or vector; ground as carrier; supports of nodes that the
+        mesh does not have or that a carrier holds; a ``mass_rate`` of damping on a carried bush.
+
     Examples
     --------
     After the examples of `HollowCylinder` and `SaintVenantKirchhoff`:

@@ -62,6 +62,11 @@ def ConfigureSolver(
     exudyn.SimulationSettings
         The same object.
 
+    Raises
+    ------
+    InputError
+        For what are no settings of Exudyn, tolerances that are not positive, or a spectral radius beyond 0 to 1.
+
     Examples
     --------
     >>> settings = exu.SimulationSettings()

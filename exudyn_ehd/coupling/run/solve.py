@@ -219,6 +219,11 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     SystemState
         What was stored.
 
+    Raises
+    ------
+    InputError
+        If the system has no run to take a state from.
+
     Examples
     --------
     After the example of `SolveDynamic`:

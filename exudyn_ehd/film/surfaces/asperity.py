@@ -124,6 +124,11 @@ def composite_modulus(youngs_moduli: tuple[float, float], poisson_ratios: tuple[
     float
         E', Pa.
 
+    Raises
+    ------
+    InputError
+        For moduli that are not positive, or Poisson ratios beyond -1 to 0.5.
+
     Examples
     --------
     >>> round(1e-9 * ehd.composite_modulus((2.1e11, 1.1e11), (0.3, 0.34)), 1)  # GPa, steel on bronze
