@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from exudyn_ehd.joint.balance.hot_oil import NO_OIL
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.seams import ThermalEffect
 from exudyn_ehd.joint.solved_film import History
@@ -74,7 +75,12 @@ WAY_OUT = (
 
 def _require_way_out(T: float) -> None:
     if not T < DIVERGED:
-        raise FilmError(f"steady temperature: the heat of the film has no way out; {WAY_OUT}")
+        what = (
+            f"beyond {DIVERGED:g} K, {NO_OIL}"
+            if math.isfinite(T)
+            else f"heated, and its heat has no way out; {WAY_OUT}"
+        )
+        raise FilmError(f"steady temperature: the film is {what}")
 
 
 def _settle_number(
