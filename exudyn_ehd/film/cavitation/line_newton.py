@@ -32,7 +32,9 @@ from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
 # factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
-LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-11, 1e-14, 1e-13
+LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-14, 1e-13
+# Share of the largest flow that balances may lack before another step follows, in thick films a rounding of the peak.
+UNBALANCED = 5e-13
 # Steps over the peak that leave more than its rounding: those from other films, far larger ones.
 LARGE = 10.0
 # Change of s beyond which a new factor is faster; steps with a factor after its first.
@@ -56,6 +58,19 @@ def _size(x, count):
     for r in range(count):
         size += abs(x[r])
     return size
+
+
+@njit(cache=True, fastmath=_FAST)
+def _balanced(links, p, x, count):
+    """Whether what the balances lack, x (count,), is little."""
+    kx, b, pressures = links[0].reshape(-1), links[2].reshape(-1), p.reshape(-1)
+    lack, source, flow = 0.0, 0.0, 0.0
+    for r in range(count):
+        lack = max(lack, abs(x[r]))
+    for c in range(b.size):
+        source = max(source, abs(b[c]))
+        flow = max(flow, kx[c] * pressures[c])
+    return lack <= UNBALANCED * (source + flow)
 
 
 @njit(cache=True)
@@ -97,7 +112,7 @@ def approach_film(links, line, active, factor, last, x, lack, p):
             lacks(links, p, lack)
             break
         if changes == 0 and in_film * rate <= LEFT and in_line * rate <= LEFT_OF_LINE:
-            return _same_set(active, order, count)
+            return _same_set(active, order, count) and _balanced(links, p, x, count)
         settled = changes == 0 and in_line <= SETTLED
         if rate > APPROACH or (settled and in_film * rate**MOST_LEFT > LEFT):
             break
@@ -117,7 +132,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
     lacks(links, p, lack)
     if approach_film(links, line, active, factor, last, x, lack, p):
         return True, 0, last[0], last[1], lift(order, last[0], p)
-    count, width, changes = FIRST_ROW, np.int64(1), 1
+    count, width, changes, once_more = FIRST_ROW, np.int64(1), 1, False
     for step in range(1, MOST_STEPS + 1):
         changes += join_film(links, line, active, lack, p)
         first = count
@@ -153,8 +168,10 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
                 changes += relax_line(links, line, active, lack, p)
             if done and changes == 0:
                 changes = join_film(links, line, active, lack, p)
-                if changes == 0:
+                line_rows(lack, line, number, order, count, active, x)
+                if changes == 0 and (once_more or _balanced(links, p, x, count)):
                     return True, step, count, width, lift(order, count, p)
+                once_more = True
             if changes > 0 or stale > REUSABLE:
                 break
     return False, MOST_STEPS, count, width, 0.0
