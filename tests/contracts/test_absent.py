@@ -102,7 +102,7 @@ EFFECTS = {
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "line": (
-        ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
+        ("film.cavitation.rupture_line", "film.cavitation.line_newton", "film.cavitation.line_steps"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
     ),
     "holes": (

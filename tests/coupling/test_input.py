@@ -38,11 +38,6 @@ def test_items(bodies):
 
 def test_items_without_rotation(bodies):
     mbs, ground, one, _ = bodies
-    point = mbs.CreateMassPoint(mass=1.0, returnDict=True)
-    with pytest.raises(InputError, match="MassPoint is no rigid body"):
-        attach(mbs, [ground, point["bodyNumber"]])
-    with pytest.raises(InputError, match="no rotation"):
-        attach(mbs, [ground, point["nodeNumber"]])
     marker = mbs.AddMarker(eii.MarkerBodyPosition(bodyNumber=one))
     with pytest.raises(InputError, match="no orientation"):
         attach(mbs, [ground, marker], position=())

@@ -134,7 +134,7 @@ class Failures:
         FilmError
             Where the film is no oil.
         """
-        film, T = getattr(trial.evaluation, "film", None), None if memory is None else memory.temperature
+        film, T = getattr(trial.evaluation, "film", None), getattr(memory, "temperature", None)
         if T is None or film is None or not is_above(limit, T):
             return limit
         if is_above(HOTTEST, T):

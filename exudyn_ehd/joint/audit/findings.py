@@ -62,6 +62,7 @@ PLAINLY_NOTHING = {
     "shear thinning": 0.2,
     "roughness": 10.0,
     "contact": 6.0,
+    "contact share": 1e-6,
     "mass conservation": 1e-3,
 }
 # From here on the bore is plainly elastic; the search for its film at such loads is long.

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
+from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.samples import Sample
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
@@ -96,7 +96,7 @@ def roughness(case: Case) -> Finding:
 
 def contact(case: Case) -> Finding:
     """Load that the contacts carry, how often and when, or the film thickness at which there should be one."""
-    b, record = case.bearing, case.record
+    b = case.bearing
     if b.contact is None and b.asperity is None:
         return judged(
             case,
@@ -108,33 +108,42 @@ def contact(case: Case) -> Finding:
             limit=LIMITS["roughness"],
             mattering="surfaces touch: asperity=GreenwoodTripp(...), or contact=RegularisedWall(...).",
         )
+    share, indicator = _contact_share(case)
+    # little load has much of a thin film's friction
+    unclear = PLAINLY_NOTHING["contact share"] < share < LIMITS["contact"].value
+    return finding(
+        "contact",
+        indicator,
+        share,
+        True,
+        needless="contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None."),
+        change=case.films.change(untouching) if unclear else None,
+        switch=untouching,
+    )
+
+
+def _contact_share(case: Case) -> tuple[float, str]:
+    """Largest share of the load that contacts carry, and how often and when, in words."""
+    record, often = case.record, ""
     share = max(s.contact_load / max(s.load, s.contact_load, 1e-300) for s in case.samples)
-    often = ""
     if record is not None:
         acting = record.contact_load > 1e-6 * case.largest("load")
         often = f", acting in {np.mean(acting):.0%} of the steps"
         if np.any(acting):
             times, most = record.time[acting], record.time[int(np.nanargmax(record.contact_load))]
             often += f", {times[0]:.4g} to {times[-1]:.4g} s, most at {most:.4g} s"
-    return finding(
-        "contact",
-        f"share of the load{often}",
-        share,
-        True,
-        needless="contact carries next to nothing: " + ("contact=None." if b.asperity is None else "asperity=None."),
-        switch=untouching,
-    )
+    return share, f"share of the load{often}"
 
 
 def wear(case: Case) -> Finding | None:
     """Wear goes with the contact's load, however small."""
     if case.bearing.wear is None:
         return None
-    touching = contact(case)
+    share, indicator = _contact_share(case)
     return finding(
         "wear",
-        touching.indicator,
-        touching.value,
+        indicator,
+        share,
         True,
         needless="surfaces hardly touch, nothing wears: wear=None.",
         switch=unworn,
