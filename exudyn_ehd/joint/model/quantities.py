@@ -150,5 +150,5 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
 
 def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-    peak, theta, z = loads.refined_peak(film.oil.P, film.grid.x, film.grid.z, True)
+    peak, theta, z = loads.refined_peak(film.oil.P, film.grid.fixed, film.grid.x, film.grid.z, True)
     return peak * film.scales.pressure, theta, z * film.grid.reference_length
