@@ -6,6 +6,7 @@ grid         vertices (theta, z), control volumes, weights
 models       film models that a scene names; their grids and solvers
 supply       grooves, holes, pockets
 loads        integrals of pressure, shear and drag; flows through the edges
+peak         largest pressure, between the vertices too
 reynolds     gap and flow through the links between vertices
 lubricant    oil: viscosity and density laws
 surfaces     what lies on the walls: profile, roughness, contact, wear, liner

@@ -8,6 +8,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd import FullSommerfeld, bearing_grid
 from exudyn_ehd.film import loads
+from exudyn_ehd.film.peak import refined_peak
 from exudyn_ehd.film.solvers.linear import FilmSolver
 
 
@@ -58,13 +59,6 @@ def test_adjoint_right_hand_sides_and_scatter(field):
     np.testing.assert_allclose(fields, [w * c, w * s, w * c * z, w * s * z], rtol=1e-14)
 
 
-def test_peak(field):
-    P = field[-1]
-    value, i, j = loads.peak_of(P)
-    assert value == P.max()
-    assert (i, j) == np.unravel_index(P.argmax(), P.shape)
-
-
 @pytest.mark.parametrize("centre", (3.1, 0.02, 6.25))
 def test_refined_peak_is_exact_for_a_parabola(centre):
     # Also across the seam of the ring; the axial vertices are not equidistant.
@@ -72,7 +66,7 @@ def test_refined_peak_is_exact_for_a_parabola(centre):
     z = np.sin(np.linspace(-1, 1, 9))
     d = np.remainder(x - centre + np.pi, 2 * np.pi) - np.pi
     P = 5.0 - 2.0 * d[:, None] ** 2 - 3.0 * (z - 0.1) ** 2
-    peak, position_x, position_z = loads.refined_peak(P, np.zeros(P.shape, dtype=bool), x, z, True)
+    peak, position_x, position_z = refined_peak(P, np.zeros(P.shape, dtype=bool), x, z, True)
     assert peak == pytest.approx(5.0, rel=1e-12)
     assert np.remainder(position_x - centre + np.pi, 2 * np.pi) - np.pi == pytest.approx(0.0, abs=1e-12)
     assert position_z == pytest.approx(0.1, rel=1e-12)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from exudyn_ehd.film import loads
+from exudyn_ehd.film import loads, peak
 from exudyn_ehd.film.reynolds.gap import largest_eccentricity
 from exudyn_ehd.joint.heat.power import (
     contact_power_loss,
@@ -77,13 +77,13 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     lower, upper = leakages(film)
     poiseuille = 6.0 * film.loads.s_theta
     load = film.pressing.integrals.sum(axis=0) * R**2 if film.pressing is not None else np.zeros(5)
-    peak, peak_angle, _ = refined_peak(film)
+    largest, peak_angle, _ = refined_peak(film)
     out = {
         "minimum_gap": film.minimum_gap,
         **eccentricities(p, w.pose),
         "minimum_gap_angle": angle,
         "minimum_gap_z": z,
-        "peak_pressure": peak,
+        "peak_pressure": largest,
         "peak_angle": peak_angle % (2.0 * math.pi),
         "friction_torque": friction_torque(film),
         "friction_torque_unbroken": -torque_scale * (w.omega * film.loads.couette_unbroken - poiseuille),
@@ -150,5 +150,5 @@ def minimum_place(film: SolvedFilm) -> tuple[float, float]:
 
 def refined_peak(film: SolvedFilm) -> tuple[float, float, float]:
     """Peak pressure (Pa) with its angle (rad) and z (m), from parabolas through the largest vertex."""
-    peak, theta, z = loads.refined_peak(film.oil.P, film.grid.fixed, film.grid.x, film.grid.z, True)
-    return peak * film.scales.pressure, theta, z * film.grid.reference_length
+    value, theta, z = peak.refined_peak(film.oil.P, film.grid.fixed, film.grid.x, film.grid.z, True)
+    return value * film.scales.pressure, theta, z * film.grid.reference_length
