@@ -102,7 +102,7 @@ EFFECTS = {
         {"film": SMALL_MAP, "end_pressures": (0.0, 0.0)},
     ),
     "line": (
-        ("film.cavitation.rupture_line", "film.cavitation.line_newton", "film.cavitation.line_steps"),
+        ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
     ),
     "holes": (
@@ -148,12 +148,14 @@ SHARED = {
     "cavitation.cavity_transport",
     "cavitation.pseudo_time",
     "cavitation.lagging_void",
+    "cavitation.line_steps",
     "surfaces.patir_cheng",
     "solvers.liner.parts",
     "surfaces.contact",
     "surfaces.elastic_liner",
     "reynolds.balance",
     "banded.assemble",
+    "peak",
 }
 
 
