@@ -7,9 +7,8 @@ import numpy as np
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.status import FilmError, HotFilmWarning, warn_user
 
-# K. Above the first, 150 degrees Celsius, mineral oils with additives oxidise within some hundred hours (A. R.
-# Lansdown, Lubrication and Lubricant Selection, on their life). Above the second the most stable oils, polyphenyl
-# ethers, are about to decompose, at 720 K; mineral oils do from 600 K on.
+# K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
+# beyond any oil, so that a film of one is a wrong answer.
 HOT, HOTTEST = 423.15, 700.0
 
 COOLER = (
