@@ -11,7 +11,7 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.run.start_guess import additive_coordinates, lasting
-from tests.mechanisms import exudyn_models
+from tests.mechanisms.exudyn_data.spatial import spatial_crank
 from tests.sampling import sample
 
 CRANK, SPEED, MASS = 0.05, 300.0, 1.0
@@ -204,7 +204,7 @@ def test_constraint_forces_are_those_of_exudyns_own_start():
 
     def force(solve):
         mbs = scenes.new_system()
-        model = exudyn_models.spatial_crank(mbs)
+        model = spatial_crank(mbs)
         mbs.Assemble()
         forces = []
         mbs.SetPostStepUserFunction(
