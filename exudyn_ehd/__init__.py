@@ -94,6 +94,8 @@ _LAZY = {
     "load_history": "coupling.record.history",
     "StepControl": "coupling.watch.step_control",
     "JointState": "coupling.run.joint_state",
+    "LastCycle": "coupling.run.periodic",
+    "UntilPeriodic": "coupling.run.periodic",
     "SystemState": "coupling.run.restart",
     "SaveState": "coupling.run.solve",
     "SolveDynamic": "coupling.run.solve",
@@ -150,6 +152,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
+    from exudyn_ehd.coupling.run.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
     from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
@@ -230,6 +233,7 @@ __all__ = [
     "JointHistory",
     "JointState",
     "JournalBearing",
+    "LastCycle",
     "LineLoad",
     "LongBearing",
     "Lubricant",
@@ -277,6 +281,7 @@ __all__ = [
     "SwiftStieber",
     "SystemState",
     "ThinFilmWarning",
+    "UntilPeriodic",
     "VogelTemperature",
     "WaltherTemperature",
     "add_bore_modes",

@@ -24,7 +24,8 @@ from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joi
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
-from exudyn_ehd.coupling.run.solve import joints_of, register_joint, require_system
+from exudyn_ehd.coupling.run.settings import require_system
+from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pathlib
 from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from typing import overload
 
 import exudyn as exu
 import numpy as np
@@ -12,8 +13,9 @@ import numpy as np
 from exudyn_ehd.coupling.contract import ObjectIndex
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
-from exudyn_ehd.coupling.run.settings import require_settings
+from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error, user_function
@@ -22,25 +24,6 @@ from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
-
-
-def require_system(where: str, mbs: exu.MainSystem) -> None:
-    """Refuse what is no system of Exudyn."""
-    if not isinstance(mbs, exu.MainSystem):
-        raise InputError(
-            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
-            "SystemContainer().AddSystem() returns."
-        )
-
-
-def require_time(where: str, settings: exu.SimulationSettings) -> None:
-    """Refuse a run that ends before it starts."""
-    time = settings.timeIntegration
-    if not time.endTime > time.startTime:
-        raise InputError(
-            f"{where}.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
-            f"{time.endTime:.9g} s."
-        )
 
 
 def register_joint(mbs: exu.MainSystem, make: Callable[[exu.MainSystem], Joint]) -> None:
@@ -68,14 +51,35 @@ def require_items(mbs: exu.MainSystem) -> None:
         joint.element.require_items(mbs)
 
 
+@overload
 def SolveDynamic(
     mbs: exu.MainSystem,
     simulationSettings: exu.SimulationSettings,
     *,
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
+    until_periodic: None = None,
     **options: object,
-) -> bool:
+) -> bool: ...
+@overload
+def SolveDynamic(
+    mbs: exu.MainSystem,
+    simulationSettings: exu.SimulationSettings,
+    *,
+    restart: SystemState | str | pathlib.Path | None = None,
+    stepControl: StepControl | None = None,
+    until_periodic: UntilPeriodic,
+    **options: object,
+) -> LastCycle: ...
+def SolveDynamic(
+    mbs: exu.MainSystem,
+    simulationSettings: exu.SimulationSettings,
+    *,
+    restart: SystemState | str | pathlib.Path | None = None,
+    stepControl: StepControl | None = None,
+    until_periodic: UntilPeriodic | None = None,
+    **options: object,
+) -> bool | LastCycle:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
 
     Exudyn starts Newton's method of a step at zero accelerations, away from the solution by some 0.3 h^2 a: more than a
@@ -98,22 +102,25 @@ def SolveDynamic(
         accelerations and the histories.
     stepControl : StepControl, optional
         ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
+    until_periodic : UntilPeriodic, optional
+        Ends the run as soon as the orbits of all joints have closed.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
 
     Returns
     -------
-    bool
-        As ``mbs.SolveDynamic``.
+    bool or LastCycle
+        As ``mbs.SolveDynamic``; with ``until_periodic`` the cycle that has closed.
 
     Raises
     ------
     FilmError
         If a film could not be evaluated, or if the steps of an explicit solver are too large for it.
     RunError
-        If the solver ended otherwise without success.
+        If the solver ended otherwise without success, or the orbits have not closed by the end of the run.
     InputError
-        If the restart belongs to another system, or the step control is none of a run.
+        If the restart belongs to another system, the step control is none of a run, or a run that shall become periodic
+        has no joints or no time for three periods.
 
     Examples
     --------
@@ -142,8 +149,15 @@ def SolveDynamic(
             if joint.element.is_massless:
                 raise joint.element.failures.no_mass()
         _refuse_inactive(mbs)
-    with going_on, control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic"):
-        return bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
+    require_type("SolveDynamic.until_periodic", until_periodic, UntilPeriodic, type(None))
+    with going_on, ExitStack() as around:
+        watch = None
+        if until_periodic is not None:
+            watch = around.enter_context(closing(mbs, joints_of(mbs), until_periodic, simulationSettings))
+        for part in (control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic")):
+            around.enter_context(part)
+        good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
+    return good if watch is None else watch.last_cycle(mbs)
 
 
 def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings, **options: object) -> bool:

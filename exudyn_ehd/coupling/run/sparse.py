@@ -34,13 +34,11 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
-from exudyn_ehd.coupling.run.settings import require_settings
+from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
 from exudyn_ehd.coupling.run.solve import (
     own_errors,
     refusing,
     require_items,
-    require_system,
-    require_time,
     start_guess,
     step_control,
 )

@@ -1,0 +1,234 @@
+"""Runs that end when the orbits of all joints have closed.
+
+A cycle is compared with the one before at the same phases. What two cycles in a row differ by is not yet how far the
+last one is from the limit: differences d_1, d_2, ... that shrink by a factor q = d_k / d_(k-1) leave d q / (1 - q),
+99 times the difference where a film warms up by 1 % of the rest in a cycle. So a run goes on until both are small.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+import exudyn as exu
+import numpy as np
+from scipy.interpolate import CubicHermiteSpline
+
+from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.run.step_size import user_function
+from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.status import InputError, RunError, require_number
+
+if TYPE_CHECKING:
+    from exudyn_ehd.coupling.run.restart import Joint
+
+# Largest number of differences that may be left, also of those that do not shrink: rounding never does.
+MOST_LEFT = 100.0
+# Rise of the temperature from which on its changes count as shares of it, K.
+SMALLEST_RISE = 1.0
+# Times that count as the same, share of a period.
+SAME = 1e-9
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class UntilPeriodic:
+    """End a run as soon as the orbits of all joints repeat themselves: ``SolveDynamic(..., until_periodic=...)``.
+
+    ``endTime`` of the settings says how long the run may take, at least three periods; the steps are those of the
+    settings, best a whole number in a period.
+
+    Parameters
+    ----------
+    period : float
+        Of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
+    tolerance : float
+        How far the last cycle may be from the one before, and from the limit that the changes from cycle to cycle lead
+        to: distances of the journal's axis, at both ends, over the radial clearance, and of the film's temperature over
+        its rise since the start of the run.
+
+    Examples
+    --------
+    After the examples of `CreateLubricatedJoint` and `ConfigureSolver`:
+
+    >>> load = mbs.CreateForce(itemNumber=shaft, loadVector=[0, -500, 0])
+    >>> mbs.Assemble()
+    >>> settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 0.2, 400
+    >>> cycle = ehd.SolveDynamic(mbs, settings, until_periodic=ehd.UntilPeriodic(period=0.01, tolerance=0.01))
+    >>> cycle.end < 0.2, round(cycle.end - cycle.start, 6)
+    (True, 0.01)
+    """
+
+    period: float
+    tolerance: float = 0.01
+
+    def __post_init__(self) -> None:
+        require_number("UntilPeriodic.period", self.period, "s", above=0.0)
+        require_number("UntilPeriodic.tolerance", self.tolerance, at_least=1e-6, at_most=0.5)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True, eq=False)
+class LastCycle:
+    """The cycle at whose end a run's orbits had closed.
+
+    Attributes
+    ----------
+    start, end : float
+        s.
+    cycles : int
+        Cycles that the run has taken, this one included.
+    changes : (cycles - 1,) array
+        Largest change of a joint from each cycle to the next, in the measure of `UntilPeriodic`.
+    left : float
+        Estimated distance of the last cycle from the limit, in that measure.
+    histories : dict
+        `JointHistory` of this cycle by the names of the joints.
+
+    Examples
+    --------
+    After the example of `UntilPeriodic`:
+
+    >>> cycle.cycles == len(cycle.changes) + 1, bool(cycle.left <= 0.01)
+    (True, True)
+    >>> cycle.histories["main"].minimum_gap.shape
+    (21,)
+    """
+
+    start: float
+    end: float
+    cycles: int
+    changes: np.ndarray
+    left: float
+    histories: Mapping[str, JointHistory]
+
+    def __repr__(self) -> str:
+        thinnest = {name: float(h.minimum_gap.min()) for name, h in self.histories.items()}
+        films = ", ".join(f"'{name}' {shown('length', gap)}" for name, gap in thinnest.items())
+        return (
+            f"<LastCycle {self.cycles}, {self.start:.6g} to {self.end:.6g} s, {self.left:.2g} left to the limit; "
+            f"minimum film thickness: {films}>"
+        )
+
+
+class Closing:
+    """Function after a step of Exudyn that ends a run whose orbits have closed.
+
+    Parameters
+    ----------
+    joints : sequence of joints
+    aim : UntilPeriodic
+    begin : float
+        Start of the run, s.
+    after_step : function or 0
+        The user's own, called first.
+    """
+
+    def __init__(
+        self, joints: Sequence[Joint], aim: UntilPeriodic, begin: float, after_step: Callable[..., object] | None
+    ) -> None:
+        self.joints, self.aim, self.begin, self.after_step = joints, aim, begin, after_step
+        self.changes: list[float] = []
+        self.left = math.inf
+        self.cycles = 0
+        self.last = begin
+
+    def __call__(self, mbs: exu.MainSystem, time: float) -> bool:
+        """Whether the run goes on behind the step to ``time``."""
+        goes_on = bool(self.after_step(mbs, time)) if self.after_step else True
+        # joints have recorded the steps before this one
+        self.look(mbs, self.last)
+        self.last = time
+        return goes_on and not self.closed
+
+    @property
+    def closed(self) -> bool:
+        """Whether the last whole cycle is close enough to the one before and to the limit."""
+        return bool(self.changes) and max(self.changes[-1], self.left) <= self.aim.tolerance
+
+    def look(self, mbs: exu.MainSystem, time: float, *, complete: bool = False) -> None:
+        """Compare the cycle that has ended by ``time``, if one has; its end is the state now if ``complete``."""
+        period = self.aim.period
+        if self.closed or time < self.begin + (self.cycles + 1 - SAME) * period:
+            return
+        self.cycles += 1
+        if self.cycles == 1:
+            return
+        end = self.begin + self.cycles * period
+        histories = [joint.element.steps.history(mbs, complete=complete) for joint in self.joints]
+        change = max(_change(history, self.begin, end, period) for history in histories)
+        quotient = change / self.changes[-1] if self.changes and self.changes[-1] > 0.0 else 1.0
+        self.left = change * (quotient / (1.0 - quotient) if quotient < MOST_LEFT / (1.0 + MOST_LEFT) else MOST_LEFT)
+        self.changes.append(change)
+
+    def last_cycle(self, mbs: exu.MainSystem) -> LastCycle:
+        """The cycle that has closed, behind the run.
+
+        Raises
+        ------
+        RunError
+            If none has.
+        """
+        time = mbs.systemData.GetTime()
+        self.look(mbs, time, complete=True)
+        if not self.closed:
+            changes = ", ".join(f"{change:.2g}" for change in self.changes[-5:]) or "none"
+            raise RunError(
+                f"SolveDynamic.until_periodic: the orbits have not closed to {self.aim.tolerance:g} within "
+                f"{self.cycles} cycles of {self.aim.period:.6g} s, up to t = {time:.9g} s; the last changes from cycle "
+                f"to cycle are {changes} (clearances, or rises of the film's temperature), {self.left:.2g} are left to "
+                "the limit. If they shrink, give a later endTime; if they do not, the motion has another period or "
+                "none, as in whirl, or what wears or dries never repeats. joint.history holds all steps."
+            )
+        end = self.begin + self.cycles * self.aim.period
+        start = end - self.aim.period
+        return LastCycle(
+            start=start,
+            end=end,
+            cycles=self.cycles,
+            changes=np.array(self.changes),
+            left=self.left,
+            histories={joint.name: joint.history.between(start, end) for joint in self.joints},
+        )
+
+
+@contextmanager
+def closing(
+    mbs: exu.MainSystem, joints: Sequence[Joint], aim: UntilPeriodic, settings: exu.SimulationSettings
+) -> Iterator[Closing]:
+    """End the run within when its orbits have closed; the user's function comes back then."""
+    run = settings.timeIntegration
+    if not joints:
+        raise InputError("SolveDynamic.until_periodic: the system has no lubricated joints whose orbits could close.")
+    if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
+        raise InputError(
+            f"SolveDynamic.until_periodic: the run must have room for three periods of {aim.period:.6g} s, got "
+            f"{run.startTime:.6g} to {run.endTime:.6g} s; endTime says how long it may take."
+        )
+    own = user_function(mbs.GetPostStepUserFunction())
+    watch = Closing(joints, aim, run.startTime, own or None)
+    mbs.SetPostStepUserFunction(watch)
+    try:
+        yield watch
+    finally:
+        mbs.SetPostStepUserFunction(own)
+
+
+def _change(history: JointHistory, begin: float, end: float, period: float) -> float:
+    """Largest change of an orbit from the cycle before to that which ends at ``end``."""
+    last = history.between(end - period, end)
+    if last.time.size < 2:
+        return math.inf
+    before = np.maximum(last.time - period, history.time[0])
+    orbit = CubicHermiteSpline(history.time, history.motion[:, :4], history.motion[:, 4:8])
+    moved = last.motion[:, :4] - orbit(before)
+    half = 0.5 * history.length
+    ends = [np.hypot(*(moved[:, :2] + side * moved[:, 2:]).T) for side in (-half, half)]
+    change = float(np.max(ends)) / history.radial_clearance
+    warm = history.film_temperature
+    if not np.isfinite(warm).all():
+        return change
+    first = float(np.interp(begin, history.time, warm))
+    rise = max(float(np.abs(last.film_temperature - first).max()), SMALLEST_RISE)
+    return max(change, float(np.abs(last.film_temperature - np.interp(before, history.time, warm)).max()) / rise)
