@@ -4,6 +4,7 @@ Module map
 ----------
 linear          linear for given sets: rigid surfaces, incompressible
 newton          the driver for gaps or densities that depend on the pressure
+exact           adjoints of what it finds
 compiled        the driver compiled as a whole, for the fast ones among them
 steps           their matrix, steps and sets
 nonlinear       film on an elastic liner, with contact, laws of the oil and density

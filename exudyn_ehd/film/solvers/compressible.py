@@ -26,8 +26,6 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.substitution import solve_lu, solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
@@ -35,7 +33,8 @@ from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.compiled import factor, solve
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
+from exudyn_ehd.film.solvers.linear import Closure
 from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 
@@ -44,7 +43,7 @@ SMALLEST_SHARE = 1.0 / 64.0
 AT_THE_END = 1.0 - 1e-9
 
 
-class CompressibleFilmSolver(FilmSolver):
+class CompressibleFilmSolver(NewtonFilmSolver):
     """`FilmSolver` with a density that follows the pressure; flows are mass flows over the density at ambient pressure.
 
     Parameters
@@ -294,24 +293,6 @@ class CompressibleFilmSolver(FilmSolver):
         balance = np.empty(self.grid.shape)
         film_balance(self.system.pressure, self._fill, self.rho, self.film, balance)
         return np.where(self.grid.fixed, balance, 0.0)
-
-    def solve_transposed(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
-        w = self.work
-        lower, upper = self._exact_factor()
-        solve_lu_transposed(lower, upper, w.inv_diag, w.count, w.width, rhs)
-
-    def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        w = self.work
-        lower, upper = self._exact_factor()
-        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
-
-    def direct(self, rhs: np.ndarray) -> None:
-        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
-        w = self.work
-        lower, upper = self._exact_factor()
-        solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
 
     def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
         """L and U of Newton's matrix at the solution, factored if the last one was before."""

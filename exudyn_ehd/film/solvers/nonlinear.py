@@ -51,14 +51,14 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
-from exudyn_ehd.film.banded.substitution import solve_lu_transposed
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.balance import film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
+from exudyn_ehd.film.solvers.linear import Closure
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap
@@ -73,7 +73,7 @@ LINER_INSTANT = 1e-6
 NEARLY_SOLID = 0.9
 
 
-class NonlinearFilmSolver(FilmSolver):
+class NonlinearFilmSolver(NewtonFilmSolver):
     """`FilmSolver` on an elastic liner, alone or with contact, laws of the oil, flow factors; or between rigid surfaces
     (beta 0) where the oil thins.
 
@@ -322,11 +322,6 @@ class NonlinearFilmSolver(FilmSolver):
         right_hand_side(s.fx, s.fz, s.b)
         if self.squeeze:
             add_squeeze(self.H_t, g.width_x, g.width_z, s.b)
-
-    def solve_transposed(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` with Newton's matrix at the solution for rhs (k, count), in place."""
-        lower, upper = self._exact_factor()
-        solve_lu_transposed(lower, upper, self.work.inv_diag, self.work.count, self.work.width, rhs)
 
     def _exact_factor(self) -> tuple[np.ndarray, np.ndarray]:
         """L and U of Newton's matrix at the solution, factored if the last one was before."""

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from exudyn_ehd.film.banded.many_sides import solve_in_tiles
-from exudyn_ehd.film.banded.substitution import solve_lu
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
@@ -100,15 +98,3 @@ class ThinningFilmSolver(NonlinearFilmSolver):
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """As `FilmSolver.sensitivities`."""
         return FilmSolver.sensitivities(self, lam)
-
-    def adjoint_columns(self, rhs: np.ndarray) -> None:
-        """Solve ``J^T lam = rhs`` for every column of tiles rhs, as returned by `make_tiles`, in place."""
-        w = self.work
-        lower, upper = self._exact_factor()
-        solve_in_tiles(upper, lower, w.inv_diag, False, w.count, w.width, rhs)
-
-    def direct(self, rhs: np.ndarray) -> None:
-        """Solve with Newton's matrix at the solution for rhs (count,), in place."""
-        w = self.work
-        lower, upper = self._exact_factor()
-        solve_lu(lower, upper, w.inv_diag, w.count, w.width, rhs.reshape(1, -1))
