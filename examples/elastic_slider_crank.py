@@ -349,7 +349,10 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
             axes[1, 1].plot(*(h.eccentricity[kept].T / BEARING.radial_clearance), **style, label=label)
             axes[1, 2].plot(np.degrees(SPEED * h.time[kept]) - before, 1e6 * h.minimum_gap[kept], **style)
     axes[1, 1].set(
-        xlabel="x / c (along the rod) [-]", ylabel="y / c [-]", aspect="equal", title="pins in the rod's eyes"
+        xlabel="x / c (along the rod) [-]",
+        ylabel="y / c [-]",
+        aspect="equal",
+        title="pins in the rod's eyes\n(elastic over rigid rod)",
     )
     axes[1, 1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=2, frameon=False)
     axes[1, 2].set(ylabel="minimum film thickness [µm]", ylim=(0, None))

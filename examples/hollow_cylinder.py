@@ -21,6 +21,7 @@ from pathlib import Path
 import exudyn as exu
 import numpy as np
 from exudyn import itemInterface as items
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from exudyn_ehd.coupling.bush.object import CreateFlexibleBush, FlexibleBush, FreeOuter, Support
@@ -29,7 +30,7 @@ from exudyn_ehd.pictures.bush import Frame, contour_figure
 from exudyn_ehd.pictures.style import styled
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import LineLoad
-from exudyn_ehd.solid.mesh import HollowCylinder
+from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 
 MATERIAL = SaintVenantKirchhoff(youngs_modulus=1e6, poisson_ratio=0.3, density=7800.0)
@@ -146,13 +147,37 @@ def history_figure(cases: list[dict]) -> Figure:
 
 
 def shapes_figure(case: dict) -> Figure:
-    """Deformed shapes with contours of the von Mises stress, true scale."""
+    """Deformed shapes with contours of the von Mises stress, load, supports and axes, true scale."""
     bush = case["bush"]
     frames = [
         Frame(title=f"t = {t:g} s", displacements=u, values=1e-3 * bush.stress.von_mises_at_nodes(u))
         for t, u in case["shapes"].items()
     ]
-    return contour_figure(bush.mesh, frames, label="von Mises stress [kPa], displacement at true scale")
+    figure = contour_figure(bush.mesh, frames, label="von Mises stress [kPa], displacement at true scale")
+    for axes, (t, u) in zip(figure.axes, case["shapes"].items()):
+        _draw_load(axes, bush.mesh, u, t / max(case["shapes"]))
+    figure.suptitle(
+        "Outer diameter 0.55 m, length 0.2 m. Arrows: line load, 1000 N/m after 1 s. Triangles: fixed line.\n"
+        "The loaded line is held in x, the ends are free."
+    )
+    return figure
+
+
+def _draw_load(axes: Axes, mesh: BushMesh, u: np.ndarray, share: float) -> None:
+    """Draw arrows on the loaded line as long as the ``share`` of the last load, supports, and the axes x, y and z."""
+    low, top = (mesh.generatrix(mesh.outer, angle).nodes for angle in (-np.pi / 2, np.pi / 2))
+    x, y, z = (mesh.nodes + u)[top].T
+    length = 0.16 * share
+    # the picture's axes are z, x, y
+    axes.quiver(z, x, y + length, 0, 0, -length, color="tab:red", lw=1.0, arrow_length_ratio=0.25, zorder=3)
+    x, y, z = mesh.nodes[low].T
+    axes.plot(z, x, y - 0.012, "^", color="black", ms=5, zorder=0)
+    corner = np.array([0.14, -0.36, -0.275])
+    for name, direction in (("z", [1, 0, 0]), ("x", [0, 1, 0]), ("y", [0, 0, 1])):
+        arrow = 0.1 * np.array(direction)
+        axes.quiver(*corner, *arrow, color="black", lw=0.8, arrow_length_ratio=0.2).set_clip_on(False)
+        axes.text(*(corner + 1.3 * arrow), name, ha="center", va="center")
+    axes.set_title(axes.get_title(), y=-0.05)
 
 
 def main(*, quick: bool = False, results: str | Path | None = "results") -> dict:

@@ -186,19 +186,25 @@ def figures(films, sweeps, runs) -> dict[str, float]:
 def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
     """Maps of pressure and fill, and the two sweeps."""
     fig, axes = plt.subplots(2, 2, figsize=(12, 8.5), layout="constrained")
-    for ax, field in zip(axes[0], ("pressure", "fill"), strict=True):
+    for ax, field, text in zip(axes[0], ("pressure", "fill"), ("pressure", "film fraction"), strict=True):
         getattr(films["Elrod-Adams", "tilted"], f"plot_{field}")(ax=ax)
-        ax.set_title(f"{field} of the tilted film, Elrod-Adams")
+        ax.set_title(f"{text} of the tilted film, Elrod-Adams")
+    fig.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=2, facecolor="0.85")
     for closure, sweep in sweeps.items():
         axes[1, 0].plot(
             sweep.angle, 1e6 * sweep.minimum_film_thickness, "o-", ms=3, color=COLOURS[closure], label=closure
         )
+    starved = sweeps["Elrod-Adams"].angle[np.isnan(sweeps["Elrod-Adams"].minimum_film_thickness)]
+    if starved.size:
+        half = 0.5 * (sweeps["Elrod-Adams"].angle[1] - sweeps["Elrod-Adams"].angle[0])
+        span = (starved.min() - half, starved.max() + half)
+        axes[1, 0].axvspan(*span, color=COLOURS["Elrod-Adams"], alpha=0.15, lw=0, label="starved: carries no 3 kN")
     axes[1, 0].set(
         xlabel="groove's angle from the load [°]",
         ylabel="minimum film thickness [µm]",
         title="where to put the groove (load 3 kN)",
         xticks=range(-180, 181, 60),
-        ylim=(0, 75),
+        ylim=(0, 90),
     )
     for closure, (angle, history) in runs.items():
         late = angle >= -90.0
@@ -212,7 +218,8 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
     )
     for ax in axes[1]:
         ax.grid(alpha=0.3)
-        ax.legend(frameon=False, loc="upper center", ncols=3)
+    axes[1, 0].legend(loc="upper center", ncols=2)
+    axes[1, 1].legend(loc="upper center", ncols=3)
     fig.savefig(folder / "hydrostatic_or_grooved.png", dpi=100)
     plt.close(fig)
 

@@ -1,7 +1,9 @@
 """What can be read from a joint after a run: tables, files, pictures, an animation.
 
 A journal (R 25 mm, L 50 mm, 5 kg, with a flywheel) turns at 3000 rpm on thin oil under a load of 8 kN downwards and an
-unbalance of 5 kN that turns with it. The numbers are made up; nothing is compared.
+unbalance of 5 kN that turns with it. It begins in the middle of its bore; ten turns later the cavity is filled as it
+stays, and the orbit repeats itself. The pictures show two turns from there. The numbers are made up; nothing is
+compared.
 
 Run ``python examples/reading_results.py``; everything is written to ``results/reading_results``.
 """
@@ -56,7 +58,7 @@ def simulate(turns: int, steps_per_turn: int) -> ehd.LubricatedJoint:
         bearing=bearing,
         axial=ehd.Held(),
     )
-    joint.record_films(period=TURN / 24.0)
+    joint.record_films(period=TURN / 24.0, frames=150)
     mbs.Assemble()
     settings = exu.SimulationSettings()
     settings.timeIntegration.endTime = turns * TURN
@@ -69,18 +71,32 @@ def simulate(turns: int, steps_per_turn: int) -> ehd.LubricatedJoint:
 
 
 def overview(joint: ehd.LubricatedJoint, path: pathlib.Path) -> None:
-    """One page: every picture drawn into axes of its own."""
-    history = joint.history
+    """One page: every picture drawn into axes of its own, histories over the last two turns."""
+    end = joint.history.time[-1]
+    history = joint.history.between(max(0.0, end - 2.0 * TURN))
     with styled():
-        figure = Figure(figsize=(PAGE, 0.72 * PAGE), layout="constrained")
+        figure = Figure(figsize=(PAGE, 0.8 * PAGE), layout="constrained")
         grid = figure.add_gridspec(2, 6)
-        joint.plot_orbit(ax=figure.add_subplot(grid[0, :2]))
-        joint.plot_load(ax=figure.add_subplot(grid[0, 2:4], projection="polar"))
-        joint.plot_bearing(ax=figure.add_subplot(grid[0, 4:], projection="3d", computed_zorder=False))
-        joint.plot_pressure(ax=figure.add_subplot(grid[1, :3]))
+        orbit, pressure = figure.add_subplot(grid[0, :2]), figure.add_subplot(grid[1, :3])
+        history.plot_orbit(ax=orbit)
+        orbit.set_title("orbit of the journal")
+        load = figure.add_subplot(grid[0, 2:4], projection="polar")
+        history.plot_load(ax=load)
+        load.set_title("load on the bush [kN]")
+        bearing = figure.add_subplot(grid[0, 4:], projection="3d", computed_zorder=False)
+        joint.plot_bearing(ax=bearing)
+        bearing.set_title("pressure at the end")
+        joint.plot_pressure(ax=pressure)
+        # the circle is the clearance; start and end are marked on orbit and load
+        figure.legend(
+            handles=[*(ax.get_legend_handles_labels()[0][0] for ax in (orbit, pressure)), *orbit.lines[-2:]],
+            labels=["clearance", "edge of the cavity", "start", "end"],
+            loc="outside lower center",
+            ncols=4,
+        )
         traces = grid[1, 3:].subgridspec(2, 1)
         axes = [figure.add_subplot(traces[0]), figure.add_subplot(traces[1])]
-        joint.plot_traces(angle=SPEED * history.time, angle_text="shaft angle", ax=axes)
+        history.plot_traces(angle=SPEED * (history.time - history.time[0]), angle_text="shaft angle", ax=axes)
         axes[0].tick_params(labelbottom=False)
         figure.align_ylabels(axes)
         figure.savefig(path, dpi=110)
@@ -101,7 +117,7 @@ def main(*, quick: bool = False, results: str | pathlib.Path | None = "results/r
     dict
         ``revolutions`` (the table), ``history``, ``films`` and ``files``.
     """
-    joint = simulate(turns=2 if quick else 5, steps_per_turn=72)
+    joint = simulate(turns=2 if quick else 12, steps_per_turn=72)
     table = joint.revolutions()
     print(table)
     files = []

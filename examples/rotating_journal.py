@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
@@ -133,11 +134,10 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
     figure = Figure(figsize=(13, 8), layout="constrained")
     for column, closure in enumerate(CLOSURES):
         axes = figure.add_subplot(2, 3, 1 + 3 * column)
-        for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-            film = cases[closure, "aligned", name]["film"]
-            axes.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
+        for film, style in rigid_and_modal(cases, moduli, closure):
+            axes.plot(*at_middle(film, film.pressure / 1e6), **style)
         axes.set(
-            xlabel="angle [°]",
+            xlabel="angle θ [°]",
             ylabel="pressure at the mid-plane [MPa]",
             title=f"aligned, {closure}",
             xticks=range(0, 361, 60),
@@ -149,12 +149,12 @@ def pressure_figure(cases: dict, moduli: dict) -> Figure:
         angle, pressure = np.degrees(around(film.theta, 2 * np.pi)), np.vstack((film.pressure, film.pressure[:1])) / 1e6
         picture = axes.contourf(angle, 1e3 * film.z, pressure.T, 24)
         figure.colorbar(picture, label="pressure [MPa]")
-        axes.set(xlabel="angle [°]", ylabel="z [mm]", title=f"steel, {name}, Gümbel", xticks=range(0, 361, 60))
+        axes.set(xlabel="angle θ [°]", ylabel="z [mm]", title=f"steel, {name}, Gümbel", xticks=range(0, 361, 60))
         view = figure.add_subplot(2, 3, 3 + 3 * column, projection="3d")
         T, Z = np.meshgrid(angle, 1e3 * film.z, indexing="ij")
         view.plot_surface(T, Z, pressure, cmap="viridis", rcount=97, ccount=17)
         view.set(
-            xlabel="angle [°]",
+            xlabel="angle θ [°]",
             ylabel="z [mm]",
             title=f"steel, {name}, Gümbel: pressure [MPa]",
             xticks=range(0, 361, 90),
@@ -167,15 +167,16 @@ def summary_figure(cases: dict, moduli: dict) -> Figure:
     figure = Figure(figsize=(12, 4), layout="constrained")
     pressure, gap = figure.add_subplot(1, 3, 1), figure.add_subplot(1, 3, 2)
     draw_bores(figure.add_subplot(1, 3, 3, projection="polar"), cases, moduli)
-    for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gümbel", "aligned", name]["film"]
-        pressure.plot(*at_middle(film, film.pressure / 1e6), label=name.split(",")[0])
-        gap.plot(*at_middle(film, 1e6 * film.gap))
-    pressure.set(ylabel="pressure at the mid-plane [MPa]")
+    for film, style in rigid_and_modal(cases, moduli):
+        pressure.plot(*at_middle(film, film.pressure / 1e6), **style)
+        gap.plot(*at_middle(film, 1e6 * film.gap), **style)
+    pressure.set(ylabel="pressure at the mid-plane [MPa]", title="pressure, Gümbel's condition")
     pressure.legend()
-    gap.set(ylabel="film thickness at the mid-plane [µm]", ylim=(0, None))
+    gap.set(
+        ylabel="film thickness at the mid-plane [µm]", ylim=(0, None), title="film thickness; the journal sinks to 270°"
+    )
     for axes in (pressure, gap):
-        axes.set(xlabel="angle [°]", xticks=range(0, 361, 60))
+        axes.set(xlabel="angle θ [°]", xticks=range(0, 361, 60))
     return figure
 
 
@@ -190,13 +191,26 @@ def at_middle(film: ehd.SteadyResult, field: np.ndarray) -> tuple[np.ndarray, np
 
 
 def draw_bores(polar: Axes, cases: dict, moduli: dict) -> None:
-    """Bore radius at the mid-plane, aligned, Gümbel, with the displacement enlarged."""
-    for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gümbel", "aligned", name]["film"]
+    """How far the bore yields at the mid-plane, aligned, Gümbel; the inner circle is the bore without load."""
+    largest = 0.0
+    for film, style in rigid_and_modal(cases, moduli):
         shift = np.zeros_like(film.gap) if film.bore_displacement is None else film.bore_displacement
         angle, shift = at_middle(film, 1e6 * shift)
-        polar.plot(np.radians(angle), 30.0 + shift, label=name.split(",")[0])
-    polar.set(title="bore radius at the mid-plane [mm],\ndisplacement times 1000", ylim=(0, None))
+        polar.plot(np.radians(angle), shift, **style)
+        largest = max(largest, float(shift.max()))
+    polar.set(title="radial displacement of the bore\nat the mid-plane [µm]", ylim=(0.0, 1.05 * largest))
+    polar.set_rorigin(-2.0 * largest)
+    polar.yaxis.set_major_locator(MaxNLocator(3))
+    polar.set_rlabel_position(67.5)
+
+
+def rigid_and_modal(
+    cases: dict, moduli: dict, closure: str = "Gümbel"
+) -> list[tuple[ehd.SteadyResult, dict[str, object]]]:
+    """Return the films of the rigid bore and of all modal bushes, aligned, with label and style of their curves."""
+    rigid = {"label": "rigid", "color": "black", "ls": "--", "zorder": 3}
+    names = {"rigid": rigid} | {f"{m}, modal": {"label": m} for m in moduli}
+    return [(cases[closure, "aligned", name]["film"], style) for name, style in names.items()]
 
 
 def bore_figure(cases: dict, moduli: dict) -> Figure:
@@ -205,11 +219,10 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
     polar = figure.add_subplot(1, 3, 1, projection="polar")
     gap = figure.add_subplot(1, 3, 2)
     draw_bores(polar, cases, moduli)
-    for name in ("rigid", *(f"{m}, modal" for m in moduli)):
-        film = cases["Gümbel", "aligned", name]["film"]
-        gap.plot(*at_middle(film, 1e6 * film.gap), label=name.split(",")[0])
+    for film, style in rigid_and_modal(cases, moduli):
+        gap.plot(*at_middle(film, 1e6 * film.gap), **style)
     gap.set(
-        xlabel="angle [°]",
+        xlabel="angle θ [°]",
         ylabel="film thickness at the mid-plane [µm]",
         ylim=(0, None),
         title="aligned, Gümbel",
@@ -226,7 +239,7 @@ def bore_figure(cases: dict, moduli: dict) -> Figure:
     picture = axes.contourf(angle, 1e3 * film.z, 1e6 * shift.T, 24)
     figure.colorbar(picture, label="µm")
     axes.set(
-        xlabel="angle [°]",
+        xlabel="angle θ [°]",
         ylabel="z [mm]",
         title="radial displacement of the bore, steel, tilted",
         xticks=range(0, 361, 60),

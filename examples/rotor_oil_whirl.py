@@ -472,23 +472,28 @@ def _draw_orbits(orbits, disc, ride: RunUp, threshold: float, bending: float) ->
     around = np.exp(1j * np.linspace(0.0, HZ, 200))
     orbits.plot(around.real, around.imag, color="grey", lw=1)
     chosen = (
-        ("before", 0.99 * threshold, "tab:green"),
-        ("whirl", 0.85 * 2.0 * bending, "tab:orange"),
-        ("whip", ride.speed[-1], "tab:red"),
+        ("before", 0.99 * threshold, {"color": "tab:green", "lw": 1.2}),
+        ("whirl", 0.85 * 2.0 * bending, {"color": "tab:orange", "lw": 3.0}),
+        ("whip", ride.speed[-1], {"color": "tab:red", "lw": 1.2, "ls": "--"}),
     )
-    for label, speed, colour in chosen:
+    for label, speed, style in chosen:
         last = int(np.searchsorted(ride.speed, speed))
-        part = slice(max(0, last - round(0.03 / (ride.time[1] - ride.time[0]))), last)
-        orbits.plot((ride.orbit[part] / CLEARANCE).real, (ride.orbit[part] / CLEARANCE).imag, color=colour, lw=1.2)
+        # one turn of the whirl
+        part = slice(last - round(1.0 / min(0.5 * speed, bending) / (ride.time[1] - ride.time[0])) - 1, last)
+        orbits.plot((ride.orbit[part] / CLEARANCE).real, (ride.orbit[part] / CLEARANCE).imag, **style)
         disc.plot(
             1e3 * ride.disc[part].real,
             1e3 * ride.disc[part].imag,
-            color=colour,
-            lw=1.2,
             label=f"{label}, {speed:.0f} Hz",
+            **style,
         )
-    orbits.set(xlabel="y / c [-]", ylabel="z / c [-]", aspect="equal", title="left journal in its bearing")
-    disc.set(xlabel="y [mm]", ylabel="z [mm]", aspect="equal", title="disc")
+    orbits.set(
+        xlabel="y / c [-]",
+        ylabel="z / c [-]",
+        aspect="equal",
+        title="left journal in its bearing,\none turn of the whirl",
+    )
+    disc.set(xlabel="y [mm]", ylabel="z [mm]", aspect="equal", title="disc, one turn of the whirl")
     disc.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False)
 
 

@@ -180,7 +180,10 @@ def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     axes[0, 1].semilogy(h.time, 1e6 * h.minimum_gap, color="black")
     axes[0, 1].axhline(2.0, color="grey", ls="--", lw=0.9, label="4 x composite roughness: asperities meet below")
     axes[0, 1].set(
-        xlabel="time [s]", ylabel="nominal film thickness [µm]", title="minimum film thickness", ylim=(0.2, 30)
+        xlabel="time [s]",
+        ylabel="minimum film thickness [µm]",
+        title="film between the surfaces' mean lines",
+        ylim=(0.2, 30),
     )
     axes[0, 1].legend(frameon=False, loc="upper right")
     friction = friction_coefficient(h)
@@ -191,7 +194,7 @@ def draw(run: Run, curve: ehd.StribeckResult, path: pathlib.Path) -> None:
     axes[1, 0].set(
         xlabel="speed [rad/s]",
         ylabel="friction coefficient [-]",
-        title="friction (Stribeck curve and transients)",
+        title="friction: steady (Stribeck curve), starting, coasting",
         xlim=(0.1, 100),
     )
     axes[1, 0].legend(frameon=False)
