@@ -12,6 +12,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
+from exudyn_ehd.coupling.element.failures import HIGHEST_PEAK
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
@@ -166,20 +167,21 @@ class LubricatedJoint(JointResults):
         """
         self.element.steps.forget()
 
-    def stop_at(self, *, force: float = math.inf, pressure: float = math.inf) -> None:
+    def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
         """End runs with a `FilmError` at the first accepted step whose film exceeds a limit of yours.
 
-        Without it runs end where the film is none: pressures beyond 90 GPa (`SolveDynamic` and `SolveDynamicSparse`
-        try smaller steps first), rigid surfaces pressed through each other by more than the clearance, forces that
-        alternate at many times what they move and carry. Steps beyond 3 GPa, or 1 GPa on the projected area, give an
-        `OverloadWarning`.
+        Without it runs end where the film is none: pressures beyond 3 GPa, which neither oil nor steel bears
+        (`SolveDynamic` and `SolveDynamicSparse` try smaller steps first), rigid surfaces pressed through each other by
+        more than the clearance, forces that alternate at many times what they move and carry. Steps with more than
+        1 GPa on the projected area, or with more than 3 GPa where you allow them, give an `OverloadWarning`.
 
         Parameters
         ----------
         force : float
             Largest force of film and contact, N.
         pressure : float
-            Largest peak pressure of the film, Pa.
+            Largest peak pressure of the film, and mean pressure of film and contact on the projected area, Pa;
+            `math.inf` allows any.
         """
         for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
             if value != math.inf:

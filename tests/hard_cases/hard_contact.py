@@ -19,13 +19,16 @@ WALL = ehd.RegularisedWall(onset=1e-6, pressure=2e9)
 ROUGH = ehd.GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1.15e11, friction_coefficient=0.12)
 
 
-def settles_at(eps, grid, finer, limit):
+def settles_at(eps, grid, finer, limit, allowed=None):
     made = bearing(film=grid)
     load = float(np.hypot(*ehd.steady(made, speed=SPEED, eccentricity_ratio=eps).force[:2]))
     eq = ehd.equilibrium(made, speed=SPEED, load=(0.0, -load))
     # turned by the attitude angle, the load meets the grid elsewhere
     assert abs(eq.eccentricity_ratio - eps) < 0.05 * (1.0 - eps)
-    run = Rotor(made, load=(0.0, -load), position=0.9 / eps * eq.position).run(0.03, 2e-4)
+    rotor = Rotor(made, load=(0.0, -load), position=0.9 / eps * eq.position)
+    if allowed is not None:
+        rotor.joint.stop_at(pressure=allowed)
+    run = rotor.run(0.03, 2e-4)
     h = run.history
     assert h.largest_eccentricity_ratio.max() < 1.0
     assert np.hypot(*(h.eccentricity[-1] - eq.position)) < 1e-3 * (1.0 - eps) * CLEARANCE
@@ -44,8 +47,12 @@ def eps_99():
 
 @hard_case("eps 0.999", rejected=10)
 def eps_999():
-    """50 nm of oil on a 25 mm journal: the pressure lives on a hundredth of the circumference."""
-    return settles_at(0.999, ehd.FiniteLength(n_theta=384, n_z=8), ehd.FiniteLength(n_theta=1152, n_z=12), 0.05)
+    """50 nm of oil on a 25 mm journal: the pressure lives on a hundredth of the circumference.
+
+    Steel does not bear it, but the film of rigid smooth surfaces is solved where the user allows it.
+    """
+    grids = ehd.FiniteLength(n_theta=384, n_z=8), ehd.FiniteLength(n_theta=1152, n_z=12)
+    return settles_at(0.999, *grids, 0.05, allowed=math.inf)
 
 
 @hard_case("sinking at zero speed", rejected=0)

@@ -18,13 +18,11 @@ from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarni
 # Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
 # none.
 DEEPEST = 1.0
-# Of an accepted step, Pa: peak pressure, and mean pressure on the projected area, beyond what oil and steel bear
-# without yielding. Films of real machines stay below a third of both.
+# Beyond what oil and steel bear, Pa: pressure that no accepted step has unless the user allows more, and mean pressure
+# on the projected area. Films of real machines stay below a third of both.
 HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
-# Pressure that no accepted step may have, Pa: ten times the hardness of steel, since smooth rigid surfaces 50 nm apart
-# have some 10 GPa in films that are solved rightly. Contacts are judged by their depth. No peak is looked for where the
-# mean pressure is below such a share of it.
-HARDEST, SHARE = 9e10, 0.01
+# Mean over peak pressure below which no film is.
+SHARE = 0.01
 
 
 class Failures:
@@ -39,13 +37,13 @@ class Failures:
     Attributes
     ----------
     largest_force, largest_pressure : float
-        Beyond which an accepted step ends the run, N and Pa; infinite unless the user says so.
+        Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless the user says otherwise.
     """
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
         self.bore = BoreGap(bearing)
-        self.largest_force = self.largest_pressure = math.inf
+        self.largest_force, self.largest_pressure = math.inf, HIGHEST_PEAK
 
     def no_film(self, time: float, trial: Trial, *, explicit: bool) -> FilmError:
         """The film can't be evaluated, and the solver can't repeat the step."""
@@ -85,7 +83,7 @@ class Failures:
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The state of an accepted step is none of a bearing; None if it is one."""
-        if row[PEAK_PRESSURE] > HARDEST:
+        if self._pressure(row) > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         return self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
 
@@ -93,9 +91,19 @@ class Failures:
         """Whether the state has a film that no accepted step may have."""
         if trial.evaluation is None or trial.status != Status.CONVERGED:
             return False
-        if self._mean(trial.evaluation.wrench[:3]) < SHARE * HARDEST:
+        mean = self._mean(trial.evaluation.wrench[:3])
+        if mean < SHARE * self._bearable:
             return False
-        return trial.evaluation.quantities().get("peak_pressure", 0.0) > HARDEST
+        return max(mean, trial.evaluation.quantities().get("peak_pressure", 0.0)) > self._bearable
+
+    @property
+    def _bearable(self) -> float:
+        """Pressure beyond which smaller steps are tried, Pa; lower limits of the user end runs at once."""
+        return max(HIGHEST_PEAK, self.largest_pressure)
+
+    def _pressure(self, row: np.ndarray) -> float:
+        """Peak pressure of a row, or the mean of film and contacts where that is larger or alone known, Pa."""
+        return max(self._mean(row[FORCE]), float(row[PEAK_PRESSURE]))
 
     def _mean(self, force: np.ndarray) -> float:
         """Mean pressure of a force (3,) on the projected area, Pa."""
@@ -116,7 +124,7 @@ class Failures:
 
     def _beyond_limit(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The film of an accepted step exceeds what the user allows; None if it does not."""
-        force, peak = float(np.linalg.norm(row[FORCE])), float(row[PEAK_PRESSURE])
+        force, peak = float(np.linalg.norm(row[FORCE])), self._pressure(row)
         if not (force > self.largest_force or peak > self.largest_pressure):
             return None
         return self._at(
@@ -186,7 +194,8 @@ class Failures:
             f"MPa on the projected area; {self._place(motion)}if loads and inertia forces of the model are much "
             "smaller, the time integration has thrown the film: use ehd.SolveDynamic, "
             "ConfigureSolver(simulationSettings), more steps, or a StepControl; if they are not, check masses, loads, "
-            "initial velocities and units, or give the bearing a bush that deflects."
+            "initial velocities and units, or give the bearing a bush that deflects; joint.stop_at(pressure=...) "
+            "allows more."
         )
 
     def _at(self, time: float, message: str) -> FilmError:

@@ -31,8 +31,9 @@ from scipy.sparse import csr_matrix, diags, kron, vstack
 
 from exudyn_ehd.film.grid import FilmGrid
 
-# Vertices of an interpolation, and Gauss points of a panel: exact for cubics times quadratic shape functions.
-STENCIL, POINTS = 4, 3
+# Vertices of an interpolation. Gauss points and weights of a panel: exact for cubics times quadratic shape functions.
+STENCIL = 4
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(3)
 # Of an interval, that is no panel; of lengths and of values of order one, rounding.
 TOUCHING, ROUNDING, SMALLEST = 1e-3, 1e-9, 1e-14
 LINEAR = 0.03
@@ -127,11 +128,10 @@ def _near_rims(faces: Faces, grid: FilmGrid) -> np.ndarray:
 
 def _panels(start: float, width: float, cuts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Gauss points of an interval and their weights, in units of its width from its start, between ascending cuts."""
-    x, w = np.polynomial.legendre.leggauss(POINTS)
     inside = (cuts - start) / width
     edges = np.concatenate(([0.0], inside[(inside > TOUCHING) & (inside < 1.0 - TOUCHING)], [1.0]))
     size = np.diff(edges)[:, None]
-    return (edges[:-1, None] + 0.5 * size * (1.0 + x)).ravel(), (0.5 * size * w).ravel()
+    return (edges[:-1, None] + 0.5 * size * (1.0 + GAUSS)).ravel(), (0.5 * size * WEIGHTS).ravel()
 
 
 def _lagrange(nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
