@@ -115,9 +115,8 @@ def _uses_of_kernels():
     modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
     nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
     rows = (
-        [conserving, conserving | modal, dense, conserving | dense, liner | dense, conserving | thin],
-        [thin, modal, nodal, rough, touching, energy, liner]
-        + [liner | touching, liner | energy, conserving | liner, conserving | liner | dense],
+        [conserving, conserving | modal, dense, conserving | dense, conserving | thin],
+        [thin, modal, nodal, rough, touching, energy, liner, liner | touching, liner | energy, conserving | liner],
     )
     return (
         {"plain": _use_of_film},

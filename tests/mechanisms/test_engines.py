@@ -172,6 +172,7 @@ def check_pin(name, steps, rho, tolerance):
     return history, caught
 
 
+@pytest.mark.slow
 def test_gudgeon_pin_at_exudyns_spectral_radius():
     """Degree by degree; a film that rings reaches 4e10 MPa here. Newton's method stays within the film."""
     history, _ = check_pin("plain", 360, 0.9, 0.05)

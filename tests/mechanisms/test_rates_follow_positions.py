@@ -10,7 +10,6 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.step_rates import next_start
-from tests.sampling import sample
 
 CLOSURES = {
     "full": ehd.FullSommerfeld(), "gumbel": ehd.Gumbel(), "swift-stieber": ehd.SwiftStieber(),
@@ -100,7 +99,8 @@ def pin(cavitation, **options):
     return ehd.JournalBearing(cavitation=cavitation, **(values | options))
 
 
-@pytest.mark.parametrize("rho", sample([0.9, 0.5], 0))
+@pytest.mark.slow
+@pytest.mark.parametrize("rho", [0.9, 0.5])
 def test_gap_of_a_four_bar_at_coarse_steps(rho):
     """8.894 um with 2880 steps a turn; a film that takes the velocities has 4.66 and 3.20 with 100 steps.
 

@@ -71,6 +71,7 @@ def thrown(planar_rotor, steps):
     return rotor.joint.history
 
 
+@pytest.mark.slow
 def test_steps_are_not_halved_for_newtons_method(planar_rotor, monkeypatch):
     """A step that would go through the wall is not halved; where no step goes there nothing changes."""
     coarse, fine = thrown(planar_rotor, 100), thrown(planar_rotor, 400)

@@ -130,6 +130,7 @@ def test_own_sparse_solver_starts_there_too():
     assert done.rejected <= 2 and done.iterations < 10 * done.steps
 
 
+@pytest.mark.slow
 def test_chatter_is_told_once_per_run_and_audited():
     mbs, joint = crank_pin()
     for _ in range(2):

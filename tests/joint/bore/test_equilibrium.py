@@ -122,6 +122,7 @@ def soft_bushes(seed, count, contact=None):
         yield build_model(b), np.array([*place, 0, 0, 0, 0, math.exp(rng.uniform(math.log(5.0), math.log(300.0))), 0])
 
 
+@pytest.mark.slow
 def test_films_on_soft_bores_are_found_unless_they_close_at_an_end():
     """A film that closes before the journal is there is named; with a contact there is one."""
     wall, closed = ehd.RegularisedWall(onset=5e-7, pressure=1e8), []

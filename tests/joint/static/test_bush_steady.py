@@ -286,6 +286,7 @@ def test_equilibrium_on_a_bush_that_gives_way_by_more_than_the_clearance():
     assert np.allclose(eq.film.force[:2], (0.0, 20.0), atol=1e-8 * 20.0)
 
 
+@pytest.mark.slow
 def test_the_audit_takes_the_profile_from_the_undeformed_bore():
     """A soft bush deflects by more than its crown's height: the profile's indicator is that of a rigid bush with the
     same crown, for the minimum film thickness at hand; without a crown there is none."""
