@@ -37,7 +37,7 @@ class Failures:
     Attributes
     ----------
     largest_force, largest_pressure : float
-        Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless the user says otherwise.
+        Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless told otherwise.
     """
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
