@@ -11,6 +11,7 @@ coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinem
 studies    many runs: `parameter_study`; what accuracy costs in time: `recommend`
 reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
+progress   how far long work is, where somebody looks
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input
 plausible  which sizes an argument can have, for all of them in one table
@@ -61,6 +62,7 @@ from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
 from exudyn_ehd.joint.static.solve_film import FilmResult, solve_film
 from exudyn_ehd.joint.static.steady import SteadyResult, steady
 from exudyn_ehd.joint.static.stribeck import StribeckResult, stribeck
+from exudyn_ehd.progress import show_progress
 from exudyn_ehd.status import (
     EHDError,
     FilmError,
@@ -295,6 +297,7 @@ __all__ = [
     "oil",
     "parameter_study",
     "recommend",
+    "show_progress",
     "slider_grid",
     "solve_film",
     "steady",

@@ -29,6 +29,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from exudyn_ehd.progress import announced
 from exudyn_ehd.status import EHDError, InputError
 
 CACHE_VARIABLE = "EXUDYN_EHD_CACHE"
@@ -185,7 +186,7 @@ def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], A
     Parameters
     ----------
     name : str
-        Start of the file's name, and of the warning about a damaged file.
+        Start of the file's name, of the warning about a damaged file, and what long work says that it makes.
     key : bytes
         Everything that determines the arrays, a number for the format and for the algorithm included.
     shapes : mapping
@@ -199,7 +200,8 @@ def cached_arrays(name: str, key: bytes, shapes: Shapes, compute: Callable[[], A
     stored = _read(path, digest, shapes)
     if stored is not None:
         return stored
-    arrays = compute()
+    with announced(f"exudyn_ehd: computing {name.replace('_', ' ')}; later runs read them from the disk ..."):
+        arrays = compute()
     _write(path, digest, arrays)
     return arrays
 

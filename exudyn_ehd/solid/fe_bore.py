@@ -23,6 +23,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix, diags
 
+from exudyn_ehd.progress import announced
 from exudyn_ehd.solid.bush import require_tolerance
 from exudyn_ehd.solid.fe_faces import BodyMesh, BoreFaces, bore_faces, find_bore
 from exudyn_ehd.solid.mesh import directed, frame_of
@@ -290,7 +291,8 @@ def add_bore_modes(
     K = csr_matrix(fem.stiffnessMatrix)
     loads = np.zeros((K.shape[0], fields.shape[1]))
     loads[coordinates] = H.T @ fields
-    solutions = _solve_held(K, fixed, loads)
+    with announced("exudyn_ehd: computing the modes of a bore ..."):
+        solutions = _solve_held(K, fixed, loads)
     observe = _Shape(H, weight, theta, zeta, coordinates)
     radial = observe(solutions).T
     samples = slice(len(orders), None)

@@ -31,6 +31,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.static.equilibrium import equilibrium
+from exudyn_ehd.progress import is_shown
 from exudyn_ehd.status import EHDError, InputError, require_integer
 from exudyn_ehd.studies import places
 from exudyn_ehd.studies.rows import Row, RowFile
@@ -245,7 +246,7 @@ def parameter_study(
     hosts: Sequence[str] = (),
     file: str | pathlib.Path | None = None,
     units: Mapping[str, str] | None = None,
-    show_progress: bool = True,
+    show_progress: bool | None = None,
 ) -> StudyTable:
     """Evaluate a function at every combination of parameters; see the module's docstring for where it runs.
 
@@ -269,8 +270,8 @@ def parameter_study(
         other things that it holds, is noticed; one of what it calls is not: delete the file then.
     units : dict, optional
         Units of parameters and results by name, for print and CSV; common names have theirs.
-    show_progress : bool
-        Print a line for every finished row.
+    show_progress : bool, optional
+        Whether to print a line for every finished row; by default on a terminal and in notebooks (`show_progress`).
 
     Returns
     -------
@@ -295,13 +296,14 @@ def parameter_study(
     array([ 8.29, 11.6 , 13.88, 17.91])
     """
     lists = _checked_parameters(parameters)
+    told = is_shown() if show_progress is None else show_progress
     where = _checked_place(processes, mpi, hosts)
     points = [dict(zip(lists, values, strict=True)) for values in itertools.product(*lists.values())]
     kept = None if file is None else RowFile(file, function)
     stored = [None if kept is None else kept.find(point) for point in points]
     rows = {index: row for index, row in enumerate(stored) if row is not None}
     left = {index: point for index, point in enumerate(points) if index not in rows}
-    if show_progress and rows:
+    if told and rows:
         print(f"{len(rows)} of {len(points)} rows are taken from {file}", flush=True)
     runs: dict[str, Callable[[], places.Rows]] = {
         "here": lambda: places.here(function, left),
@@ -313,7 +315,7 @@ def parameter_study(
         rows[index] = row
         if kept is not None:
             kept.add(points[index], row)
-        if show_progress:
+        if told:
             given = ", ".join(f"{name} = {value:.5g}" for name, value in points[index].items())
             print(f"[{index + 1}/{len(points)}] {given}: {row.error or 'done'} ({row.seconds:.2f} s)", flush=True)
     own = {name: np.array([point[name] for point in points], dtype=float) for name in lists}

@@ -60,7 +60,7 @@ def test_rows_are_single_calls_in_order(point, table):
 
 
 def test_processes_give_the_same_table(point, table, capfd):
-    parallel = ehd.parameter_study(point, PARAMETERS, processes=2)
+    parallel = ehd.parameter_study(point, PARAMETERS, processes=2, show_progress=True)
     for name in table.columns:
         if name != "seconds":
             np.testing.assert_array_equal(parallel[name], table[name])

@@ -107,6 +107,8 @@ class AcceptedSteps:
         Where the present step begins; None where the film takes the velocities as they are.
     control : GapWatch or None
         Rejects steps that are too coarse.
+    record : Record
+        What was accepted.
     recorder : FilmRecorder or None
         Keeps films.
     observers : list of functions
@@ -130,7 +132,7 @@ class AcceptedSteps:
         self.control: GapWatch | None = None
         self.recorder: FilmRecorder | None = None
         self.observers: list[Callable[[Trial], None]] = []
-        self._record = Record(film.model.bearing)
+        self.record = Record(film.model.bearing)
         # a bore that wears or yields has another gap than the rigid surfaces
         self._makes_room = any(getattr(film.model.bearing, part, None) is not None for part in ("bush", "wear"))
         self._chatter: ChatterWatch | None = None
@@ -154,7 +156,7 @@ class AcceptedSteps:
         self._aside: History | None = None
         self.memory = self.begin = None
         self.start = np.nan
-        self._record.clear()
+        self.record.clear()
         # the next run is a new one, whatever was run before
         self.solvers = solver_state.NO_RUN
         self.film.forget()
@@ -185,8 +187,8 @@ class AcceptedSteps:
             self.control.start(trial.motion, None if film is None else film.quantities()["minimum_gap"])
         if row is not None:
             # a resumed state was recorded at the end of its step; for the memory it is the beginning of the next
-            if not resumed or start > self._record.last_time:
-                self._record.append(row)
+            if not resumed or start > self.record.last_time:
+                self.record.append(row)
                 if self.recorder is not None:
                     self.recorder.offer(start, lambda: self.film.fields(mbs, start, trial, _START_OF_STEP))
             for observe in self.observers:
@@ -204,7 +206,7 @@ class AcceptedSteps:
         film, place, before = self.film, self.film.read(mbs, _START_OF_STEP)[0], self._first
         # a run starts behind the record, and elsewhere than the run before, whose end is now the initial state; where
         # nothing has moved either run starts where the other ended
-        goes_on = start > self._record.last_time and (place != before or self.asked[1] == before)
+        goes_on = start > self.record.last_time and (place != before or self.asked[1] == before)
         resumed = self._resumed is not None and start == self._resumed[0]
         solver = self.solver
         if solvers[0] is not self.solvers[0] or solvers[1] is not self.solvers[1]:
@@ -231,7 +233,7 @@ class AcceptedSteps:
         self.memory, self._aside = (memory, None) if self._uses_memory else (None, memory)
         self._first, self._first_memory = place, memory
         if not resumed and not goes_on:
-            self._record.clear()
+            self.record.clear()
             if self.recorder is not None:
                 self.recorder.begin_anew()
         return resumed
@@ -341,7 +343,7 @@ class AcceptedSteps:
             assert trial.evaluation is not None
             memory = trial.evaluation.history()
             self.film.forget()
-        return time, memory, begin, self._record.rows(row)
+        return time, memory, begin, self.record.rows(row)
 
     def resume(
         self, time: float, memory: History | None, rows: np.ndarray | None = None, begin: StepStart | None = None
@@ -349,7 +351,7 @@ class AcceptedSteps:
         """Go on with ``memory``, record and start of the next step, by default none, in a run from ``time`` on."""
         self.forget()
         if rows is not None:
-            self._record.restore(rows)
+            self.record.restore(rows)
         self._resumed = (time, memory, begin)
 
     def tell(self, mbs: exu.MainSystem) -> None:
@@ -370,7 +372,7 @@ class AcceptedSteps:
         if (
             complete
             and mbs.systemIsConsistent
-            and (time := mbs.systemData.GetTime(self._accepted)) > self._record.last_time
+            and (time := mbs.systemData.GetTime(self._accepted)) > self.record.last_time
         ):
             trial = self.film.look(mbs, time, self._accepted)
             final = self.film.row(time, trial)
@@ -380,4 +382,4 @@ class AcceptedSteps:
                     "this state out.",
                     stacklevel=3,
                 )
-        return self._record.snapshot(final)
+        return self.record.snapshot(final)

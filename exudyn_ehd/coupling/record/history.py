@@ -366,6 +366,12 @@ class Record:
         self._rows, self._count = np.concatenate([rows, np.empty((64, _WIDTH))]), len(rows)
 
     @property
+    def thinnest(self) -> float:
+        """The minimum film thickness of all rows, m; nan where no film has one."""
+        gaps = self._rows[: self._count, MINIMUM_GAP]
+        return float(np.fmin.reduce(gaps, initial=np.nan))
+
+    @property
     def last_time(self) -> float:
         """Time of the last row, minus infinity if there is none."""
         return float(self._rows[self._count - 1, _TIME]) if self._count else -np.inf

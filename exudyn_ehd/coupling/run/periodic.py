@@ -18,7 +18,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.record.history import JointHistory
-from exudyn_ehd.coupling.run.step_size import user_function
+from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, RunError, require_number
 

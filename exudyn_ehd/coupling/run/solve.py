@@ -18,7 +18,9 @@ from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
-from exudyn_ehd.coupling.run.step_size import steps_by_error, user_function
+from exudyn_ehd.coupling.run.step_size import steps_by_error
+from exudyn_ehd.coupling.watch.run_progress import run_progress
+from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
@@ -156,6 +158,7 @@ def SolveDynamic(
             watch = around.enter_context(closing(mbs, joints_of(mbs), until_periodic, simulationSettings))
         for part in (control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic")):
             around.enter_context(part)
+        around.enter_context(progress_of(mbs, simulationSettings))
         good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
     return good if watch is None else watch.last_cycle(mbs)
 
@@ -318,6 +321,11 @@ def _unheld(mbs: exu.MainSystem) -> str:
         "stiffness of their own: give speeds by initial velocities and hold what is free by supports, springs or "
         "constraints."
     )
+
+
+def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
+    """Where somebody looks, the progress of the run within."""
+    return run_progress(mbs, settings, [(joint.name, joint.element.steps.record) for joint in joints_of(mbs)])
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:

@@ -37,14 +37,15 @@ from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
 from exudyn_ehd.coupling.run.solve import (
     own_errors,
+    progress_of,
     refusing,
     require_items,
     start_guess,
     step_control,
 )
 from exudyn_ehd.coupling.run.start_guess import StartGuess
-from exudyn_ehd.coupling.run.step_size import user_function
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
+from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
 from exudyn_ehd.status import InputError, require_integer, require_number
 
@@ -200,7 +201,7 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"):
+        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")

@@ -21,6 +21,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import JointModel, Trial
+from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import SMALLEST_GAP_SHARE, next_error
 from exudyn_ehd.status import Status
@@ -191,12 +192,6 @@ class StepSize:
         if self.size >= rest * (1.0 - ROUNDING):
             return rest
         return min(self.size, 0.5 * rest)
-
-
-def user_function(hook: Any) -> Any:
-    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
-    function = hook["function"] if isinstance(hook, dict) else hook
-    return function if callable(function) else 0
 
 
 @contextmanager

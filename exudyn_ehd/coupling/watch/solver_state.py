@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from typing import TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import exudyn as exu
 
@@ -74,3 +74,9 @@ def can_reject_step(solver: Solver | None) -> bool:
     # iteration data, not the settings: the solver's own copy is what decides
     iteration = solver.it
     return bool(iteration.adaptiveStep) and iteration.currentStepSize > iteration.minStepSize * (1.0 + 1e-6)
+
+
+def user_function(hook: Any) -> Any:
+    """The function that Exudyn's getter of a hook has returned; 0, as Exudyn takes it, for an empty hook."""
+    function = hook["function"] if isinstance(hook, dict) else hook
+    return function if callable(function) else 0

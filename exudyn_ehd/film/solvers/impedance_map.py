@@ -344,7 +344,7 @@ def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: floa
     condition = type(closure).__name__ + closure.line_in_cells * " in cells"
     key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
     shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
-    data = cached_arrays("impedance", key.encode(), shapes, compute)
+    data = cached_arrays("impedance_maps", key.encode(), shapes, compute)
     v = data["scalars"]
     return ImpedanceTable(
         nodes=data["nodes"],

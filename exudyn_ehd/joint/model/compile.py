@@ -2,33 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.progress import announced
 
-PATIENCE = 2.0
 MESSAGE = (
     "exudyn_ehd: compiling the film's kernels; this happens once (10 to 20 s), later runs read them from numba's "
     "cache ..."
 )
-
-
-@contextmanager
-def announced(patience: float = PATIENCE) -> Iterator[None]:
-    """Print `MESSAGE` to stderr if the block takes longer than ``patience`` seconds."""
-    timer = threading.Timer(patience, lambda: print(MESSAGE, file=sys.stderr, flush=True))
-    timer.daemon = True
-    timer.start()
-    try:
-        yield
-    finally:
-        timer.cancel()
 
 
 def compile_kernels(model: BearingModel) -> None:
@@ -36,7 +19,7 @@ def compile_kernels(model: BearingModel) -> None:
     motion = np.zeros(MOTION_SIZE)
     motion[0] = 0.1 * model.bearing.radial_clearance
     motion[8] = 1.0
-    with announced():
+    with announced(MESSAGE):
         history = model.initial_history(motion)
         evaluation = model.evaluate(motion, history, 1.0)
         if evaluation.film is not None:

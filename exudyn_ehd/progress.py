@@ -1,0 +1,120 @@
+"""How far long work is: a line that renews itself where somebody looks, which is a terminal or a notebook.
+
+Pipes, files and the processes of a study see nothing. Work of less than two seconds says nothing either.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import shutil
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TextIO
+
+from exudyn_ehd.status import require_type
+
+# Seconds until work counts as long, and from one look to the next.
+PATIENCE, PERIOD = 2.0, 0.5
+# What `show_progress` was called with last.
+_asked: list[bool | None] = [None]
+
+
+def show_progress(on: bool | None = True) -> None:
+    """Show how far long work is, or do not: runs, parameter studies, modes, maps, compilation.
+
+    Parameters
+    ----------
+    on : bool or None
+        True: also in pipes and files; False: never; None, as at the start: on a terminal and in notebooks.
+
+    Raises
+    ------
+    InputError
+        For anything else.
+
+    Examples
+    --------
+    >>> ehd.show_progress(False)
+    >>> ehd.show_progress(None)
+    """
+    require_type("show_progress", on, bool, type(None), hint="give True, False or None.")
+    _asked[0] = on
+
+
+def is_shown() -> bool:
+    """Whether somebody looks, or has asked for it."""
+    if _asked[0] is not None:
+        return _asked[0]
+    if multiprocessing.parent_process() is not None:
+        return False
+    return _in_notebook() or bool(sys.stderr is not None and sys.stderr.isatty())
+
+
+def _in_notebook() -> bool:
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return type(shell).__name__ == "ZMQInteractiveShell"
+
+
+def _stream() -> TextIO:
+    # notebooks have errors in red
+    return sys.stdout if _in_notebook() else sys.stderr
+
+
+class Progress:
+    """The line of one piece of work, which begins now."""
+
+    def __init__(self, title: str) -> None:
+        self.title = title
+        self.begin = time.perf_counter()
+        self.next = self.begin + PATIENCE
+        self.width = 0
+
+    @property
+    def is_due(self) -> bool:
+        """Whether it is time for a new line."""
+        return time.perf_counter() >= self.next
+
+    def tell(self, share: float, note: str = "") -> None:
+        """Write the line: the share (0 to 1) that is done, what is left at that rate, and a note."""
+        now = time.perf_counter()
+        self.next = now + PERIOD
+        left = f", {_duration((now - self.begin) * (1.0 - share) / share)} left" if share > 0.0 else ""
+        self._write(f"{self.title}: {100.0 * share:.0f} %{left}{note}")
+
+    def close(self) -> None:
+        """Take the line away."""
+        if self.width:
+            self._write("", end="\r")
+
+    def _write(self, text: str, end: str = "") -> None:
+        text = text[: shutil.get_terminal_size().columns - 1]
+        stream = _stream()
+        stream.write(f"\r{text.ljust(self.width)}{end}")
+        stream.flush()
+        self.width = len(text)
+
+
+@contextmanager
+def announced(message: str, patience: float = PATIENCE) -> Iterator[None]:
+    """Print a message if the block takes longer than ``patience`` seconds: work whose share can't be told."""
+    timer = threading.Timer(patience, lambda: print(message, file=_stream(), flush=True))
+    timer.daemon = True
+    if is_shown():
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()
+
+
+def _duration(seconds: float) -> str:
+    """As people say it: 45 s, 3 min 20 s, 2 h 5 min."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes} min"
+    return f"{minutes} min {rest} s" if minutes else f"{rest} s"
