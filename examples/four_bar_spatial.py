@@ -363,7 +363,7 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     elastic = runs[CASES[2]].histories[1]
     kept, theory = elastic.time >= begin, tilt_by_beam_theory(runs[CASES[2]], elastic=True)
     axes[0, 1].plot(degrees(elastic.time[kept]), 1e6 * theory[kept], color="black", ls=":", lw=1.2)
-    axes[0, 1].plot([], [], color="black", ls=":", label="beam theory")
+    axes[0, 1].plot([], [], color="black", ls=":", label="beam theory, on elastic")
     kept = parallel.time >= begin
     axes[1, 0].plot(
         degrees(parallel.time[kept]),

@@ -14,8 +14,7 @@ pytestmark = pytest.mark.benchmark
 SPEED, STEP = 300.0, 1e-4
 
 
-def _model(n_theta, n_z, cavitation=None, **options):
-    closure = ehd.ElrodAdams(cavity_pressure=-1e5) if cavitation is None else cavitation
+def _model(n_theta, n_z):
     return build_model(
         ehd.JournalBearing(
             journal_radius=0.01,
@@ -23,8 +22,7 @@ def _model(n_theta, n_z, cavitation=None, **options):
             radial_clearance=2e-5,
             lubricant=ehd.Lubricant(viscosity=0.04),
             film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z),
-            cavitation=closure,
-            **options,
+            cavitation=ehd.ElrodAdams(cavity_pressure=-1e5),
         )
     )
 
@@ -74,17 +72,3 @@ def test_steady_cold(benchmark):
         cold()
         times.append(time.process_time() - start)
     assert min(times) < 3.6e-3
-
-
-@pytest.mark.parametrize("supplied", [False, True], ids=["plain", "two grooves"])
-def test_supply(benchmark, supplied):
-    """Swift-Stieber with tangent; two axial grooves cut the ring, with more rows beside them."""
-    grooves = tuple(ehd.AxialGroove(angle=a, width_angle=0.35) for a in (0.0, np.pi))
-    model = _model(96, 10, ehd.SwiftStieber(), supply=grooves if supplied else ())
-    state = {"k": 0}
-
-    def step():
-        state["k"] += 1
-        model.evaluate(_motion(state["k"])).tangent()
-
-    benchmark.pedantic(step, rounds=200, warmup_rounds=20)

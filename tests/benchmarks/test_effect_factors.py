@@ -1,4 +1,6 @@
-"""Cost of effects as factors over their base film; ``-m benchmark``. Cases and measure are those of the shipped table.
+"""Cost of effects, closures and reduced films as factors over their base film; ``-m benchmark``.
+
+Cases and measure are those of the shipped table.
 
 Factors are of every state's best time in rounds that alternate between the cases, which is what a shared machine leaves
 undisturbed. Limits are the targets (roughness 1.1, asperities 1.15, liner 2, laws of pressure and shear at one state
@@ -38,6 +40,17 @@ EVALUATION_LIMITS = {
     "`DowsonHigginson`, `BarusPressure`": 1.5,
     "`ElrodAdams`, `DowsonHigginson`": 1.5,
     "`ElrodAdams`, `DowsonHigginson`, `BarusPressure`": 1.5,
+    "`AxialGroove`": 1.5,
+    "`CircumferentialGroove`": 1.14,
+    "`Hole`": 1.11,
+    "`Pocket`": 1.28,
+    "`Gumbel`": 1.25,
+    "`FullSommerfeld`": 1.2,
+    "`ElrodAdams`": 2.5,
+    "`ShortBearing`": 0.7,
+    "`LongBearing`": 0.87,
+    "`ImpedanceMap`": 0.025,
+    "`ClassicSOR`, `Gumbel`": 4.05,
 }
 # Of an accepted step at one state, so that all cavities rest: on the orbit a compressible film follows its cavity by
 # more solves.
@@ -60,8 +73,8 @@ def test_effects_on_the_orbit():
     print("\n" + format_costs(found))
     factors = {cost.what: cost.factor for cost in found if cost.per == effects.EVALUATION}
     assert not [cost for cost in found if cost.failure]
-    for name, limit in EVALUATION_LIMITS.items():
-        assert factors[name] < MARGIN * limit, name
+    slow = {name: (factors[name], limit) for name, limit in EVALUATION_LIMITS.items() if factors[name] > MARGIN * limit}
+    assert not slow
 
 
 @pytest.mark.parametrize("name", STEP_LIMITS)
@@ -74,22 +87,6 @@ def test_law_at_rest(name, base):
     factor = times[law][1] / times[base][1]
     print(f"{law}: {factor:.2f}")
     assert factor < MARGIN * STEP_LIMITS[name]
-
-
-@pytest.mark.parametrize("tangent", [False, True], ids=["force", "force and tangent"])
-@pytest.mark.parametrize("name", [effects.PLAIN, "`Gumbel`", *effects.FILMS])
-def test_reduced_films(benchmark, name, tangent):
-    """The orbit with and without tangents."""
-    model = build_model(plain_bearing(**effects.CASES[name].options))
-    states = effects.orbit()
-
-    def run():
-        for state in states:
-            evaluation = model.evaluate(state)
-            if tangent:
-                evaluation.tangent()
-
-    benchmark.pedantic(run, rounds=8, warmup_rounds=1)
 
 
 def test_impedance_map_in_microseconds():
