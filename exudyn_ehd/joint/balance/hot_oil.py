@@ -47,7 +47,9 @@ def hot_film(temperature: float | np.ndarray, grid: FilmGrid, where: str) -> str
     )
 
 
-def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> None:
-    """Warn in the name of ``where`` of a film that oil does not bear for long."""
-    if temperature is not None and is_above(HOT, temperature):
-        warn_user(hot_film(temperature, grid, where), HotFilmWarning)
+def warn_of_heat(temperature: Temperature, grid: FilmGrid, where: str) -> bool:
+    """Warn in the name of ``where`` of a film that oil does not bear for long; whether it is one."""
+    if temperature is None or not is_above(HOT, temperature):
+        return False
+    warn_user(hot_film(temperature, grid, where), HotFilmWarning)
+    return True

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.joint.balance.hot_oil import warn_of_heat
 from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
@@ -141,9 +142,13 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     motion = np.zeros(10)
     motion[:2] = first_guess(bearing, last, search.force, np.zeros(2))
     rows: list[dict[str, float | np.ndarray]] = [{}] * values.size
+    told = False
     for k in order:
         found = _follow(search, motion, last, float(values[k]))
         motion, last = found.motion, float(values[k])
+        film = found.evaluation.film
+        assert film is not None
+        told = told or warn_of_heat(film.temperature, film.grid, f"stribeck at {last:.4g} rad/s")
         rows[k] = _row(found.evaluation, last, size)
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     return StribeckResult(speeds=values, **columns)

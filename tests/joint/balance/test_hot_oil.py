@@ -55,6 +55,15 @@ def test_films_are_told_from_where_oil_does_not_bear_them(kind):
         steady(HOTTEST + 0.5, kind)
 
 
+def test_a_curve_tells_its_fastest_hot_film():
+    made = concentric(HOT + 40.0, "lumped")
+    with pytest.warns(ehd.HotFilmWarning) as told:
+        curve = ehd.stribeck(made, load=1.0, speeds=[0.5 * OMEGA, OMEGA, 1.02 * OMEGA])
+    (text,) = [str(w.message) for w in told]
+    assert text.startswith(f"stribeck at {1.02 * OMEGA:.4g} rad/s: the film is at {curve.film_temperature[2]:.4g} K")
+    assert (curve.film_temperature > HOT).tolist() == [False, True, True]
+
+
 def test_isothermal_films_have_no_temperature_to_tell():
     made = dataclasses.replace(concentric(HOT, "lumped"), thermal=None)
     with pytest.raises(KeyError):
