@@ -32,6 +32,7 @@ PURE = {
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
+    "UntilPeriodic.tolerance",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
@@ -54,7 +55,7 @@ READING = {
 # What the package makes, and hands out to be read.
 RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
-    "JointHistory", "JointState", "Recommendation", "Revolutions", "SteadyResult", "StribeckResult", "StudyTable",
+    "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StribeckResult", "StudyTable",
     "SystemState",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
