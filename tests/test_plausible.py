@@ -55,8 +55,8 @@ READING = {
 # What the package makes, and hands out to be read.
 RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
-    "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StribeckResult", "StudyTable",
-    "SystemState",
+    "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StribeckResult",
+    "StudyTable", "SystemState",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}
