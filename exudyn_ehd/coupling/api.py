@@ -180,7 +180,8 @@ def CreateLubricatedJoint(
     useGlobalFrame : bool
         See position, axis, rotationMatrixAxes.
     show : bool
-        Draw the film in Exudyn's renderer: the pressure of the last accepted step in colours on the bore.
+        Draw the bearing in Exudyn's renderer: a ring of the housing, and the film of the last accepted step in the
+        colours of its pressure, its thickness enlarged.
     axisRadius, axisLength : float
         As ``mbs.CreateRevoluteJoint`` has them, so that its calls can be taken over; without effect: the film is drawn
         in the bearing's own size.

@@ -1,4 +1,8 @@
-"""The film in Exudyn's renderer: its pressure in colours on the bore, and the deformed modal bush.
+"""The bearing in Exudyn's renderer: a ring of the housing or the modal bush, and the film in it.
+
+The journal has its true radius; the clearance is drawn as a tenth of it, and with it the film's thickness and the
+bore's deflection, by the same factor. So the film is a layer between the bore and a journal that is as eccentric in
+it as in truth. Its pressure is in colours: on the bore, and at its ends the largest one along the axis.
 
 Exudyn asks for the picture only while a renderer runs, or for an image of its ray tracer
 (``SC.renderer.RedrawAndGetImage(True)``, which needs no display). The first time it does, the film element begins to
@@ -14,6 +18,7 @@ import exudyn as exu
 import exudyn.graphics
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Data, Side, Trial
 from exudyn_ehd.coupling.kinematics.sides import detached, read_state
 from exudyn_ehd.coupling.record.element import Element
@@ -22,7 +27,9 @@ from exudyn_ehd.status import Status
 
 _VISUALIZATION = exu.ConfigurationType.Visualization
 EDGE = [0.0, 0.0, 0.0, 1.0]
-BUSH = [0.72, 0.74, 0.78, 0.35]
+BUSH, RING = [0.72, 0.74, 0.78, 0.35], [0.72, 0.74, 0.78, 0.2]
+# Thickness of the housing's ring, and the clearance as drawn: shares of the journal's radius.
+WALL, CLEARANCE = 0.2, 0.1
 
 
 class FilmDisplay:
@@ -36,12 +43,18 @@ class FilmDisplay:
     ----------
     wanted : bool
         Whether a renderer has asked.
+    clearance : float
+        What the clearance is drawn as, or a deflection of the bore that is larger: a share of the journal's radius,
+        0.1 by default; 0 draws it as it is.
     """
 
     def __init__(self, element: Element) -> None:
         self.element = element
         self.wanted = False
+        self.clearance = CLEARANCE
         self.pressure: np.ndarray | None = None
+        self.gap: np.ndarray | None = None
+        self.largest = 0.0
         self.bore: np.ndarray | None = None
         self.bush: np.ndarray | None = None
         self._housing: Side | None = None
@@ -51,11 +64,14 @@ class FilmDisplay:
         film = getattr(trial.evaluation, "film", None)
         if film is None:
             return
+        model: Any = self.element.model
+        clearance = model.bearing.radial_clearance
         self.pressure = film.oil.P * film.scales.pressure
+        self.gap = film.solver.H * clearance
         if film.bore is None:
             return
-        model: Any = self.element.model
-        self.bore = film.bore.displacement * model.bearing.radial_clearance
+        self.bore = film.bore.displacement * clearance
+        self.largest = max(self.largest, float(np.abs(self.bore).max()))
         modes = getattr(model.bore, "modes", None)
         if modes is not None:
             self.bush = np.tensordot(film.bore.coordinates, modes.displacements, 1)
@@ -73,26 +89,46 @@ class FilmDisplay:
             trial = steps.look_at_accepted(mbs)[1]
             if trial.status is Status.CONVERGED:
                 self.take(trial)
-        frame = self._frame(mbs)
-        grid, bearing = model.grid, model.bearing
-        # a polygon about the bore, not in it: its chords would cut through the journal
-        radius = (bearing.journal_radius + bearing.radial_clearance) / np.cos(np.pi / grid.shape[0])
-        r = np.full(grid.shape, radius) if self.bore is None else radius + self.bore
-        z = np.broadcast_to(grid.z * grid.reference_length, grid.shape)
-        local = np.stack([r * np.cos(grid.x)[:, None], r * np.sin(grid.x)[:, None], z], axis=-1)
-        points = local @ frame[:, :3].T + frame[:, 3]
-        data = [self._line(points[:, 0]), self._line(points[:, -1])]
-        if self.pressure is not None:
-            flat = points.reshape(-1, 3)
-            colors = pressure_colours(self.pressure).reshape(-1, 4)
-            triangles = ring_triangles(*grid.shape)
-            data.append(exudyn.graphics.FromPointsAndTrigs(flat, triangles, color=colors))
-        if self.bush is not None:
+        frame, scale = self._frame(mbs), self._scale(model.bearing)
+        bore, z = self._bore(scale), model.grid.z * model.grid.reference_length
+        data = [self._line(_points(frame, model.grid.x, bore[:, [k]], z[[k]])[:, 0]) for k in (0, -1)]
+
+        def surface(radii: np.ndarray, places: np.ndarray, color: list[float] | np.ndarray) -> None:
+            """Add the surface through rings of radii (n, k) at places (k,)."""
+            points = _points(frame, model.grid.x, radii, places).reshape(-1, 3)
+            triangles = ring_triangles(*radii.shape)
+            data.append(exudyn.graphics.FromPointsAndTrigs(points, triangles, color=color))
+
+        if self.pressure is not None and self.gap is not None:
+            colors = pressure_colours(np.column_stack([self.pressure, self.pressure.max(axis=1)]))
+            surface(bore, z, colors[:, :-1].reshape(-1, 4))
+            journal = bore - scale * np.minimum(self.gap, 2.0 * model.bearing.radial_clearance + self.largest)
+            ends = np.repeat(colors[:, -1], 2, axis=0)
+            surface(np.column_stack([journal[:, 0], bore[:, 0]]), z[[0, 0]], ends)
+            surface(np.column_stack([bore[:, -1], journal[:, -1]]), z[[-1, -1]], ends)
+        if self.bush is None:
+            wall = np.full(len(bore), bore.max() + WALL * model.bearing.journal_radius)
+            surface(np.column_stack([bore[:, 0], wall, wall, bore[:, -1]]), z[[0, 0, -1, -1]], RING)
+        else:
             mesh = model.bore.modes.mesh
-            moved = (mesh.nodes + self.bush) @ frame[:, :3].T + frame[:, 3]
+            outward = mesh.nodes * (1.0, 1.0, 0.0) / np.linalg.norm(mesh.nodes[:, :2], axis=1)[:, None]
+            moved = mesh.nodes + (scale - 1.0) * model.bearing.radial_clearance * outward + scale * self.bush
             triangles = mesh.boundary[:, face_of(mesh.boundary).triangles].reshape(-1, 3)
+            moved = moved @ frame[:, :3].T + frame[:, 3]
             data.append(exudyn.graphics.FromPointsAndTrigs(moved, triangles, color=BUSH))
         return data
+
+    def _scale(self, bearing: JournalBearing) -> float:
+        """What the film is drawn thicker by, and the bore's deflection larger."""
+        return max(1.0, self.clearance * bearing.journal_radius / max(bearing.radial_clearance, self.largest))
+
+    def _bore(self, scale: float) -> np.ndarray:
+        """Radii (n, m) of the bore as drawn."""
+        model: Any = self.element.model
+        grid, bearing = model.grid, model.bearing
+        # a polygon about the bore, not in it: its chords would cut through the journal
+        radius = (bearing.journal_radius + scale * bearing.radial_clearance) / np.cos(np.pi / grid.shape[0])
+        return np.full(grid.shape, radius) if self.bore is None else radius + scale * self.bore
 
     def _frame(self, mbs: exu.MainSystem) -> np.ndarray:
         """Joint frame (3, 6) of the housing in the shown state; the element's own arrays belong to the solver."""
@@ -106,6 +142,13 @@ class FilmDisplay:
     def _line(points: np.ndarray) -> Data:
         """Closed line through points (n, 3)."""
         return exudyn.graphics.Lines(np.vstack([points, points[:1]]), color=EDGE)
+
+
+def _points(frame: np.ndarray, theta: np.ndarray, radii: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Global points (n, k, 3) of radii (n, k) at the angles theta (n,) and the axial places (k,) of a frame (3, 6)."""
+    z = np.broadcast_to(places, radii.shape)
+    local = np.stack([radii * np.cos(theta)[:, None], radii * np.sin(theta)[:, None], z], axis=-1)
+    return local @ frame[:, :3].T + frame[:, 3]
 
 
 def ring_triangles(n: int, m: int) -> np.ndarray:

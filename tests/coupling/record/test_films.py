@@ -176,7 +176,7 @@ def test_bush_of_tetrahedra_in_vtk_files_and_the_renderer(tmp_path):
     scene = mbs.variables["container"].renderer.GetGraphicsData()["triangles"]
     own = scene["items"][:, 2] == int(joint.objectNumber)
     n, m = joint.films[-1].pressure.shape
-    assert np.count_nonzero(own) == 2 * n * (m - 1) + 4 * len(mesh.boundary)
+    assert np.count_nonzero(own) == 2 * n * (m + 1) + 4 * len(mesh.boundary)
 
 
 def test_vtk_of_a_rigid_bearing_at_one_instant(tmp_path):
