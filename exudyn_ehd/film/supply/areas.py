@@ -33,7 +33,7 @@ class AxialGroove:
     Parameters
     ----------
     angle : float
-        theta of its centre, rad (with ``rotating``: in the journal).
+        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
     width_angle : float
         Angle that it spans, rad, below 2 pi.
     length : float or None
@@ -115,7 +115,7 @@ class Hole:
     Parameters
     ----------
     angle : float
-        theta of its centre, rad (with ``rotating``: in the journal).
+        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
     z : float
         Axial position of its centre, m.
     diameter : float
@@ -156,7 +156,7 @@ class Pocket:
     Parameters
     ----------
     angle : float
-        theta of its centre, rad (with ``rotating``: in the journal).
+        theta of its centre, rad; of a ``rotating`` one in the reference configuration.
     z : float
         Axial position of its centre, m.
     width_angle : float
