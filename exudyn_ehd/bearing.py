@@ -300,12 +300,9 @@ def _check_line(bearing: JournalBearing) -> None:
     """Refuse a rupture line inside the cells with what does not know it yet."""
     if not bearing.cavitation.line_in_cells:
         return
-    film, oil = type(bearing.film).__name__, bearing.lubricant
+    film = type(bearing.film).__name__
     others = {
         f"film={film}(...)": not isinstance(bearing.film, (FiniteLength, LongBearing, ImpedanceMap)),
-        "an ElasticLiner": isinstance(bearing.bush, ElasticLiner),
-        "Lubricant.density_law": oil.density_law is not None,
-        "Lubricant.shear_law": oil.shear_law is not None,
     }
     for other, there in others.items():
         if there:

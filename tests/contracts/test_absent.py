@@ -105,6 +105,10 @@ EFFECTS = {
         ("film.cavitation.rupture_line", "film.cavitation.line_newton"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True)},
     ),
+    "line on a liner": (
+        ("film.cavitation.line_kernels", "film.solvers.liner.line"),
+        {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
+    ),
     "holes": (
         ("film.supply.cuts", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5),)},
@@ -242,7 +246,11 @@ def test_a_plain_film_calls_no_effect(closure, monkeypatch):
         np.testing.assert_array_equal(a, b)
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+# Kernels that no other test of the default run compiles.
+SLOW = {"line on a liner"}
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in EFFECTS])
 def test_every_module_of_an_effect_is_called_with_it(name, monkeypatch):
     """Else the test above would prove nothing."""
     modules, options = EFFECTS[name]

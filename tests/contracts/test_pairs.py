@@ -39,6 +39,7 @@ CLOSURES = {
     "swift": ehd.SwiftStieber(cavity_pressure=-5e4),
     "elrod": ehd.ElrodAdams(cavity_pressure=-5e4),
 }
+LINE = ehd.SwiftStieber(cavity_pressure=-5e4, line_in_cells=True)
 CLOSURES |= {c.__name__: by_itself(c) for c in CAVITATION if c not in map(type, CLOSURES.values())}
 
 # A liner's contact comes out of its film solve, so that everything that acts besides meets another program.
@@ -82,7 +83,7 @@ def _bearing(names, closure):
         radial_clearance=CLEARANCE,
         lubricant=ehd.Lubricant(viscosity=0.02, **lubricant),
         film=ehd.FiniteLength(n_theta=40, n_z=6),
-        cavitation=CLOSURES[closure],
+        cavitation=CLOSURES.get(closure, LINE),
         **options,
     )
 
@@ -112,7 +113,7 @@ def test_pair(pair, closure):
     assert np.all(np.isfinite(evaluation.wrench))
     assert np.all(np.isfinite(tangent))
     assert all(math.isfinite(v) for v in values.values())
-    if CLOSURES[closure].conserves_mass:
+    if model.bearing.cavitation.conserves_mass:
         _check_mass(model, evaluation, history, step)
     rng = np.random.default_rng(3)
     for _ in range(3):
@@ -122,6 +123,15 @@ def test_pair(pair, closure):
         scale = np.abs(tangent * SCALE).max(axis=1)
         # central differences with h = 1e-6 of the scales: truncation 1e-9 and rounding 1e-9 of smooth states
         assert np.all(np.abs(got - expected) < 1e-6 * scale)
+
+
+LINE_PAIRS = [p for p in itertools.combinations(EFFECTS, 2) if {"carreau", "density", "liner"} & set(p)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", [*LINE_PAIRS, *LINER_TRIPLES], ids="-".join)
+def test_pair_with_a_line_in_its_cells(pair):
+    test_pair(pair, "line in its cells")
 
 
 def _check_mass(model, evaluation, history, step):

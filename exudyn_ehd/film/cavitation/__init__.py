@@ -7,6 +7,7 @@ active_set        the film on a set of unknown pressures, and how the set is fou
 rupture_line      where the film's edge lies inside a cell, and what it adds to balances and derivatives
 line_newton       Newton's method for a film with it
 line_steps        what one of its steps does
+line_kernels      the same in Newton's method for liners, density and shear laws
 elrod_adams       mass-conserving closure
 lagging_void      its flows out of a cavity, averaged over the step
 pseudo_time       the way to a film that is far from where its solution starts

@@ -120,8 +120,9 @@ class SwiftStieber(SymmetricClosure):
     factored.
 
     With ``line_in_cells`` stiffness and damping are within 1 % in any direction (default grid, eccentricity ratio up to
-    0.8, L/D from 0.5; 2 % at 0.25) instead of 8 %, in twice the time. It does not go with liners, density and shear
-    laws and short bearings yet, and says so.
+    0.8, L/D from 0.5; 2 % at 0.25) instead of 8 %, in twice the time. On liners, and with density and shear laws,
+    the line lies where the film has the cavity's pressure (`exudyn_ehd.film.solvers.liner.line`); where a soft liner is
+    deflected by the pressure of a single cell errors are those of the grid. It does not go with short bearings yet.
 
     Parameters
     ----------

@@ -45,7 +45,8 @@ class LineGradients(NamedTuple):
         Unknowns and their flat vertices.
     by : (8, c) array
         To the gap on the links behind and before it in theta, to the gap at the vertex itself and at those behind and
-        before it in z, to the vertex' own rate, to vx and vz.
+        before it in z, to the vertex' own rate, to vx and vz; (10, c) where a link's gap follows those of its ends:
+        also to the gap at the vertices behind and before in theta.
     """
 
     rows: np.ndarray
@@ -119,8 +120,15 @@ class RuptureLine:
         places = self.fields.places[: self.fields.places[-1]].copy()
         rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
-        line_gradients(places, (self.f, self.k, self.s), *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
+        weights = self.weights(places)
+        line_gradients(places, weights, *gaps, slopes, by_speed, *speeds, flow_x, squeeze, mesh, by)
         return LineGradients(rows, places, by)
+
+    def weights(self, places: np.ndarray) -> np.ndarray:
+        """What -N changes by at vertices (c,) with their sources b and their mean conductance (2, c)."""
+        f, k, s = (field[places] for field in self.fields[:3])
+        source = 0.5 * (1.0 - s)
+        return np.stack((source, source * f * s / k))
 
 
 @njit(cache=True)
@@ -143,22 +151,19 @@ def line_terms(kx, b, fixed, line):
 
 
 @njit(cache=True)
-def line_gradients(places, line, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
-    """`LineGradients` of the last solution at ``places`` (c,) into zeros ``by`` (8, c); ``line``: f, k and s (n, m).
+def line_gradients(places, weights, H, HF, slopes, by_speed, vx, vz, flow_x, squeeze, mesh, by):
+    """`LineGradients` of the last solution at ``places`` (c,) into zeros ``by`` (8, c).
 
-    ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
+    ``weights``: of `RuptureLine.weights`; ``slopes``, ``by_speed``: `LinkFlux.slopes` and `LinkFlux.by_speed`, as for
     `exudyn_ehd.film.reynolds.link_derivatives.link_derivatives`.
     """
-    f, k, s = line
     mesh = Mesh(*mesh)
     n, m = H.shape
     for found in range(places.size):
         i = places[found] // m
         j = places[found] - i * m
         prv = i - 1 if i > 0 else n - 1
-        # of the balance to the sources b and to the mean conductance
-        source = 0.5 * (1.0 - s[i, j])
-        conduct = source * f[i, j] * s[i, j] / k[i, j]
+        source, conduct = weights[0, found], weights[1, found]
         wx, wz = mesh.width_x[i], mesh.width_z[j]
         for q, face, side in ((0, i, -1.0), (1, prv, 1.0)):
             half = 0.5 * conduct * mesh.link_x[face] * flow_x * wz
@@ -196,18 +201,23 @@ def contract_line(
     # no two of the vertices share a place; what wraps around in z has no weight
     for field, at, row, by in (
         (face, i, j, 0), (face, (i - 1) % n, j, 1), (cell, i, j, 2), (cell, i, (j + 1) % m, 3),
-        (cell, i, (j - 1) % m, 4), (rate, i, j, 5),
-    ):  # fmt: skip
+        (cell, i, (j - 1) % m, 4), (rate, i, j, 5), (cell, (i + 1) % n, j, 8), (cell, (i - 1) % n, j, 9),
+    )[: 6 + len(line.by) - 8]:  # fmt: skip
         field[:, at, row] += weights * line.by[by]
-    speed += weights @ line.by[6:].T
+    speed += weights @ line.by[6:8].T
+
+
+def add_line_columns(line: LineGradients | None, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
+    """Add the line's part, if there is one, of the balances' derivatives (10, count) to a rigid journal's motion.
+
+    ``at`` and ``out`` as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
+    """
+    if line is not None:
+        _add_columns(line, at, out)
 
 
 @njit(cache=True)
-def add_line_columns(line, at, out):
-    """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
-
-    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
-    """
+def _add_columns(line, at, out):
     rows, places, by = line
     at = Directions(*at)
     n, m = at.cos_x.size, at.z.size
@@ -225,6 +235,10 @@ def add_line_columns(line, at, out):
         x = by[0, c] * at.cos_f[i] + by[1, c] * at.cos_f[prv]
         y = by[0, c] * at.sin_f[i] + by[1, c] * at.sin_f[prv]
         cos, sin, rate = at.cos_x[i], at.sin_x[i], by[5, c]
+        if by.shape[0] > 8:
+            on, behind, before = i + 1 if i + 1 < n else 0, by[8, c], by[9, c]
+            x += behind * at.cos_x[on] + before * at.cos_x[prv]
+            y += behind * at.sin_x[on] + before * at.sin_x[prv]
         out[0, r] -= x + whole * cos
         out[1, r] -= y + whole * sin
         out[2, r] -= x * z + tilted * cos

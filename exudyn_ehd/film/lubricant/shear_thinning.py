@@ -130,6 +130,7 @@ class ShearThinning(FluxEffect):
     depends_on_speed = True
 
     def __init__(self, law: CarreauShear, radius: float, clearance: float) -> None:
+        self.law = law
         self.oil = fluidity_table(law.exponent, law.residual)
         self.flow_points, self.stress_points = gauss_points(FLOW_POINTS), gauss_points(STRESS_POINTS)
         self.per_speed = 2.0 * radius * law.relaxation_time / clearance
@@ -167,6 +168,24 @@ class ShearThinning(FluxEffect):
                 self.last[axis], found,
             )  # fmt: skip
             multiply(found, g, g_h, g_v)
+
+    def slide(self, flux: LinkFlux, vx: float) -> np.ndarray:
+        """Conductances in theta where sliding alone thins, after `apply` without gradients: exact, with derivatives.
+
+        Their ratio is the law's inverse slope dS/dT, which `apply` interpolates and leaves without derivatives, since
+        nothing flows there. Returns what it multiplies the conductances by (n, m).
+        """
+        gap = flux.gap_x
+        law, S = self.law, self.per_speed * vx / gap
+        b, e, r = 1.0 + S * S, 0.5 * (law.exponent - 1.0), law.residual
+        steep = 1.0 + law.exponent * S * S
+        slope = r + (1.0 - r) * b ** (e - 1.0) * steep
+        bend = (1.0 - r) * 2.0 * S * b ** (e - 2.0) * ((e - 1.0) * steep + law.exponent * b)
+        exact, by_rate = 1.0 / (slope * self.found[0, 0]), -bend / slope
+        flux.gx[:] *= exact
+        flux.gx_h[:] = flux.gx_h * exact - flux.gx * by_rate * S / gap
+        flux.gx_v[:] = flux.gx_v * exact + flux.gx * by_rate * self.per_speed / gap
+        return exact
 
     def response(self) -> tuple[np.ndarray, ...]:
         """What Newton's matrix needs of the last call of `apply`, as `exudyn_ehd.film.banded.assemble.add_corners`."""

@@ -9,7 +9,7 @@ compiled        the driver compiled as a whole, for the fast ones among them
 steps           their matrix, steps and sets
 nonlinear       film on an elastic liner, with contact, laws of the oil and density
 liner           what it is made of
-thinning        conductances that follow the pressure, on rigid surfaces
+thinning        conductances that follow the pressure, on rigid surfaces; density with a rupture line in the cells
 compressible    density that follows the pressure, on rigid surfaces
 impedance_map   fitted map for plain bearings
 sor             finite differences and successive over-relaxation

@@ -51,6 +51,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, contract_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
@@ -120,12 +121,12 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         self.system.H, self.system.H_t = self.H, self.H_t
         s = self.system
         s.kx, s.kz, s.fx, s.fz = e.terms[:4]
+        self.line, s.line = e.line, None
         if flux_effects:
             self.flux = link_flux(self.HF, flux_effects)
             e.links = self.flux
         self.delta_old: np.ndarray | None = None
-        self.contact_slope = np.zeros(grid.shape)
-        self.deflection_inverse = 0.0
+        self.contact_slope, self.deflection_inverse = np.zeros(grid.shape), 0.0
 
     @property
     def beta(self) -> float:
@@ -222,8 +223,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         """Solve for the undeformed gaps now stored; parameters as for
         `FilmSolver.solve`, ``mass_old`` the old value of rho fill H."""
         s, g, e = self.system, self.grid, self.elements
-        self.vx, self.vz = vx, vz
-        s.cavity_pressure = cavity_pressure
+        self.vx, self.vz, s.cavity_pressure = vx, vz, cavity_pressure
         e.take_rigid(self.squeeze)
         self._set_times(mass_old, step)
         P = s.linear_pressure
@@ -231,12 +231,11 @@ class NonlinearFilmSolver(NewtonFilmSolver):
             P[g.fixed] = s.pressure[g.fixed]
         if not e.set_known_loads():
             return Status.NO_PRESSURE, 0
+        e.see_cavity()
         if e.contact is None and not ends_open(e.rigid, P if e.oil is None else e.load.p, e.beta, g.fixed):
             self.work.warm = False
             return Status.NO_FILM, 0
-        steps, ok = 0, False
-        if self.work.warm:
-            ok, steps = e.solve()
+        ok, steps = e.solve() if self.work.warm else (False, 0)
         if not ok:
             ok, more = self._start(mass_old, step)
             steps += more
@@ -304,6 +303,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
     def _finish(self) -> None:
         """Deformed gaps, clipped pressure, and the coefficients that flows and balances are taken from."""
         g, s, e = self.grid, self.system, self.elements
+        e.settle_line()
         P = s.linear_pressure
         if self.closure.clips:
             np.copyto(s.pressure, np.where(g.fixed, P, np.maximum(P, s.cavity_pressure)))
@@ -338,12 +338,13 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         by_gap, by_rate = e.storage_gradients()
         by_rate = by_rate if self.squeeze else self.nothing
         gap_columns(w.order, w.count, e.by, e.flows_by_speed(), e.slope_fields, by_rate, by_gap, at, out)
+        add_line_columns(self.line_gradients(), at, out)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""
         e = self.elements
         a, by, by_v = e.gap_slopes, e.by.reshape(4, *self.grid.shape), e.flows_by_speed()
-        by_gap, by_rate = e.storage_gradients()
+        by_gap, _ = e.storage_gradients()
         along, across = np.roll(lam, -1, axis=1) - lam, np.zeros_like(lam)
         across[:, :, :-1] = lam[:, :, 1:] - lam[:, :, :-1]
         face, bend = along * (by[0] * a.link), along * by[1]
@@ -354,9 +355,9 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         other[:, :, 1:] += 0.5 * (up[:, :, :-1] * a.H_r[:, 1:] + slant[:, :, :-1] * a.E_r[:, 1:])
         turning = np.sum(along * by_v[0] + across * by_v[1], axis=(1, 2))
         speed = np.stack((turning, np.sum(across * by_v[2], axis=(1, 2))), axis=1)
-        return Sensitivities(
-            own + other - lam * by_gap, face, -lam * by_rate if self.squeeze else np.zeros_like(lam), speed
-        )
+        cell, rate = own + other - lam * by_gap, e.deflection_weights(lam)
+        contract_line(lam, self.line_gradients(), cell, face, rate, speed)
+        return Sensitivities(cell, face, rate, speed)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full

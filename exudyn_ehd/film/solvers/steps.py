@@ -15,6 +15,7 @@ from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble,
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.cavitation.line_kernels import add_line, bend_to_line, lean_to_line
 from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
@@ -35,6 +36,8 @@ OVERFULL = 1e-12
 SUCTION, ROUNDED = 1e-12, 1e-8
 # Largest growth of an oil's viscosity in one step, as a logarithm.
 LARGEST_THICKENING = 4.0
+# Root of the curvature that balances have in s.
+CURVED = 10.0
 # Share of a gap that a step may use up, so that it stays open.
 CLOSING = 0.8
 # `take_step` of an oil whose law has no end.
@@ -43,11 +46,12 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True)
-def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None):
+def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None, line=None):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 
     ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by)
-    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure.
+    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure;
+    ``line`` of `line_kernels`.
     """
     P, fill, full = u
     rho, rho_P = density
@@ -67,6 +71,8 @@ def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None):
     if liner is not None:
         gap_slopes, load, rates, beta, by = liner
         add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
+    if line is not None:
+        add_line(line, active, slopes[4])
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
     assemble(links, film.kz, slopes, number, order, count, L, U)
     if thin is not None:
@@ -114,15 +120,20 @@ def take_over(trial, r, fixed, pc, active, P_out):
 
 
 @njit(cache=True, inline="always")
-def _solve(residual, factored, count, width):
-    """Newton's step of the numbered unknowns."""
+def _solve(residual, factored, count, width, P, pc, line):
+    """Newton's step of the numbered unknowns; returns as `bend_to_line`."""
     order, x, lower, upper, inv_diag = factored
     flat = residual.reshape(-1)
     for r in range(count):
         x[r] = -flat[order[r]]
+    if line is not None:
+        lean_to_line(P, pc, order, count, line[0], x)
     if count > 0:
         L, U = dense_band(lower, count, width), dense_band(upper, count, width)
         solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))
+    if line is None:
+        return 0.0
+    return bend_to_line(P, pc, order, count, line[0], line[1], x)
 
 
 @njit(cache=True)
@@ -160,7 +171,7 @@ def _sizes(P_now, sides, elements, order, steps, count, base, least):
 
 
 @njit(cache=True)
-def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial):
+def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line=None):
     """Newton's step of the numbered unknowns with the factor at hand; returns
     the entries of `newton.Step`, and as `take_step`.
 
@@ -174,13 +185,16 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
     elements : (load, gaps, gap slopes), as fields
     end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
+    line : (that of `line_kernels`, steps before), or None
     """
     clips, chooses = kinds
     pc, base, least, opening, suction = levels
-    _solve(residual, factored, count, width)
+    along_line = _solve(residual, factored, count, width, u[0], pc, line)
     largest, filled, peak, pressing, share = _sizes(u[0], u[2], elements, factored[0], factored[1], count, base, least)
     if not largest < np.inf:
         return np.inf, np.inf, peak, 1.0, 0
+    if line is not None:
+        largest = max(largest, CURVED * along_line * np.sqrt(peak))
     unit = min(pressing, opening) if clips else peak
     share = 1.0 if clips else share
     changes = take_step(u, elements, end, factored, count, share, pc, chooses, max(SUCTION * peak, suction), trial)

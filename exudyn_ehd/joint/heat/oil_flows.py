@@ -99,7 +99,8 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
     if oil is not None:
         flows = Exchange(film)
         pressure = oil.flow_work(film.oil.P) - oil.flow_work(np.asarray(cavity))
-        work, leaving = float(np.sum(pressure * (flows.outside - s.area * flows.rate))), flows.leaving
+        entering = flows.outside if s.line is None else flows.outside + s.line.found()
+        work, leaving = float(np.sum(pressure * (entering - s.area * flows.rate))), flows.leaving
     else:
         y, conserves = s.system, s.closure.conserves_mass
         stepped = conserves and y.inverse_step > 0.0 and not s.instant

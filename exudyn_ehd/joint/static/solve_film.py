@@ -13,6 +13,7 @@ from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.units import shown
@@ -172,7 +173,7 @@ def solve_film(
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(pressure * grid.weight)) * R**2,
         fill=fill,
-        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
+        content=fill * gap * (solver.rho if isinstance(solver, (CompressibleFilmSolver, ThinningFilmSolver)) else 1.0),
     )
 
 
@@ -182,11 +183,11 @@ def _any_gap_solver(
     effects = () if steps is None else (steps,)
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
+    solver: CompressibleFilmSolver | ThinningFilmSolver
     if closure.line_in_cells:
-        raise InputError(
-            "solve_film: SwiftStieber.line_in_cells=True does not go with Lubricant.density_law; use SwiftStieber()."
-        )
-    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+        solver = ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=law)
+    else:
+        solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
     return solver
 

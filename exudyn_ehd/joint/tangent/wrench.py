@@ -130,9 +130,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         film.parts.liner.motion_columns(at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
-        line = true_line(film)
-        if line is not None:
-            add_line_columns(line, at, out)
+        add_line_columns(true_line(film), at, out)
     return out
 
 
@@ -170,7 +168,7 @@ def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow
     contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, pose)
     contract_pose(sens.rate, p.directions.cos_x, p.directions.sin_x, z, rates)
     if slow_motion and p.liner is not None:
-        rates += _following_deflection(film, p.liner, sens.rate)
+        rates += _following_deflection(film, p.liner, p.liner.elements.deflection_weights(lam))
     gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
     return sens
 

@@ -6,6 +6,7 @@ elements      Winkler elements: pressure on them, deflection
 gap_response  derivatives of flows over gaps that follow the pressure
 kernels       balance as kernels
 film          the film on them: gaps, links, balance, derivatives
+line          its edge inside the cells
 balance       the film as Newton's method sees it
 continuation  dry guess and pseudo time
 parts         contact, gap limiter and oil, as the elements take them

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Callable
 
 import numpy as np
 
 from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
-from exudyn_ehd.film.reynolds.links import FilmState
+from exudyn_ehd.film.reynolds.links import FilmState, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
+from exudyn_ehd.film.solvers.liner.line import GapChain
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step, newton
 from exudyn_ehd.film.solvers.steps import (
@@ -30,6 +33,9 @@ from exudyn_ehd.film.solvers.steps import (
     take_step,
 )
 
+# Gap over the clearance below which surfaces at the cavity's pressure touch: no line is looked for there.
+TOUCHING = 1e-6
+
 
 class LinerBalance(LinerFilm):
     """`newton.Balance` of a film whose gap yields to its pressure; parameters as for `LinerFilm`."""
@@ -39,7 +45,7 @@ class LinerBalance(LinerFilm):
         shape, self.matrix = film.grid.shape, film.work.matrix
         self.trial = FilmState(np.zeros(shape), np.ones(shape), np.ones(shape, dtype=np.bool_))
         self.exact = self.reusable = False
-        self.changes = 0
+        self.changes = self.taken = 0
         self.slight = self.noise = 0.0
 
     def solve(self) -> tuple[bool, int]:
@@ -47,7 +53,64 @@ class LinerBalance(LinerFilm):
         # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
         if self.film.complementary:
             admit(*self._sides(self.u), self.film.grid.fixed, self.film.system.cavity_pressure)
-        return self._solve_plain() if self.plain and not self.fills else newton(self)
+        ok, steps = True, 0
+        if self.line is None or not self.film.work.warm or self.rates.pseudo != 0.0:
+            # the way to a film without its line is the safer one
+            self.met = None
+            ok, steps = self._solve_plain() if self.plain and not self.fills else newton(self)
+        if self.line is None or not ok or self.rates.pseudo != 0.0:
+            return ok, steps
+        self.met, self.film.work.warm = self.line, True
+        ok, more = newton(self)
+        return ok, steps + more
+
+    def see_cavity(self) -> None:
+        """Take the line's coefficients of the film that is about to be solved; gaps and links are left as they are in
+        the cavity."""
+        line, f, rates = self.line, self.film, self.rates
+        if line is None:
+            return
+        s, g = f.system, f.grid
+        self.rates = rates._replace(liner=0.0)
+        self.update_elements(np.where(g.fixed, self.u.P, s.cavity_pressure))
+        self.rates = rates
+        touching = self.gaps.HF < TOUCHING
+        for gap in (self.gaps.H, self.gaps.HF):
+            np.maximum(gap, TOUCHING, out=gap)
+        if self.links is None:
+            plain_links(self.gap_fields, self.metric, f.vx, f.vz, self.term_fields)
+        else:
+            if self.thin is not None:
+                self.thin.see(f.nothing)
+            self.set_links()
+            line.flux = copy.deepcopy(self.links)
+            if self.thin is not None:
+                s.kx *= self.thin.slide(line.flux, f.vx)
+        s.kx[touching] = 0.0
+        right_hand_side(s.fx, s.fz, s.b)
+        if f.squeeze:
+            add_squeeze(self.gaps.rate, g.width_x, g.width_z, s.b)
+        if self.rho is not None:
+            line.density = float(self.rho[~g.fixed].min(initial=np.inf))
+        line.take((self.gaps.H, self.gaps.HF), s.kx, s.b, g.fixed)
+        if self.limiter is not None or self.contact is not None:
+            a, follow = self.gap_slopes, 1.0 / (1.0 - self.beta * self.contact_G) - 1.0
+            line.chain = GapChain(a.rate_t.copy(), self.bend.copy(), a.link.copy(), follow)
+        if self.beta > 0.0:
+            line.yield_to(self.beta, f.vx, g.width_z)
+
+    def settle_line(self) -> None:
+        """The line of the film that is solved, and the balances with it."""
+        if self.line is None:
+            return
+        self.balance(self.u)
+        self.line.settle(self.film.work.active)
+        self.exact = self.exact and self.line.factored
+
+    def deflection_weights(self, lam: np.ndarray) -> np.ndarray:
+        """Gradients of the adjoint functionals lam (k, n, m) to the deflection's rate, which a rupture line, where the
+        liner rests, does not feel."""
+        return -lam * self.storage_gradients()[1] if self.film.squeeze else np.zeros_like(lam)
 
     def _solve_plain(self) -> tuple[bool, int]:
         """`newton` compiled as a whole."""
@@ -83,6 +146,7 @@ class LinerBalance(LinerFilm):
     def begin(self) -> None:
         """Sets to start with; scales of what is none but rounding."""
         f, g = self.film, self.film.grid
+        self.taken = 0
         if not self.fills:
             self.u.full[:] = True
         if self._chooses():
@@ -117,6 +181,7 @@ class LinerBalance(LinerFilm):
             self.matrix,
             w.active if self._chooses() else ~g.fixed,
             None if self.thin is None else self.thin.response(),
+            None if self.met is None else self.met.state,
         )
         return bool(ok)
 
@@ -143,7 +208,9 @@ class LinerBalance(LinerFilm):
             (self.clips, self._chooses()),
             (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
             self._sides(self.trial),
+            None if self.met is None else (self.met.state, self.taken),
         )
+        self.taken += 1
         return Step(*found)
 
     def move(self, share: float, peak: float) -> int:

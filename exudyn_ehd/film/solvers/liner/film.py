@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.line_kernels import meet_line
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
-from exudyn_ehd.film.reynolds.balance import FilmTerms
+from exudyn_ehd.film.reynolds.balance import FilmTerms, violation
 from exudyn_ehd.film.reynolds.links import FilmState, LinkFlux
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import (
@@ -26,11 +27,8 @@ from exudyn_ehd.film.solvers.liner.elements import (
     smallest_of,
 )
 from exudyn_ehd.film.solvers.liner.gap_response import link_gradients, speed_gradients
-from exudyn_ehd.film.solvers.liner.kernels import (
-    density_of_load,
-    liner_residual,
-    plain_residual,
-)
+from exudyn_ehd.film.solvers.liner.kernels import density_of_load, liner_residual, plain_residual
+from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.surfaces.contact import Contact
 
@@ -101,6 +99,9 @@ class LinerFilm:
         self.u = FilmState(s.linear_pressure, fill, np.ones(shape, dtype=np.bool_))
         self.known_slopes = False
         # whether only the liner depends on the film; with effects on the links it does not stay so
+        # the film's edge inside its cells, and the same while it takes part
+        self.line = FilmLine(shape) if closure.line_in_cells else None
+        self.met: FilmLine | None = None
         self.plain = contact is None and limiter is None and oil is None and not film.flux_effects
         self.smallest = 1.0
 
@@ -202,7 +203,8 @@ class LinerFilm:
     def balance(self, state: FilmState) -> tuple[float, float]:
         """Norm of what does not hold, and the smallest film gap; (inf, -1) where the oil has no pressure."""
         if self.plain and not self.fills:
-            return self._plain_balance(state.P)
+            norm, gap = self._plain_balance(state.P)
+            return (norm, gap) if self.met is None or not gap > 0.0 else (self._meet(state.P, self.met), gap)
         if not self.update_elements(state.P):
             return np.inf, -1.0
         if not self.smallest > 0.0:
@@ -229,7 +231,13 @@ class LinerFilm:
             self._chooses(),
             self.residual,
         )
-        return norm, self.smallest
+        return norm if self.met is None else self._meet(state.P, self.met), self.smallest
+
+    def _meet(self, P: np.ndarray, line: FilmLine) -> float:
+        """Norm of what does not hold with the line inside the cells."""
+        pc, terms = self.film.system.cavity_pressure, self.terms
+        meet_line(P, pc, terms.kx, terms.kz, line.state, self.residual)
+        return float(violation(self.residual, P, terms.fixed, pc, True))
 
     def _plain_balance(self, P: np.ndarray) -> tuple[float, float]:
         """As `balance` without effects, in one call: for films so fast that calls cost as much as they do."""

@@ -1,0 +1,100 @@
+"""The rupture line inside the cells in steps of Newton's method; see `exudyn_ehd.film.solvers.liner.line`.
+
+Every balance looks where a vertex would meet its own one between the pressures of its neighbours, ``met`` with its s:
+the tangent of N is taken there, where the pressure itself may be far from it or, on vertices that join, none. With an
+older factor the same ``met`` is what a step leads to if the neighbours stay. Symbols of
+`exudyn_ehd.film.cavitation.rupture_line`; ``line`` is (f, k, s, whole, shift, met), flat.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.cavitation.rupture_line import LEAST
+
+# Steps after which vertices no longer leave the film at once, since two may drive each other out and in again for ever;
+# what is left of an s that would vanish. Steps after which pressures are the unknowns everywhere.
+PATIENT, KEPT, SAFE = 8, 0.1, 25
+
+
+@njit(cache=True)
+def meet_line(P, pc, kx, kz, line, residual):
+    """Subtract N from the balances, and find where every vertex would meet its own."""
+    f, k, s, whole, _, met = line
+    x, rest, along, across = P.reshape(-1), residual.reshape(-1), kx.reshape(-1), kz.reshape(-1)
+    m = P.shape[1]
+    for c in range(x.size):
+        if not whole[c] > 0.0:
+            continue
+        p = x[c] - pc
+        diagonal = max(along[c - m] + along[c] + across[c - 1] + across[c], 2.0 * k[c])
+        known = diagonal * p - rest[c]
+        excess = 0.5 + known / f[c]
+        place = 2.0 * excess / (1.0 + np.sqrt(max(1.0 + 2.0 * (diagonal / k[c] - 1.0) * excess, 0.0)))
+        if place >= 1.0:
+            s[c], met[c] = 1.0, known / diagonal
+        else:
+            s[c] = max(place, 0.0)
+            met[c] = whole[c] * s[c] * s[c]
+        rest[c] -= _found(p, f[c], whole[c])
+
+
+@njit(cache=True, inline="always")
+def _found(p, f, whole):
+    """N at the pressure p above the cavity's."""
+    if p >= whole:
+        return 0.0
+    short = 1.0 - np.sqrt(max(p, 0.0) / whole)
+    return 0.5 * f * short * short
+
+
+@njit(cache=True)
+def add_line(line, active, store):
+    """Add the line's share to the diagonals, and keep it as that of the factor."""
+    _, k, s, whole, shift, _ = line
+    free = active.reshape(-1)
+    for c in range(store.size):
+        shift[c] = 0.0
+        if free[c] and whole[c] > 0.0 and s[c] < 1.0:
+            own = max(s[c], LEAST)
+            shift[c] = k[c] * (1.0 - own) / own
+            store[c] += shift[c]
+
+
+@njit(cache=True)
+def lean_to_line(P, pc, order, count, line, x):
+    """From minus the balances (count,) to those with N's tangent where vertices meet theirs."""
+    f, _, s, whole, shift, met = line
+    pressures = P.reshape(-1)
+    for r in range(count):
+        c = order[r]
+        if whole[c] > 0.0:
+            p = pressures[c] - pc
+            there = 0.5 * f[c] * (1.0 - s[c]) * (1.0 - s[c])
+            x[r] -= _found(p, f[c], whole[c]) - there + shift[c] * (p - met[c])
+
+
+@njit(cache=True)
+def bend_to_line(P, pc, order, count, line, taken, x):
+    """From steps (count,) of the tangents to those of the pressures, whose s goes along; ``taken``: steps before.
+
+    Returns the largest change of an s times the root of the pressure that s = 1 makes: its square is what is left.
+    """
+    _, _, s, whole, _, met = line
+    pressures = P.reshape(-1)
+    kept, largest = KEPT if taken > PATIENT else 0.0, 0.0
+    for r in range(count):
+        c, own = order[r], s[order[r]]
+        if not whole[c] > 0.0:
+            continue
+        p = pressures[c] - pc
+        new = p + x[r]
+        if own < 1.0 and taken <= SAFE:
+            place = own + 0.5 * (new - met[c]) / (whole[c] * own) if own > 0.0 else 0.0
+            place = max(place, kept * own)
+            largest = max(largest, np.sqrt(2.0 * whole[c]) * min(abs(place - own), 1.0))
+            new = whole[c] * place * place if place < 1.0 else max(new, whole[c])
+        # what leaves must not be kept by rounding
+        x[r] = new - p if new > 0.0 else -(1.0 + LEAST) * p
+    return largest
