@@ -138,6 +138,7 @@ SHARED = {
     "lubricant.lubricant",
     "lubricant.named_oils",
     "reynolds.links",
+    "solvers.exact",
     "solvers.linear",
     "reynolds.stepped_gap",
     "sensitivity.bore_stencil",
