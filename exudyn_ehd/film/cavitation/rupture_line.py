@@ -207,17 +207,12 @@ def contract_line(
     speed += weights @ line.by[6:8].T
 
 
-def add_line_columns(line: LineGradients | None, at: tuple[np.ndarray, ...], out: np.ndarray) -> None:
-    """Add the line's part, if there is one, of the balances' derivatives (10, count) to a rigid journal's motion.
-
-    ``at`` and ``out`` as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
-    """
-    if line is not None:
-        _add_columns(line, at, out)
-
-
 @njit(cache=True)
-def _add_columns(line, at, out):
+def add_line_columns(line, at, out):
+    """Add the line's part of the balances' derivatives (10, count) to a rigid journal's motion.
+
+    ``line``: `LineGradients`; otherwise as for `exudyn_ehd.film.sensitivity.rigid.motion_columns`.
+    """
     rows, places, by = line
     at = Directions(*at)
     n, m = at.cos_x.size, at.z.size

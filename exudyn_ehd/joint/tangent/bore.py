@@ -112,7 +112,8 @@ class Balances:
             self.places, work.count, self.links, self.slope, self.by_rate, self.by_gap, p.grid.directions, self.motion
         )
         self.line = true_line(film)
-        add_line_columns(self.line, p.grid.directions, self.motion)
+        if self.line is not None:
+            add_line_columns(self.line, p.grid.directions, self.motion)
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""

@@ -130,7 +130,9 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         film.parts.liner.motion_columns(at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
-        add_line_columns(true_line(film), at, out)
+        line = true_line(film)
+        if line is not None:
+            add_line_columns(line, at, out)
     return out
 
 
