@@ -335,6 +335,43 @@ def figures(ideal: Run, run: Run, start_up: float, *, elastic: bool = False) -> 
     }
 
 
+def _sketch(axes) -> None:
+    """The mechanism at both dead centres of the rocker, the upper one in grey."""
+    corner, ground = np.array([SPAN + OVERHANG, 0.0, 0.0]), np.array([SPAN + OVERHANG, 0.5 * ARM, -COUPLER])
+    low = dead_centre()
+    high = optimize.minimize_scalar(lambda angle: -swing(angle), bounds=(1.0, 2.5), method="bounded").x
+    for angle, colours in ((high, ("0.8",) * 3), (low, ("black", "tab:blue", "tab:red"))):
+        alpha = swing(angle)
+        arm = np.array([0.0, math.cos(alpha), math.sin(alpha)])
+        ball, pin, tip = corner + 0.5 * ARM * arm, crank_pin(angle), corner + ARM * arm
+        for points, colour in zip(
+            ((np.zeros(3), corner, tip), (ball, pin), (pin, ground)), (colours[0], *colours[1:]), strict=True
+        ):
+            axes.plot(*np.transpose(points), color=colour, lw=2.0)
+        axes.plot(*np.transpose((ball, pin)), "o", color=colours[1], ms=5)
+        axes.plot(*tip, "s", color=colours[0], ms=10)
+    for x in (0.0, SPAN):
+        axes.plot((x - 0.008, x + 0.008), (0, 0), (0, 0), color="tab:orange", lw=9, solid_capstyle="butt")
+    circle = [crank_pin(angle) for angle in np.linspace(0.0, 2.0 * math.pi, 60)]
+    axes.plot(*np.transpose(circle), color="0.5", lw=0.8)
+    axes.plot(*np.transpose((ground - [0, 0.03, 0], ground + [0, 0.03, 0])), color="0.5", ls="-.", lw=1)
+    names = (
+        ("left bearing", (0.0, 0.0, 0.016)),
+        ("right bearing", (SPAN - 0.06, 0.0, -0.03)),
+        ("tool", tip + [0.0, 0.014, 0.0]),
+        ("coupler", 0.5 * (ball + pin) + [0.0, 0.012, 0.0]),
+        ("crank", ground + [0.0, 0.008, -0.024]),
+    )
+    for name, place in names:
+        axes.text(*place, name)
+    axes.set_axis_off()
+    axes.set_box_aspect([np.ptp(limits) for limits in (axes.get_xlim(), axes.get_ylim(), axes.get_zlim())], zoom=1.3)
+    axes.view_init(elev=18, azim=-48)
+    for line in axes.lines:
+        line.set_clip_on(False)
+    axes.set_title("rocker at its lowest,\nat its highest in grey")
+
+
 @styled(10.0)
 def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path: pathlib.Path) -> None:
     """Load and tilt of the right bearing, its films, and the tool against the ideal mechanism."""
@@ -343,7 +380,10 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
     first = round(360.0 * start_up - before)
     end = round(math.degrees(SPEED * runs[CASES[0]].time[-1]) - before)
     colours = dict(zip(CASES[1:], ("tab:orange", "tab:blue"), strict=True))
-    fig, axes = plt.subplots(2, 2, figsize=(12, 8), layout="constrained")
+    fig = plt.figure(figsize=(15, 8), layout="constrained")
+    grid = fig.add_gridspec(2, 3, width_ratios=(0.62, 1, 1))
+    _sketch(fig.add_subplot(grid[:, 0], projection="3d"))
+    axes = np.array([[fig.add_subplot(grid[row, column]) for column in (1, 2)] for row in (0, 1)])
 
     def degrees(t: np.ndarray) -> np.ndarray:
         return np.degrees(SPEED * t) - before
