@@ -300,15 +300,22 @@ def _check_line(bearing: JournalBearing) -> None:
     """Refuse a rupture line inside the cells with what does not know it yet."""
     if not bearing.cavitation.line_in_cells:
         return
-    film = type(bearing.film).__name__
+    film, closure, oil = type(bearing.film).__name__, type(bearing.cavitation).__name__, bearing.lubricant
+    clips = bearing.cavitation.clips
+    kinds = (FiniteLength, LongBearing, ShortBearing if clips else ImpedanceMap)
     others = {
-        f"film={film}(...)": not isinstance(bearing.film, (FiniteLength, LongBearing, ImpedanceMap)),
+        f"film={film}(...)": not isinstance(bearing.film, kinds),
+        "a bush": clips and bearing.bush is not None,
+        "Lubricant.density_law": clips and oil.density_law is not None,
+        "Lubricant.shear_law": clips and oil.shear_law is not None,
     }
+    swift_short = isinstance(bearing.film, ShortBearing) and not clips
+    same = "; with Gumbel(line_in_cells=True) the film is the same while the journal is aligned" if swift_short else ""
     for other, there in others.items():
         if there:
             raise InputError(
-                f"SwiftStieber.line_in_cells=True does not go with {other} yet; use SwiftStieber(), with its line on "
-                "the grid, or leave the other out."
+                f"{closure}.line_in_cells=True does not go with {other} yet; use {closure}(), with its line on "
+                f"the grid, or leave the other out{same}."
             )
 
 

@@ -53,6 +53,8 @@ class FilmSystem:
         1 / time step since ``mass_old``, 1/s; 0: steady.
     line : RuptureLine or None
         Where the film's edge lies inside its cells; None: on vertices.
+    linked : (n,) bool array
+        Columns with a link to the next one.
     """
 
     def __init__(self, grid: FilmGrid, clips: bool, fills: bool) -> None:
@@ -72,6 +74,7 @@ class FilmSystem:
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
+        self.linked = grid.link_x != 0.0
 
     @property
     def coefficients(self) -> Coefficients:
@@ -208,6 +211,65 @@ def clip_pressure(linear, fixed, pc, P_out, active_out):
             else:
                 P_out[i, j] = pc
                 active_out[i, j] = False
+
+
+@njit(cache=True, inline="always")
+def _reach(linear, fixed, pc, i, j, other):
+    """Share of the cell from vertex (i, j) to column ``other`` up to where the linear pressure is the cavity's; 1 if it
+    stays above, or is prescribed there."""
+    if other < 0 or fixed[other, j] or linear[other, j] >= pc:
+        return 1.0
+    p = linear[i, j] - pc
+    return p / (p + (pc - linear[other, j]))
+
+
+@njit(cache=True, inline="always")
+def _beside(i, linked):
+    """Columns on either side, -1 where a ring is open."""
+    n = linked.size
+    prv, nxt = (i - 1 if i > 0 else n - 1), (i + 1 if i + 1 < n else 0)
+    return prv if linked[prv] else -1, nxt if linked[i] else -1
+
+
+@njit(cache=True)
+def clip_in_cells(linear, fixed, linked, pc, P_out, active_out):
+    """Gümbel's condition inside the cells: P of a vertex is the mean of the pressure that is left of the linear one.
+
+    Between a vertex at the pressure p above the cavity's and one below it, the film ends in theta after a share s of
+    the cell, ``s = p / (p - p_other)``: its integral there is ``p s / 2`` instead of p / 2. ``linked`` (n,): whether
+    columns have a link to the next one.
+    """
+    n, m = linear.shape
+    clip_pressure(linear, fixed, pc, P_out, active_out)
+    for i in range(n):
+        prv, nxt = _beside(i, linked)
+        for j in range(m):
+            if active_out[i, j]:
+                reach = _reach(linear, fixed, pc, i, j, prv) + _reach(linear, fixed, pc, i, j, nxt)
+                P_out[i, j] = pc + 0.5 * reach * (linear[i, j] - pc)
+
+
+@njit(cache=True)
+def rows_of_linear(linear, fixed, linked, pc, active, number, rows):
+    """From weights (k, count) of P as `clip_in_cells` leaves it, none at clipped ones, to those of the linear pressure.
+
+    ``d(p s) = s (2 - s) dp + s^2 dp_other``.
+    """
+    n, m = linear.shape
+    for i in range(n):
+        prv, nxt = _beside(i, linked)
+        for j in range(m):
+            if not active[i, j]:
+                continue
+            r, own = number[i, j], 0.0
+            for other in (prv, nxt):
+                s = _reach(linear, fixed, pc, i, j, other)
+                own += 0.5 * s * (2.0 - s)
+                if s < 1.0:
+                    for k in range(rows.shape[0]):
+                        rows[k, number[other, j]] += 0.5 * s * s * rows[k, r]
+            for k in range(rows.shape[0]):
+                rows[k, r] *= own
 
 
 @njit(cache=True)

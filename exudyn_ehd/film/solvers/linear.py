@@ -105,7 +105,7 @@ class FilmSolver:
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
-        self.line = self.system.line = RuptureLine(shape) if closure.line_in_cells else None
+        self.line = self.system.line = RuptureLine(shape) if closure.line_in_cells and not closure.clips else None
         self.work = Workspace(*shape)
         self.flux_effects = flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None

@@ -184,6 +184,8 @@ def _any_gap_solver(
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
     solver: CompressibleFilmSolver | ThinningFilmSolver
+    if closure.line_in_cells and closure.clips:
+        raise InputError("solve_film: Gumbel.line_in_cells=True does not go with Lubricant.density_law; use Gumbel().")
     if closure.line_in_cells:
         solver = ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=law)
     else:

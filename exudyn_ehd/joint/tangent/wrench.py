@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
@@ -232,6 +233,9 @@ def adjoint_rows(film: SolvedFilm) -> np.ndarray:
             weigh_rows(w.order, w.count, P_q, extra)
         if uneven and p.liner is not None:
             extra += drag_by_deflection(film, p.liner).reshape(2, -1)[:, w.order[: w.count]]
+    y, closure = film.solver.system, film.solver.closure
+    if closure.clips and closure.line_in_cells:
+        rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
     if rows.shape[0] > own and p.liner is not None:
         by_pressure = p.liner.contact_by_pressure
         contact_adjoint_rhs(

@@ -1,0 +1,85 @@
+"""Gümbel's condition inside the cells: continuous derivatives, of order two."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.reference import short_bearing
+from tests.film.cavitation.test_rupture_line import _coefficients
+
+C, R = 25e-6, 0.025
+CELLS = ehd.Gumbel(line_in_cells=True)
+BELOW = ehd.Gumbel(cavity_pressure=-3e4, cavity_shear=0.3, line_in_cells=True)
+OPTIONS = {
+    "ends": {"end_pressures": (1e5, 3e4)},
+    "short": {"film": ehd.ShortBearing(n_theta=48, n_z=8)},
+    "long": {
+        "film": ehd.LongBearing(n_theta=64, n_z=4),
+        "supply": (ehd.AxialGroove(angle=1.0, width_angle=0.2, pressure=1e5),),
+    },
+    "piezoviscous": {
+        "lubricant": ehd.Lubricant(viscosity=0.02, pressure_law=ehd.BarusPressure(coefficient=1e-8)),
+    },
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=2e-6, journal_share=0.9)},
+    "groove": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.3, length=0.03, pressure=2e5),)},
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OPTIONS)
+def test_tangent_is_the_derivative(make_bearing, name):
+    """Random states, none of which lies at a kink: there is none."""
+    rng = np.random.default_rng(2)
+    bearing = make_bearing(1.0, cavitation=BELOW, **{"film": ehd.FiniteLength(n_theta=48, n_z=8)} | OPTIONS[name])
+    model, probe = build_model(bearing), build_model(bearing)
+    scale = 0.1 * np.array([C, C, C / R, C / R, 100 * C, 100 * C, 100 * C / R, 100 * C / R, 100.0, 1.0])
+    for _ in range(8):
+        e, (a, b) = rng.uniform(0.1, 0.9), rng.uniform(0.0, 2.0 * np.pi, 2)
+        tilt = 0.0 if name == "long" else 0.4 * (1.0 - e) * C / R
+        place = np.array([C * e * np.cos(a), C * e * np.sin(a), tilt * np.cos(b), tilt * np.sin(b)])
+        rates = 30.0 * C * rng.normal(size=4) * [1.0, 1.0, 1.0 / R, 1.0 / R] * (name != "long")
+        motion = np.concatenate((place, rates, (rng.choice([-100.0, 300.0]), 0.0)))
+        tangent, numeric = model.evaluate(motion).tangent() * scale, np.empty((6, 10))
+        for k in range(10):
+            step = 1e-5 * scale[k] * np.eye(10)[k]
+            numeric[:, k] = (probe.evaluate(motion + step).wrench - probe.evaluate(motion - step).wrench) / 2e-5
+        rows = np.abs(tangent).max(axis=1)
+        rows[rows < 1e-9 * rows.max()] = np.inf
+        assert (np.abs(tangent - numeric) / rows[:, None]).max() < 1e-7
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("eccentricity", (0.3, 0.6))
+def test_short_bearing_against_its_closed_form(eccentricity, measured):
+    """Stiffness and damping in 16 directions: order two, where clipped vertices are of order one."""
+    expected = np.ravel((short_bearing.stiffness(eccentricity), short_bearing.damping(eccentricity)))
+    directions, errors = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False) + 0.0123, {}
+    for closure in (CELLS, ehd.Gumbel()):
+        for n in (48, 96):
+            film = ehd.ShortBearing(n_theta=n, n_z=40)
+            where = directions + np.arange(16) * 0.7 * np.pi / n
+            got, _ = _coefficients(film, 0.25, eccentricity, where, closure)
+            # whose damping is made dimensionless by the spin, twice the mean speed of the surfaces
+            got[:, 4:] *= 2.0
+            errors[closure, n] = np.abs(np.abs(got) - np.abs(expected)).max() / np.abs(expected).max()
+    assert errors[CELLS, 48] > 3.3 * errors[CELLS, 96]
+    measured("line in cells", errors[CELLS, 96], 0.01)
+    assert errors[ehd.Gumbel(), 96] > 5.0 * errors[CELLS, 96]
+
+
+@pytest.mark.parametrize(
+    "options",
+    (
+        {"film": ehd.ClassicSOR()},
+        {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)},
+        {"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())},
+        {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))},
+    ),
+)
+def test_what_does_not_know_the_line_is_refused(make_bearing, options):
+    with pytest.raises(ehd.InputError, match=r"Gumbel\.line_in_cells=True does not go with"):
+        make_bearing(1.0, cavitation=CELLS, **options)
+    make_bearing(1.0, cavitation=ehd.Gumbel(), **options)
