@@ -1,30 +1,33 @@
-"""Stages of a film evaluation, effects on and off, steps of whole scenes, and how cost grows; ``-m benchmark``."""
+"""Stages of a film evaluation, films in the steps of whole scenes, and how cost grows; ``-m benchmark``."""
 
+import math
 import time
 
-import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
 from exudyn_ehd.film.reynolds.links import add_squeeze, conductances, couette_fluxes, right_hand_side
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.loads import film_loads
 from tests.benchmarks.accuracy import order
-from tests.benchmarks.accuracy.costs import effects, growth
+from tests.benchmarks.accuracy.costs import growth
 from tests.benchmarks.accuracy.scenes import measured
 from tests.benchmarks.accuracy.scenes.setting import Integration, Setting
 
-# processor time: what other processes of the machine do is no cost of the film
-pytestmark = pytest.mark.benchmark(timer=time.process_time)
-GRIDS = [(48, 6), (96, 10), (192, 16)]
-CLOSURES = (effects.PLAIN, *effects.CLOSURES)
+pytestmark = pytest.mark.benchmark
+# Largest time of an evaluation over that of its stages, of a tangent over an evaluation: measured 1.5, 1.25 and 1.1,
+# 0.68, 0.59 and 0.46. What Python does between the stages is the same on every grid.
+LIMITS = {(48, 6): (1.65, 0.75), (96, 10): (1.37, 0.65), (192, 16): (1.2, 0.51)}
+# Counts, which are the same in every run: 2.05, 2.62, 3.17, 2.00, 2.59.
+FILMS_PER_STEP = {"orbit": 2.2, "slider_pin": 2.8, "big_end": 3.4, "whirl": 2.1, "start_stop": 2.8}
 
 
 def _stage_runs(grid):
     """The parts of a plain Swift-Stieber evaluation, each on the state that the parts before have left."""
-    model = build_model(growth.plain_bearing(film=ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])))
+    bearing = growth.plain_bearing(film=ehd.FiniteLength(n_theta=grid[0], n_z=grid[1]))
+    # one whose stages keep their state, one that is evaluated anew
+    model, whole = build_model(bearing), build_model(bearing)
     states = growth.motions()
     evaluation = model.evaluate(states[0])
     film = evaluation.film
@@ -42,49 +45,43 @@ def _stage_runs(grid):
         right_hand_side(y.fx, y.fz, y.b)
         add_squeeze(s.H_t, g.width_x, g.width_z, y.b)
 
-    out = np.empty(4)
     return {
         "gap": gap,
         "coefficients": coefficients,
         "solve": lambda: s.closure.solve(y, s.work),
+        "evaluation": lambda: whole.evaluate(states[0]),
         "tangent": evaluation.tangent,
-        "integrals": lambda: pressure_integrals(film.oil.P, g.weight, p.directions.cos_x, p.directions.sin_x, z, out),
         "loads": lambda: film_loads(p, film.scales, w, film.oil, None, None, None),
-        "quantities": evaluation.quantities,
     }
 
 
-@pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g[0]}x{g[1]}")
-@pytest.mark.parametrize("stage", ["gap", "coefficients", "solve", "tangent", "integrals", "loads", "quantities"])
-def test_stage(benchmark, stage, grid):
-    benchmark.pedantic(_stage_runs(grid)[stage], rounds=200, iterations=5, warmup_rounds=5)
+@pytest.mark.parametrize("grid", LIMITS, ids=lambda g: f"{g[0]}x{g[1]}")
+def test_stages(grid):
+    """An evaluation takes little more than its stages, and a tangent less than an evaluation."""
+    runs = _stage_runs(grid)
+    best = dict.fromkeys(runs, math.inf)
+    for _ in range(40):
+        for name, run in runs.items():
+            start = time.process_time()
+            for _ in range(5):
+                run()
+            best[name] = min(best[name], (time.process_time() - start) / 5.0)
+    print({name: f"{1e6 * seconds:.1f} us" for name, seconds in best.items()})
+    parts = sum(best[name] for name in ("gap", "coefficients", "solve", "loads"))
+    print(f"{best['evaluation'] / parts:.2f}, {best['tangent'] / best['evaluation']:.2f}")
+    whole, tangent = LIMITS[grid]
+    assert best["evaluation"] < whole * parts
+    assert best["tangent"] < tangent * best["evaluation"]
 
 
-@pytest.mark.parametrize("grid", GRIDS, ids=lambda g: f"{g[0]}x{g[1]}")
-@pytest.mark.parametrize("closure", CLOSURES)
-def test_closure(benchmark, closure, grid):
-    """The orbit with tangents and accepted steps."""
-    benchmark.pedantic(effects.benchmark_run(closure, grid), rounds=8, warmup_rounds=1)
-
-
-@pytest.mark.parametrize("effect", [effects.PLAIN, *effects.EFFECTS, *effects.WITH_CONSERVING])
-def test_effect(benchmark, effect):
-    """The same on 96 x 10."""
-    benchmark.pedantic(effects.benchmark_run(effect), rounds=8, warmup_rounds=1)
-
-
-@pytest.mark.parametrize("scene", ["orbit", "slider_pin", "big_end", "whirl", "start_stop"])
-def test_steps_of_a_scene(benchmark, scene):
-    """A whole run of every moving scene of the studies on 64 x 8."""
+@pytest.mark.parametrize("scene", FILMS_PER_STEP)
+def test_films_of_a_scene(scene):
+    """A whole run of every moving scene of the studies on 64 x 8: how many films its steps take."""
     place = measured.SCENES[scene]()
-    run = place.prepare(
-        Setting(label="64 x 8", family="", model="", options={"film": measured.CHEAP}, integration=Integration())
-    )
-    outcome = run()
-    benchmark.pedantic(run, rounds=3)
-    benchmark.extra_info["ms_per_step"] = 1e3 * benchmark.stats["median"] / place.steps
-    benchmark.extra_info["newton_per_step"] = outcome.newton
-    benchmark.extra_info["films_per_step"] = outcome.films
+    setting = Setting(label="64 x 8", family="", model="", options={"film": measured.CHEAP}, integration=Integration())
+    outcome = place.prepare(setting)()
+    print(f"{outcome.films:.2f} films, {outcome.newton:.2f} iterations a step")
+    assert outcome.films < FILMS_PER_STEP[scene]
 
 
 # Largest exponents over all sizes. A banded factorisation of n x m unknowns costs n m^3, that is vertices^2 at a fixed

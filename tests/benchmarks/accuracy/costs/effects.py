@@ -16,7 +16,7 @@ from __future__ import annotations
 import dataclasses
 import math
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -236,11 +236,3 @@ def measure_effects(
         out += [Cost(what=name, per=per, failure=text) for name, text in failures.items()]
     order = list(CASES)
     return sorted(out, key=lambda cost: (cost.per != EVALUATION, order.index(cost.what)))
-
-
-def benchmark_run(name: str, grid: tuple[int, int] = (96, 10)) -> Callable[[], Any]:
-    """The orbit of one case with tangents and histories, to be timed as a whole."""
-    film = FiniteLength(n_theta=grid[0], n_z=grid[1])
-    model = build_model(plain_bearing(**({"film": film} | dict(CASES[name].options))))
-    states = orbit()
-    return lambda: stages(model, states)
