@@ -74,7 +74,7 @@ def test_effects_on_the_orbit():
     factors = {cost.what: cost.factor for cost in found if cost.per == effects.EVALUATION}
     assert not [cost for cost in found if cost.failure]
     slow = {name: (factors[name], limit) for name, limit in EVALUATION_LIMITS.items() if factors[name] > MARGIN * limit}
-    assert not slow
+    assert not slow, "\n".join(f"{name}: {factor:.3f}, limit {limit}" for name, (factor, limit) in slow.items())
 
 
 @pytest.mark.parametrize("name", STEP_LIMITS)
