@@ -288,6 +288,7 @@ def draw_bearing(ideal: Run, runs: dict[str, Run], start_up: float, path: pathli
     for run, style in [*shown, (ideal, {"color": "black", "ls": "--", "label": "ideal joint"})]:
         late = _after(run, start_up)
         axes[3].plot(np.degrees(run.angle[late]) - 360.0 * start_up, 1e-3 * np.hypot(*run.force[late].T), **style)
+    opening = 0.0
     for name, run in runs.items():
         end = round(math.degrees(run.angle[-1]) - 360.0 * start_up)
         h, bearing = run.history, run.bearing
@@ -295,6 +296,8 @@ def draw_bearing(ideal: Run, runs: dict[str, Run], start_up: float, path: pathli
         kept = h.time >= start_up * 2.0 * math.pi / SPEED
         degrees = np.degrees(SPEED * h.time[kept]) - 360.0 * start_up
         c = bearing.radial_clearance
+        first, *_, last = h.eccentricity[kept] / c
+        opening = max(opening, float(np.hypot(*(last - first))))
         label = f"{name}: c = {1e6 * c:g} µm, {bearing.lubricant.viscosity:g} Pa s"
         axes[0].plot(*(h.eccentricity[kept].T / c), color=COLOURS[name], label=label)
         axes[1].semilogy(degrees, 1e6 * h.minimum_gap[kept], color=COLOURS[name])
@@ -303,7 +306,7 @@ def draw_bearing(ideal: Run, runs: dict[str, Run], start_up: float, path: pathli
         xlabel="x / c (along the rod) [-]",
         ylabel="y / c [-]",
         aspect="equal",
-        title="orbit of the pin in the rod's eye, closed",
+        title=f"orbit of the pin in the rod's eye, closed within {opening:.1g} c",
     )
     axes[1].set(ylabel="minimum film thickness [µm]", title="minimum film thickness")
     axes[1].yaxis.set_major_formatter("{x:g}")
@@ -323,11 +326,11 @@ def main(
     Parameters
     ----------
     quick : bool
-        One turn after the start-up instead of two, and coarser steps.
+        One turn after one of start-up instead of two after two, and coarser steps.
     output : path or None
         Folder for the pictures; None writes none.
     """
-    start_up, turns = (1.0, 2.0) if quick else (1.0, 3.0)
+    start_up, turns = (1.0, 2.0) if quick else (2.0, 4.0)
     steps_per_turn = 360 if quick else 720
     cases = {
         "realistic": pin_bearing(20e-6, 0.02),
