@@ -5,8 +5,6 @@ import pytest
 from tests.mechanisms.exudyn_models import TABLE, distance, energy_error, outcomes
 
 
-# The films start unloaded while loads and speeds are there at once: that of the spatial crank rings for 0.03 of 0.2 s.
-@pytest.mark.filterwarnings("ignore:.*the film's force alternates from step to step")
 @pytest.mark.slow
 @pytest.mark.parametrize("name", TABLE)
 def test_model_on_films(name, measured):

@@ -366,8 +366,9 @@ def _better_start(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> Iter
     """Let Newton's method start at lasting accelerations in the run within; the user's functions come back then."""
     own = user_function(mbs.GetPreNewtonResidualUserFunction())
     after = user_function(mbs.GetPostNewtonUserFunction())
-    mbs.SetPreNewtonResidualUserFunction(start_guess(mbs, own or None))
-    mbs.SetPostNewtonUserFunction(ConstraintJumps(mbs, settings, after or None))
+    start = start_guess(mbs, own or None)
+    mbs.SetPreNewtonResidualUserFunction(start)
+    mbs.SetPostNewtonUserFunction(ConstraintJumps(mbs, settings, start, after or None))
     try:
         yield
     finally:

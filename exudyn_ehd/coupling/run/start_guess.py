@@ -21,7 +21,8 @@ another; but deformations of bodies, which ring while the body moves smoothly, a
 Constraints are what it must not upset. Newton's first iteration leaves them open by some (h v)^2 / L from Exudyn's
 start and by far less from this one. Forces do not feel what is the same in every step, but a change g from one step to
 the next as m g / (beta h^2): from one start to the other m v^2 / L at any step size, as much as the inertia. So
-Newton's method goes on where the opening jumps (`ConstraintJumps`).
+Newton's method goes on where the opening jumps (`ConstraintJumps`). Exudyn takes that for a contact that has opened or
+closed, and begins again at zero accelerations; here each further pass of a step starts where the last one has ended.
 """
 
 from __future__ import annotations
@@ -46,8 +47,8 @@ LARGEST_CHANGE = 0.5
 # Largest change of their change with which they go on in a line, share of their change.
 LARGEST_BEND = 0.1
 # Largest change of the opening of constraints from step to step, share of beta h^2 times the largest acceleration.
-LARGEST_JUMP = 1e-3
-# Error for Exudyn's discontinuous iterations that lets Newton's method go on from where it is.
+LARGEST_JUMP = 3e-5
+# Error for Exudyn's discontinuous iterations that makes Newton's method take another pass.
 GO_ON = 1e100, -1.0
 
 
@@ -82,6 +83,7 @@ class StartGuess:
         self.start = np.nan
         self.attempts = 0
         self.past: list[tuple[float, np.ndarray]] = []
+        self.ended: list[np.ndarray] = []
         self.guess: np.ndarray | None = None
 
     def __call__(self, mbs: exu.MainSystem, t: float, iteration: int, discontinuous: int) -> None:
@@ -93,9 +95,16 @@ class StartGuess:
             else:
                 if discontinuous == 0:
                     self._set_start(mbs, solver)
+                elif self.ended:
+                    for values, ended in zip(_motion(mbs), self.ended, strict=True):
+                        values[:] = ended
                 self.limit.start(mbs)
         if self.before is not None:
             self.before(mbs, t, iteration, discontinuous)
+
+    def keep(self, mbs: exu.MainSystem) -> None:
+        """Let a further pass of the step start where this one has ended."""
+        self.ended = [values.copy() for values in _motion(mbs)]
 
     def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
@@ -116,10 +125,10 @@ class StartGuess:
             return
         h = solver.it.currentStepSize
         change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
-        state = data.GetSystemStateDict(_CURRENT, True)
-        state["ODE2Coords"] += solver.newmarkBeta * h * h * change
-        state["ODE2Coords_t"] += solver.newmarkGamma * h * change
-        state["ODE2Coords_tt"] += self.guess
+        places, velocities, accelerations = _motion(mbs)
+        places += solver.newmarkBeta * h * h * change
+        velocities += solver.newmarkGamma * h * change
+        accelerations += self.guess
 
 
 class ConstraintJumps:
@@ -130,12 +139,16 @@ class ConstraintJumps:
     mbs : exudyn.MainSystem
     settings : exudyn.SimulationSettings
         Of the run.
+    start : StartGuess
+        Told where every pass has ended.
     before : callable or None
         The user's own function, called first.
     """
 
-    def __init__(self, mbs: exu.MainSystem, settings: exu.SimulationSettings, before: PostNewton | None) -> None:
-        self.before = before
+    def __init__(
+        self, mbs: exu.MainSystem, settings: exu.SimulationSettings, start: StartGuess, before: PostNewton | None
+    ) -> None:
+        self.start_guess, self.before = start, before
         self.old_solver = mbs.sys.get("dynamicSolver")
         self.by_velocities = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
         self.start = np.nan
@@ -146,6 +159,7 @@ class ConstraintJumps:
         solver, data = mbs.sys.get("dynamicSolver"), mbs.systemData
         if solver is self.old_solver or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
             return [error, size]
+        self.start_guess.keep(mbs)
         # Exudyn's type stubs forget the method's own argument
         known: Any = solver
         opening = np.asarray(known.GetSystemResidual())[data.ODE2Size() + data.ODE1Size() :]
@@ -161,6 +175,12 @@ class ConstraintJumps:
         reach = solver.newmarkGamma * h if self.by_velocities else solver.newmarkBeta * h * h
         largest = LARGEST_JUMP * reach * np.abs(data.GetODE2Coordinates_tt()).max(initial=0.0)
         return list(GO_ON) if np.abs(opening - self.accepted).max() > largest else [error, size]
+
+
+def _motion(mbs: exu.MainSystem) -> list[np.ndarray]:
+    """Coordinates of second order, velocities and accelerations now, not copied."""
+    state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
+    return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]
 
 
 def lasting(past: Sequence[tuple[float, np.ndarray]], groups: np.ndarray) -> np.ndarray | None:
