@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -65,8 +66,10 @@ PLAINLY_NOTHING = {
     "contact share": 1e-6,
     "mass conservation": 1e-3,
 }
-# From here on the bore is plainly elastic; the search for its film at such loads is long.
-PLAINLY_ELASTIC = 5.0
+# From here on effects plainly matter, heating if it is on; the search for the film without them is long. Oil that has
+# warmed by so much is half as viscous.
+PLAINLY_MUCH = {"elasticity": 5.0}
+PLAINLY_MUCH_ON = PLAINLY_MUCH | {"heating": 0.7}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +216,7 @@ def judged(
     limit = LIMITS[effect] if limit is None else limit
     nothing = PLAINLY_NOTHING.get(effect, 0.0)
     plain = value > nothing if limit.below else value < nothing
-    plain = plain or (effect == "elasticity" and value > PLAINLY_ELASTIC)
+    plain = plain or value > (PLAINLY_MUCH_ON if on else PLAINLY_MUCH).get(effect, math.inf)
     return finding(
         effect,
         indicator,

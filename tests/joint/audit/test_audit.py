@@ -260,6 +260,21 @@ def test_effects_that_matter_are_neither_neglected_nor_unneeded(effect):
     assert found[effect] not in (*found.neglected, *found.unneeded)
 
 
+@pytest.mark.parametrize("eps", [0.2, 0.5, 0.9])
+def test_heat_that_halves_the_viscosity_is_not_solved_without(eps, monkeypatch):
+    """Its film without heat is another one by far more than the limit."""
+    for speed in (100.0, 300.0, 900.0):
+        plain = audit(bearing(**ON["heating"]), eps=eps, speed=speed)["heating"]
+        with monkeypatch.context() as patch:
+            patch.setattr(findings, "PLAINLY_MUCH_ON", {})
+            solved = audit(bearing(**ON["heating"]), eps=eps, speed=speed)["heating"]
+        much = plain.value > findings.PLAINLY_MUCH_ON["heating"]
+        assert (plain.change is None) == much
+        assert plain.matters == solved.matters
+        if much:
+            assert solved.change.size > 0.5 and not plain.unneeded
+
+
 def test_profile_matters_in_thin_films():
     assert audit(bearing(profile=ehd.Crown(drop=2e-6)), eps=0.8)["profile"].matters
 
