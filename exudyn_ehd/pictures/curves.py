@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.pictures.style import COLUMN, finish, open_axes, style_ticks, styled
-from exudyn_ehd.pictures.units import QUANTITIES, Unit, label, unit_for
+from exudyn_ehd.pictures.units import KINDS, QUANTITIES, Unit, label, unit_for
 from exudyn_ehd.tables import unit_of
 
 SIZE = (1.2 * COLUMN, 0.8 * COLUMN)
@@ -49,13 +49,15 @@ def plot_curves(
     -------
     matplotlib Figure
     """
-    shown = [_shown(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
+    columns = [column(name, np.concatenate([curve[k + 1] for curve in curves]), units) for k, name in enumerate(names)]
+    x_unit, y_unit = (unit for _, unit in columns)
     with styled():
         figure, ax = open_axes(ax, SIZE, path)
         for curve in curves:
             order = np.argsort(curve.x)
-            ax.plot(shown[0][1](curve.x[order]), shown[1][1](curve.y[order]), "o-", label=curve.text or None)
-        ax.set(xlabel=shown[0][0], ylabel=shown[1][0])
+            ax.plot(x_unit(curve.x[order]), y_unit(curve.y[order]), "o-", label=curve.text or None)
+        xlabel, ylabel = (label(text, unit) if unit.symbol else text for text, unit in columns)
+        ax.set(xlabel=xlabel, ylabel=ylabel)
         ax.grid(True, lw=0.4, color="#D0D0D0")
         style_ticks(ax)
         if any(curve.text for curve in curves):
@@ -63,12 +65,11 @@ def plot_curves(
         return finish(figure, path)
 
 
-def _shown(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:
-    """Label of a column, and the unit in which it is shown."""
-    if name in QUANTITIES and name not in units:
-        text, kind = QUANTITIES[name]
-        unit = unit_for(kind, values)
-        return label(text.replace("\n", " "), unit), unit
-    symbol = unit_of(name, units)
-    text = name.replace("_", " ")
-    return (text if symbol is None else f"{text} [{symbol}]"), Unit(symbol or "")
+def column(name: str, values: np.ndarray, units: Mapping[str, str]) -> tuple[str, Unit]:
+    """What a column is called, and the unit in which its values (SI) are shown; ``units`` of others by name."""
+    text, kind = QUANTITIES.get(name, (name.replace("_", " "), None))
+    if name in units:
+        return name.replace("_", " "), Unit(units[name])
+    symbol = unit_of(name) or ""
+    kind = kind or KINDS.get(symbol)
+    return text.replace("\n", " "), Unit(symbol) if kind is None else unit_for(kind, values)

@@ -43,6 +43,19 @@ _UNITS: dict[str, tuple[tuple[float, Unit], ...]] = {
     "ratio": ((0.0, Unit("-")),),
 }
 
+# Kinds of columns by their SI unit.
+KINDS = {
+    "m": "length",
+    "rad": "angle",
+    "s": "time",
+    "Pa": "pressure",
+    "N": "force",
+    "N m": "torque",
+    "W": "power",
+    "m3/s": "flow",
+    "K": "temperature",
+}
+
 # Name of a quantity: what is written on an axis, in lines as long as a panel is high, and its kind.
 QUANTITIES: dict[str, tuple[str, str]] = {
     "time": ("time", "time"),

@@ -35,7 +35,7 @@ from exudyn_ehd.progress import is_shown
 from exudyn_ehd.status import EHDError, InputError, require_integer
 from exudyn_ehd.studies import places
 from exudyn_ehd.studies.rows import Row, RowFile
-from exudyn_ehd.tables import Table, heads
+from exudyn_ehd.tables import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -115,7 +115,7 @@ class StudyTable(Table):
         InputError
             For names that the study does not have, or more than ten curves.
         """
-        from exudyn_ehd.pictures.curves import Curve, plot_curves
+        from exudyn_ehd.pictures.curves import Curve, column, plot_curves
 
         along = along or self.parameters[0]
         if name not in self.columns or along not in self.parameters:
@@ -132,8 +132,14 @@ class StudyTable(Table):
                 "draw table.grid(name) as contours, or a study of fewer values."
             )
         places = [np.moveaxis(self.grid(other), axis, -1).reshape(len(x), -1)[:, 0] for other in others]
-        heads_of = heads(others, self.units)
-        texts = [", ".join(f"{head} = {p[k]:.4g}" for head, p in zip(heads_of, places)) for k in range(len(x))]
+        shown = [(*column(other, place, self.units), place) for other, place in zip(others, places, strict=True)]
+        texts = [
+            ", ".join(
+                f"{text} = {float(unit(place[k])):.4g} {unit.symbol}".removesuffix(" -").rstrip()
+                for text, unit, place in shown
+            )
+            for k in range(len(x))
+        ]
         curves = [Curve(*values) for values in zip(texts, x, y, strict=True)]
         return plot_curves(curves, (along, name), self.units, ax=ax, path=path)
 

@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from exudyn_ehd.pictures.curves import Curve, plot_curves
 from exudyn_ehd.pictures.histories import plot_load, plot_orbit, plot_traces
 from exudyn_ehd.pictures.maps import PRESSURE, plot_map
+from exudyn_ehd.studies.parameters import StudyTable
 
 
 @pytest.fixture
@@ -70,3 +71,19 @@ def test_titles_and_legends(film, fed_film, history):
         figure = plot_map(its, PRESSURE, title="main")
         assert figure.axes[0].get_title().startswith("main\nlargest")
         assert [text.get_text() for text in figure.legends[0].get_texts()] == expected
+
+
+def test_columns_of_a_study_have_the_units_of_their_size():
+    """Parameters too: 25 µm, not 2.5 in a corner's 1e-5 m."""
+    grid = np.array([[20e-6, 40e-6], [20e-6, 40e-6]])
+    columns = {"radial_clearance": grid.ravel(), "eccentricity_ratio": np.array([0.5, 0.5, 0.8, 0.8])}
+    columns |= {"peak_pressure": 1e6 * np.arange(4.0), "force_x": 1e4 * np.arange(4.0)}
+    names = ("eccentricity_ratio", "radial_clearance")
+    table = StudyTable(columns=columns, parameters=names, shape=(2, 2), errors=("",) * 4, units={})
+    ax = table.plot("peak_pressure", along="radial_clearance").axes[0]
+    assert (ax.get_xlabel(), ax.get_ylabel()) == ("radial clearance [µm]", "peak pressure [MPa]")
+    assert np.allclose(ax.lines[0].get_xdata(), [20.0, 40.0])
+    assert ax.get_legend().get_texts()[1].get_text() == "eccentricity ratio = 0.8"
+    ax = table.plot("force_x").axes[0]
+    assert ax.get_ylabel() == "force x [kN]" and ax.get_xlabel() == "eccentricity ratio [-]"
+    assert ax.get_legend().get_texts()[0].get_text() == "radial clearance = 20 µm"
