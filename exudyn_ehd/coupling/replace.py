@@ -197,7 +197,8 @@ def _freedom(joint: Data, where: str) -> tuple[int, bool]:
     if not _turns(joint):
         raise InputError(
             f"{where} has constrainedAxes={joint['constrainedAxes']}; of the last three, rotations, exactly one must "
-            "be free for a film."
+            "be free for a film. At a shaft's end that may tilt, set its activeConnector to False and take "
+            "CreateLubricatedJoint, whose axis says about what the shaft turns."
         )
     free = held[3:].index(False)
     if not (held[free - 1] and held[free - 2]):
