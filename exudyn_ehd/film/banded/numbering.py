@@ -36,7 +36,7 @@ def number_cells(active, kx, order_out, number_out):
     number_out : (n, m) int array
         Unknown of every cell, -1 if not active.
     """
-    return number_along(active, kx, 1, _NONE, order_out, number_out)
+    return number_along(active, kx, np.int64(1), _NONE, order_out, number_out)
 
 
 @njit(cache=True)
@@ -105,7 +105,7 @@ def number_along(active, kx, forth, spare, order_out, number_out):
 def number_with_corners(active, kx, order_out, number_out):
     """As `number_cells`, for a matrix that also couples a cell with its neighbours across the corners."""
     n, m = active.shape
-    count, width = number_along(active, kx, 1, _NOWHERE, order_out, number_out)
+    count, width = number_along(active, kx, np.int64(1), _NOWHERE, order_out, number_out)
     for i in range(n):
         nxt = i + 1 if i + 1 < n else 0
         for j in range(m - 1):

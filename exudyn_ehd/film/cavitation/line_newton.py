@@ -99,7 +99,7 @@ def approach_film(links, line, active, factor, last, x, lack, p):
     for _ in range(MOST_APPROACHES if count > 0 else 0):
         old = known.copy(), s.copy(), free.copy(), places.copy()
         solve_ldl(band, inv_diag, count, width, x.reshape(1, x.size))
-        in_line, in_film, _, changes = move_film(line, number, order, count, x, 1, active, p)
+        in_line, in_film, _, changes = move_film(line, number, order, count, x, np.int64(1), active, p)
         lacks(links, p, lack)
         changes += relax_line(links, line, active, lack, p) + join_film(links, line, active, lack, p)
         line_rows(lack, line, number, order, count, active, x)
@@ -205,7 +205,7 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
         )  # fmt: skip
         update_active_set(y.kx, y.kz, y.b, y.fixed, pc, work.active, y.pressure)
         steps = 1
-    p = y.pressure - pc
+    p = y.pressure if pc == 0.0 else y.pressure - pc
     last = (work.count, work.width) if was_known else (0, 1)
     work.known, count, work.count, work.width, line.peak = solve_line(
         (y.kx, y.kz, y.b), line.fields, y.fixed, work.active, factor, last, work.unknowns, forth, p
@@ -216,7 +216,8 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
         np.logical_not(y.fixed, out=work.active)
         ok, more = solve_with_line(system, line, work)
         return ok, count + more
-    np.copyto(y.pressure, p + pc, where=~y.fixed)
+    if pc != 0.0:
+        np.copyto(y.pressure, p + pc, where=~y.fixed)
     return work.known, steps + count
 
 

@@ -126,9 +126,9 @@ class RuptureLine:
 
     def weights(self, places: np.ndarray) -> np.ndarray:
         """What -N changes by at vertices (c,) with their sources b and their mean conductance (2, c)."""
-        f, k, s = (field[places] for field in self.fields[:3])
-        source = 0.5 * (1.0 - s)
-        return np.stack((source, source * f * s / k))
+        out = np.empty((2, places.size))
+        line_weights(places, self.f, self.k, self.s, out)
+        return out
 
 
 @njit(cache=True)
@@ -148,6 +148,16 @@ def line_terms(kx, b, fixed, line):
             f[c] = -rest[c]
             whole[c] = 0.5 * f[c] / k[c]
             limit[c] = (LEAST - 0.5) * f[c]
+
+
+@njit(cache=True)
+def line_weights(places, f, k, s, out):
+    """`RuptureLine.weights` at ``places`` (c,) from fields (n, m)."""
+    f, k, s = f.reshape(-1), k.reshape(-1), s.reshape(-1)
+    for found in range(places.size):
+        c = places[found]
+        out[0, found] = 0.5 * (1.0 - s[c])
+        out[1, found] = out[0, found] * f[c] * s[c] / k[c]
 
 
 @njit(cache=True)
