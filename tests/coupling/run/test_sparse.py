@@ -58,7 +58,7 @@ def test_same_orbit_as_exudyns_own_solver():
 
 def test_a_film_that_fails_is_named():
     mbs, joint, settings = _model(load=-1e6)
-    joint.stop_at(pressure=1e12, force=1e12)
+    joint.stop_at(pressure=1e12)
     with pytest.raises(
         ehd.FilmError, match=r"'film' can't be evaluated at t = .* gap closed .* last accepted state"
     ) as caught:
