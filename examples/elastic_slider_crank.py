@@ -55,6 +55,8 @@ DAMPING_TIME = 4e-6
 BEARING = ehd.JournalBearing(
     journal_radius=0.010, length=0.020, radial_clearance=20e-6, lubricant=ehd.Lubricant(viscosity=0.02)
 )
+# Factor of the bend in the sketch.
+ENLARGED = 150.0
 CASES = ("ideal pins, rigid rod", "ideal pins, elastic rod", "oil, rigid rod", "oil, elastic rod")
 
 
@@ -313,6 +315,44 @@ def _draw_rod(ax, elastic: Run, late: np.ndarray, degrees: np.ndarray) -> None:
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False)
 
 
+def _sketch(ax, elastic: Run, late: np.ndarray) -> None:
+    """The mechanism where its rod is bent most, with the bend enlarged, and the rigid rod in grey."""
+    most = np.flatnonzero(late)[np.argmax(np.abs(elastic.deflection[late]))]
+    angle, bend = float(elastic.angle[most]), float(elastic.deflection[most])
+    pin = CRANK * np.array([math.cos(angle), math.sin(angle)])
+    slider = np.array([pin[0] + math.sqrt(ROD**2 - pin[1] ** 2), 0.0])
+    along = (slider - pin) / ROD
+    share = np.linspace(0.0, 1.0, 60)
+    chord = pin + share[:, None] * (slider - pin)
+    bent = chord + ENLARGED * bend * np.sin(np.pi * share)[:, None] * np.array([-along[1], along[0]])
+    around = np.linspace(0.0, 2.0 * np.pi, 100)
+    ax.plot(*(CRANK * np.array([np.cos(around), np.sin(around)])), color="0.8", lw=0.8)
+    ax.plot([-0.07, 0.19], [0.0, 0.0], color="0.8", lw=0.8, ls="-.")
+    ax.plot(*chord.T, color="0.7", lw=2)
+    ax.plot(*bent.T, color="tab:blue", lw=3)
+    ax.plot(*np.transpose([(0.0, 0.0), pin]), color="black", lw=3)
+    ax.plot(0.0, 0.0, "o", color="black", mfc="white", ms=8)
+    ax.plot(*slider, "s", color="0.4", ms=22)
+    for place, name, shift, colour in (
+        (pin, "crank pin, on oil", (-0.008, 0.002), "tab:purple"),
+        (slider, "gudgeon pin, on oil", (0.022, 0.012), "tab:brown"),
+    ):
+        ax.plot(*place, "o", color=colour, ms=9)
+        ax.text(*(place + shift), name, color=colour, ha="right" if shift[0] < 0.0 else "left", va="bottom")
+    ax.text(*(0.5 * pin + [-0.006, 0.0]), "crank, 5000 rpm", ha="right")
+    ax.text(*(slider + [0.022, -0.006]), "slider", color="0.4", va="top")
+    top = ENLARGED * abs(bend) + 0.5 * pin[1] * math.copysign(1.0, bend)
+    ax.text(
+        0.5 * (pin + slider)[0],
+        max(top, 0.5 * pin[1]) + 0.008,
+        f"rod, bent by {1e6 * abs(bend):.0f} µm (here {ENLARGED:.0f} times)",
+        color="tab:blue",
+        ha="center",
+    )
+    ax.set(aspect="equal", xlim=(-0.2, 0.36))
+    ax.set_axis_off()
+
+
 @styled(10.0)
 def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     """Slider against the ideal mechanism, the rod against beam theory, pins and films."""
@@ -321,8 +361,11 @@ def draw(runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     styles = dict(zip(names, ("-", "-", "--"), strict=True))
     before = 360.0 * math.floor(start_up)
     begin, end = round(360.0 * start_up - before), round(math.degrees(ideal.angle[-1]) - before)
-    fig, axes = plt.subplots(2, 3, figsize=(14, 8), layout="constrained")
+    fig = plt.figure(figsize=(14, 10), layout="constrained")
+    grid = fig.add_gridspec(3, 3, height_ratios=(0.55, 1.0, 1.0))
+    axes = np.array([[fig.add_subplot(grid[row, column]) for column in range(3)] for row in (1, 2)])
     late = _late(ideal, start_up)
+    _sketch(fig.add_subplot(grid[0, :]), runs[CASES[3]], late)
     degrees = np.degrees(ideal.angle[late]) - before
     shown = (
         ("slider", 1e6, "position [µm]"),

@@ -27,7 +27,7 @@ TURN = 2.0 * math.pi / SPEED
 PIN, WIDTH = 0.014, 0.030
 GREY, STEEL, BLUE, GLASS = [0.55, 0.6, 0.66, 1], [0.72, 0.74, 0.78, 1], [0.36, 0.5, 0.68, 1], [0.6, 0.66, 0.74, 0.22]
 # degrees of crank angle from one picture to the next, and steps of the solver between them
-FRAME, STEPS = 6, 6
+FRAME, STEPS = 2, 2
 
 
 def cylinder(start, vector, radius, color):
@@ -143,7 +143,7 @@ def main(*, quick: bool = False, results: str | pathlib.Path = "results/film_in_
     if not quick:
         files.append(folder / "film_in_mechanism.gif")
         first, *others = [picture.quantize(128) for picture in pictures]
-        first.save(files[1], save_all=True, append_images=others, duration=70, loop=0, optimize=True)
+        first.save(files[1], save_all=True, append_images=others, duration=110, loop=0, optimize=True)
     print(f"minimum film thickness {1e6 * joint.history.minimum_gap.min():.2f} µm; " + ", ".join(map(str, files)))
     return {"joint": joint, "files": files}
 
