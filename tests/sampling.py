@@ -3,6 +3,11 @@
 import pytest
 
 
+def but_slow(cases, *names):
+    """Names as parameters of a test; those of ``names`` are marked as slow, as their kernels are long to compile."""
+    return [pytest.param(case, marks=pytest.mark.slow if case in names else ()) for case in cases]
+
+
 def sample(cases, *kept):
     """Cases as parameters of a test; all but those at the places ``kept`` are marked as slow.
 

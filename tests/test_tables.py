@@ -48,7 +48,7 @@ def test_studies_draw_their_columns():
     np.testing.assert_allclose(ax.lines[1].get_xydata(), [[1.0, 2.0], [2.0, 4.0], [3.0, 6.0]])
     other = study.plot("minimum_gap", along="size").axes[0]
     np.testing.assert_allclose(other.lines[0].get_xydata(), [[1.0, 3.0], [2.0, 6.0]])
-    assert other.lines[0].get_label() == "speed [rad/s] = 3"
+    assert other.lines[0].get_label() == "speed = 3 rad/s"
     with pytest.raises(ehd.InputError, match="name must be one of speed, size, minimum_gap, seconds"):
         study.plot("gap")
     many = ehd.parameter_study(line, {"speed": [1.0], "size": list(range(11))}, show_progress=False)

@@ -15,6 +15,8 @@ from exudyn_ehd.joint.heat.power import power_loss
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status
 
+# the kernels of the line take longer to compile than these tests to run
+pytestmark = pytest.mark.slow
 LINE = SwiftStieber(line_in_cells=True)
 
 

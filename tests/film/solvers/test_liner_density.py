@@ -8,6 +8,8 @@ from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 
+# kernels of both effects together take longer to compile than these tests to run
+pytestmark = pytest.mark.slow
 GRID = bearing_grid(0.02, 0.03, 32, 6)
 # ten times the coefficients of mineral oil, for the pressures of these films, 3e6 Pa
 SCALE, DENSITY = 1e5, ehd.DowsonHigginson(coefficient=6e-9, saturation=1.7e-8)

@@ -71,6 +71,7 @@ def test_default_map_within_one_percent_of_the_film(make_bearing, measured, clos
     measured("worst of 150 states", max(errors), 0.01)
 
 
+@pytest.mark.slow
 def test_a_line_inside_the_cells_has_a_map_of_its_own(make_bearing, cache):
     tables = [impedance_table(SMALL, ehd.SwiftStieber(line_in_cells=line), 2.0) for line in (False, True)]
     assert not np.array_equal(tables[0].nodes, tables[1].nodes)

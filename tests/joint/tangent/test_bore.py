@@ -8,6 +8,7 @@ from bore_states import BUSHES, OPTIONS, C, make_bearing, random_motion
 
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.status import Status
+from tests.sampling import but_slow
 
 
 @pytest.mark.parametrize("bush", BUSHES)
@@ -30,7 +31,7 @@ def test_a_film_that_is_all_cavity_has_no_tangent_but_shear(bush):
     assert not product.bore_load(np.ones(10), np.ones(k), np.ones(k)).any()
 
 
-@pytest.mark.parametrize("option", OPTIONS)
+@pytest.mark.parametrize("option", but_slow(OPTIONS, "line in its cells"))
 @pytest.mark.parametrize("bush", BUSHES)
 def test_tangent_is_the_derivative_of_wrench_and_bore_loads(bush, option):
     model, probe = (build_model(make_bearing(BUSHES[bush], **OPTIONS[option])) for _ in range(2))

@@ -13,6 +13,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.tangent.nodes import BoreForces, traction
 from exudyn_ehd.status import Status
+from tests.sampling import but_slow
 
 MORE = OPTIONS | {
     "asperity": {
@@ -64,7 +65,7 @@ def plain(film):
     return out
 
 
-@pytest.mark.parametrize("option", MORE)
+@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells"))
 def test_shear_is_that_of_its_definition_and_adds_up_to_the_torque_of_the_bearing(option):
     model, _, _, _, evaluation, forces = evaluated(option)
     film = evaluation.film
@@ -96,7 +97,7 @@ def test_shear_of_a_concentric_journal_is_that_of_petroff():
     assert np.abs(radial).max() < 1e-10 * np.abs(nodal).max()
 
 
-@pytest.mark.parametrize("option", MORE)
+@pytest.mark.parametrize("option", but_slow(MORE, "line in its cells"))
 def test_tangent_is_the_derivative_of_wrench_and_nodal_forces(option):
     model, motion, history, step, evaluation, _ = evaluated(option)
     probe = build_model(make_bearing(BUSHES["nodal"], **MORE[option]))

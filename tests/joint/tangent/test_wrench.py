@@ -7,6 +7,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from tests.sampling import but_slow
 
 CLOSURES = {
     "full": ehd.FullSommerfeld(),
@@ -71,7 +72,7 @@ def _check(bearing, motion, scale):
 
 
 @pytest.mark.parametrize("state", STATES)
-@pytest.mark.parametrize("closure", CLOSURES)
+@pytest.mark.parametrize("closure", but_slow(CLOSURES, "swift, line in its cells"))
 def test_closures(make_bearing, make_motion, motion_scale, closure, state):
     bearing = make_bearing(0.8, cavitation=CLOSURES[closure], film=FILM)
     _check(bearing, make_motion(bearing, **STATES[state]), motion_scale(bearing))
@@ -98,7 +99,7 @@ OPTIONS = {
 
 
 @pytest.mark.parametrize("state", [s for s in STATES if s != "no spin"])
-@pytest.mark.parametrize("option", OPTIONS)
+@pytest.mark.parametrize("option", but_slow(OPTIONS, "wall, line in its cells"))
 def test_options(make_bearing, make_motion, motion_scale, option, state):
     bearing = make_bearing(0.8, **{"film": FILM, **OPTIONS[option]})
     _check(bearing, make_motion(bearing, **STATES[state]), motion_scale(bearing))
