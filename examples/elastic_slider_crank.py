@@ -341,14 +341,8 @@ def _sketch(ax, elastic: Run, late: np.ndarray) -> None:
         ax.text(*(place + shift), name, color=colour, ha="right" if shift[0] < 0.0 else "left", va="bottom")
     ax.text(*(0.5 * pin + [-0.006, 0.0]), "crank, 5000 rpm", ha="right")
     ax.text(*(slider + [0.022, -0.006]), "slider", color="0.4", va="top")
-    top = ENLARGED * abs(bend) + 0.5 * pin[1] * math.copysign(1.0, bend)
-    ax.text(
-        0.5 * (pin + slider)[0],
-        max(top, 0.5 * pin[1]) + 0.008,
-        f"rod, bent by {1e6 * abs(bend):.0f} µm (here {ENLARGED:.0f} times)",
-        color="tab:blue",
-        ha="center",
-    )
+    middle = bent[len(bent) // 2] + (0.012, 0.012 if bend > 0.0 else -0.022)
+    ax.text(*middle, f"rod, bent by {1e6 * abs(bend):.0f} µm (drawn {ENLARGED:.0f} times)", color="tab:blue")
     ax.set(aspect="equal", xlim=(-0.2, 0.36))
     ax.set_axis_off()
 

@@ -206,15 +206,16 @@ def _sketch(ax) -> None:
     ax.fill(*ring, color="white")
     ax.fill(*(0.9 * ring + [[0.05], [0.03]]), color="0.55")
     arrow = {"arrowstyle": "-|>", "lw": 1.5}
-    for end, name, place in (((2.3, 0.0), "x", (2.4, 0.12)), ((0.0, 2.1), "y", (0.12, 1.95))):
+    for end, name, place in (((2.2, 0.0), "x", (1.95, 0.15)), ((0.0, 2.2), "y", (0.15, 1.95))):
         ax.annotate("", end, (0.0, 0.0), arrowprops=arrow | {"lw": 1.0})
         ax.text(*place, name)
-    ax.annotate("", (-0.75, -0.0), (-2.6, 0.0), arrowprops=arrow | {"color": "tab:red"})
-    ax.text(-1.7, 0.25, "load > 0", color="tab:red", ha="center")
+    ax.annotate("", (-0.85, 0.0), (-3.2, 0.0), arrowprops=arrow | {"color": "tab:red"})
+    ax.text(-2.6, 0.2, "load > 0", color="tab:red", ha="center")
     ax.annotate("", (-0.45, 0.5), (0.5, 0.45), arrowprops=arrow | {"connectionstyle": "arc3,rad=0.6", "color": "white"})
-    ax.text(0.0, -0.5, "2000 rpm", color="white", ha="center", size=8)
+    ax.text(0.05, -2.2, "pin, 2000 rpm", ha="center")
+    ax.plot([0.05, 0.05], [-1.75, -0.5], color="black", lw=0.8)
     ax.text(3.5, -0.05, "rod", ha="center", va="center")
-    ax.set(aspect="equal", xlim=(-2.8, 4.7), ylim=(-1.7, 2.3))
+    ax.set(aspect="equal", xlim=(-3.4, 4.7), ylim=(-2.4, 2.4))
     ax.set_axis_off()
 
 
@@ -247,7 +248,7 @@ def draw(cycles: dict[str, Cycle], clearance: float, path: pathlib.Path) -> None
     angles, forces = _load_table()
     axes[0, 1].plot(angles, 1e-3 * forces, "o-", ms=3, color="black")
     axes[0, 1].axhline(0.0, color="grey", lw=0.8)
-    _sketch(axes[0, 1].inset_axes((0.5, 0.62, 0.48, 0.36)))
+    _sketch(axes[0, 1].inset_axes((0.2, 0.03, 0.5, 0.46)))
     axes[0, 1].set(ylabel="load along the rod [kN]", title="load of the four-stroke cycle")
     axes[1, 0].set(ylabel="minimum film thickness [µm]", title="minimum film thickness", ylim=(0, None))
     axes[1, 1].set(ylabel="peak pressure [MPa]", title="peak pressure", ylim=(0, None))

@@ -293,6 +293,18 @@ def advice(status: Status, bearing: object) -> str:
             f"diameter / length) of some 1 / coefficient = {1.0 / law.coefficient:.3g} Pa; reduce loads and speeds of "
             f"approach (initial velocities), check the law's coefficient, {barus}or name an elastic liner or bush."
         )
+    oil, closure = getattr(bearing, "lubricant", None), getattr(bearing, "cavitation", None)
+    if (
+        status is Status.NOT_CONVERGED
+        and getattr(oil, "density_law", None)
+        and not getattr(closure, "conserves_mass", True)
+    ):
+        # rho dh/dt is there, h drho/dt, which would hold the pressure, is not
+        return (
+            f"{status.advice} With a density_law and {type(closure).__name__}, which keeps no account of the oil, thin "
+            "films that are pressed together fast may have no pressure: what oil takes in as it gets denser is left "
+            "out; cavitation=ElrodAdams(...) counts it, or take density_law=None."
+        )
     return status.advice
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.bearing import advice
 from exudyn_ehd.film.lubricant import density
 from exudyn_ehd.film.solvers import compiled, compressible
 from exudyn_ehd.joint.model.build import build_model
@@ -248,3 +249,47 @@ def test_absent_law_calls_nothing(cavitation, monkeypatch):
 def test_what_takes_oil_as_incompressible_refuses_the_law(options, names):
     with pytest.raises(ehd.InputError, match=names):
         make(**({"end_pressures": (0.0, 0.0)} | options))
+
+
+@pytest.mark.slow
+def test_dense_films_pressed_together_fast_name_the_closure_that_holds_them():
+    """A vertex's balance, of conductance h^3, falls with its pressure where rho dh/dt grows faster by its density.
+
+    Between rough surfaces 130 nm apart at 7 mm/s; with the oil's account h drho/dt holds the pressure.
+    """
+    options = {
+        "asperity": ehd.GreenwoodTripp(composite_roughness=3e-7, composite_modulus=2e10),
+        "profile": (ehd.Crown(drop=3.6e-6), ehd.OutOfRound(order=2, amplitude=1.8e-6)),
+        "roughness": ehd.PatirCheng(composite_roughness=3e-7),
+        "end_pressures": (1e5, 3e4),
+    }
+    oil = ehd.Lubricant(
+        viscosity=9.39746e-3,
+        shear_law=ehd.CarreauShear(relaxation_time=2e-6, exponent=0.75, residual=0.3),
+        density_law=ehd.DowsonHigginson(),
+    )
+    motion = np.array([4.11765859e-06, -3.40677614e-05, 0, 0, -6.87884831e-03, -7.43321587e-04, 0, 0, -298.130873, 0])
+
+    def pressed(closure):
+        made = ehd.JournalBearing(
+            journal_radius=0.03,
+            length=0.021,
+            radial_clearance=36e-6,
+            lubricant=oil,
+            film=ehd.FiniteLength(n_theta=45, n_z=6),
+            cavitation=closure,
+            **options,
+        )
+        model = build_model(made)
+        before = motion.copy()
+        before[:4] -= 1e-5 * motion[4:8]
+        return model.evaluate(motion, model.initial_history(before), 1e-5).status, made
+
+    status, made = pressed(ehd.SwiftStieber(cavity_pressure=-5e4))
+    assert status is ehd.Status.NOT_CONVERGED
+    assert "cavitation=ElrodAdams(...) counts it" in advice(status, made)
+    assert (
+        advice(status, dataclasses.replace(made, lubricant=dataclasses.replace(oil, density_law=None))) == status.advice
+    )
+    status, _ = pressed(ehd.ElrodAdams(cavity_pressure=-5e4))
+    assert status is ehd.Status.CONVERGED
