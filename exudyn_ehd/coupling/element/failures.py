@@ -7,10 +7,11 @@ import warnings
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, advice
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
+from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
