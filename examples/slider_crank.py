@@ -277,11 +277,34 @@ def draw_mechanism(ideal: Run, runs: dict[str, Run], start_up: float, path: path
     plt.close(fig)
 
 
+def _sketch(ax) -> None:
+    """The mechanism, with the pin that floats on oil."""
+    angle = 0.9
+    pin = CRANK * np.array([math.cos(angle), math.sin(angle)])
+    slider = np.array([pin[0] + math.sqrt(ROD**2 - pin[1] ** 2), 0.0])
+    around = np.linspace(0.0, 2.0 * np.pi, 100)
+    ax.plot(*(CRANK * np.array([np.cos(around), np.sin(around)])), color="0.8", lw=0.8)
+    ax.plot([-0.06, 0.2], [0.0, 0.0], color="0.8", lw=0.8, ls="-.")
+    ax.plot(*np.transpose([(0.0, 0.0), pin]), color="black", lw=3)
+    ax.plot(*np.transpose([pin, slider]), color="0.6", lw=3)
+    ax.plot([0.0, pin[0]], [0.0, pin[1]], "o", color="black", mfc="white", ms=6)
+    ax.plot(*slider, "s", color="0.4", ms=17)
+    ax.plot(*slider, "o", color="tab:blue", ms=8)
+    ax.text(*(slider + (0.018, 0.008)), "pin on oil", color="tab:blue")
+    ax.text(*(slider + (0.018, -0.022)), "slider", color="0.4")
+    ax.text(*(0.5 * (pin + slider) + (0.004, 0.01)), "rod")
+    ax.text(-0.06, 0.045, "crank,\n5000 rpm", ha="right", va="center")
+    ax.set(aspect="equal", xlim=(-0.13, 0.26))
+    ax.set_axis_off()
+
+
 @styled(10.0)
 def draw_bearing(ideal: Run, runs: dict[str, Run], start_up: float, path: pathlib.Path) -> None:
     """Force, orbit, film and pressure of the lubricated pins, with the force of the ideal joint."""
-    fig, axes = plt.subplots(2, 2, figsize=(11, 8), layout="constrained")
-    axes = [axes[0, 1], axes[1, 0], axes[1, 1], axes[0, 0]]
+    fig = plt.figure(figsize=(11, 9.6), layout="constrained")
+    grid = fig.add_gridspec(3, 2, height_ratios=(0.45, 1.0, 1.0))
+    _sketch(fig.add_subplot(grid[0, :]))
+    axes = [fig.add_subplot(grid[row, column]) for row, column in ((1, 1), (2, 0), (2, 1), (1, 0))]
     around = np.linspace(0, 2 * np.pi, 200)
     axes[0].plot(np.cos(around), np.sin(around), color="grey", lw=1)
     shown = [(run, {"color": COLOURS[name]}) for name, run in runs.items()]

@@ -129,6 +129,29 @@ def lost_in_films(histories: list[ehd.JointHistory], time: np.ndarray) -> np.nda
     return total
 
 
+def _sketch(ax) -> None:
+    """Both links as they are let go, seen from the side and above."""
+
+    def seen(x: float, y: float, z: float) -> tuple[float, float]:
+        return x - 0.45 * z, y - 0.3 * z
+
+    shoulder, elbow, tip = (0.0, 0.0, 0.0), (LENGTH, 0.0, 0.0), (LENGTH, 0.0, LENGTH)
+    for start, end in ((shoulder, elbow), (elbow, tip)):
+        ax.plot(*np.transpose([seen(*start), seen(*end)]), color="0.6", lw=5, solid_capstyle="butt")
+    for place, axis, name, colour in (
+        (shoulder, (0.0, 0.0, 0.14), "shoulder", "tab:blue"),
+        (elbow, (0.14, 0.0, 0.0), "elbow", "tab:red"),
+    ):
+        middle, half = np.array(place), np.array(axis)
+        ax.plot(*np.transpose([seen(*(middle - half)), seen(*(middle + half))]), color=colour, lw=8)
+        ax.text(seen(*place)[0], 0.1, name, color=colour, ha="center")
+    ax.text(seen(*tip)[0] - 0.06, seen(*tip)[1], "tip", ha="right", va="center")
+    ax.annotate("", (0.3, -0.38), (0.3, -0.1), arrowprops={"arrowstyle": "-|>", "lw": 1.2})
+    ax.text(0.26, -0.25, "g", ha="right", va="center")
+    ax.set(aspect="equal", xlim=(-0.3, 1.3), ylim=(-0.45, 0.25))
+    ax.set_axis_off()
+
+
 @styled(10.0)
 def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     """Tip, energy, eccentricity and minimum film thickness of both variants."""
@@ -142,6 +165,7 @@ def draw(ideal: dict, oiled: dict, path: pathlib.Path) -> None:
     axes[0, 1].plot(t, lost_in_films(oiled["histories"], t), ":", color="black", lw=2, label="lost in the films")
     axes[0, 1].set(ylabel="energy [J]", title="energy taken by the bearings")
     axes[0, 1].legend(frameon=False)
+    _sketch(axes[0, 1].inset_axes((0.42, 0.06, 0.56, 0.42)))
     for name, colour, h in zip(("shoulder", "elbow"), ("tab:blue", "tab:red"), oiled["histories"], strict=True):
         axes[1, 0].plot(h.time, h.largest_eccentricity_ratio, color=colour, label=name)
         axes[1, 1].semilogy(h.time, 1e6 * h.minimum_gap, color=colour, label=name)

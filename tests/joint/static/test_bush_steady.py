@@ -111,7 +111,7 @@ def test_pressure_that_falls_from_end_to_end_deforms_the_bore_alike_on_any_grid(
     "cavitation",
     [pytest.param(ehd.SwiftStieber(), id="swift"), pytest.param(ehd.Gumbel(), id="gumbel", marks=pytest.mark.slow)],
 )
-@pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9], 2), ids=["steel", "aluminium", "polymer"])
+@pytest.mark.parametrize("modulus", sample([2.1e11, 7e10, 3e9]), ids=["steel", "aluminium", "polymer"])
 @pytest.mark.parametrize("tilt", sample([((0.0, 0.0),), ((0.0, 1e-4),)], 0), ids=["aligned", "tilted"])
 def test_default_modes_are_within_one_per_cent_of_the_nodes(modulus, tilt, cavitation):
     bushes = modal(modulus, FINE, tilted=tilt != (0.0, 0.0)), nodal(modulus, FINE)
