@@ -96,8 +96,8 @@ _LAZY = {
     "load_history": "coupling.record.history",
     "StepControl": "coupling.watch.step_control",
     "JointState": "coupling.run.joint_state",
-    "LastCycle": "coupling.run.periodic",
-    "UntilPeriodic": "coupling.run.periodic",
+    "LastCycle": "coupling.watch.periodic",
+    "UntilPeriodic": "coupling.watch.periodic",
     "SystemState": "coupling.run.restart",
     "SaveState": "coupling.run.solve",
     "SolveDynamic": "coupling.run.solve",
@@ -154,11 +154,11 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
-    from exudyn_ehd.coupling.run.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
     from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
     from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
+    from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes

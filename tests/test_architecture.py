@@ -94,7 +94,7 @@ def test_options_are_frozen_and_keyword_only():
 LONGEST_FILE, LONGEST_FUNCTION, MOST_PARAMETERS, MOST_FILES = 300, 60, 14, 13
 # Of the whole package: marks that keep the formatter off aligned tables,
 # annotations that say nothing, logical lines of code.
-MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 22658
+MOST_SKIPS, MOST_ANY, MOST_CODE = 14, 60, 23400
 
 
 def _docstring_lines(tree):
@@ -149,7 +149,7 @@ def test_no_circle_of_files():
 
 def test_folders_are_small():
     for folder in {path.parent for path in _sources()}:
-        assert len(set(folder.glob("*.py")) - {folder / "__init__.py"}) <= MOST_FILES, folder
+        assert len(list(folder.glob("*.py"))) <= MOST_FILES, folder
 
 
 def test_files_functions_and_signatures_are_short():

@@ -6,7 +6,6 @@ solve              SolveDynamic, SolveStatic
 settings           ConfigureSolver
 start_guess        where Newton starts in a step
 gap_limit          how far it goes in one of its own steps
-periodic           runs that end when their orbits have closed
 step_size          steps chosen by their error
 force_tolerance    where it ends, in the measure of the films' forces
 step_refusal       steps that converge to a film that none bears

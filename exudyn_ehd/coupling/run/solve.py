@@ -13,12 +13,12 @@ import numpy as np
 from exudyn_ehd.coupling.contract import ObjectIndex
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
-from exudyn_ehd.coupling.run.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error
+from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.watch.run_progress import run_progress
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
@@ -155,7 +155,8 @@ def SolveDynamic(
     with going_on, ExitStack() as around:
         watch = None
         if until_periodic is not None:
-            watch = around.enter_context(closing(mbs, joints_of(mbs), until_periodic, simulationSettings))
+            films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
+            watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
         for part in (control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic")):
             around.enter_context(part)
         around.enter_context(progress_of(mbs, simulationSettings))

@@ -11,7 +11,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import exudyn as exu
 import numpy as np
@@ -21,9 +21,6 @@ from exudyn_ehd.coupling.record.history import JointHistory
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, RunError, require_number
-
-if TYPE_CHECKING:
-    from exudyn_ehd.coupling.run.restart import Joint
 
 # Largest number of differences that may be left, also of those that do not shrink: rounding never does.
 MOST_LEFT = 100.0
@@ -112,12 +109,20 @@ class LastCycle:
         )
 
 
+class Steps(Protocol):
+    """What is asked of the accepted steps of a joint."""
+
+    def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
+        """Their record, with the current state if ``complete``."""
+
+
 class Closing:
     """Function after a step of Exudyn that ends a run whose orbits have closed.
 
     Parameters
     ----------
-    joints : sequence of joints
+    films : sequence of pairs
+        Names of the joints and their steps.
     aim : UntilPeriodic
     begin : float
         Start of the run, s.
@@ -126,9 +131,13 @@ class Closing:
     """
 
     def __init__(
-        self, joints: Sequence[Joint], aim: UntilPeriodic, begin: float, after_step: Callable[..., object] | None
+        self,
+        films: Sequence[tuple[str, Steps]],
+        aim: UntilPeriodic,
+        begin: float,
+        after_step: Callable[..., object] | None,
     ) -> None:
-        self.joints, self.aim, self.begin, self.after_step = joints, aim, begin, after_step
+        self.films, self.aim, self.begin, self.after_step = films, aim, begin, after_step
         self.changes: list[float] = []
         self.left = math.inf
         self.cycles = 0
@@ -156,7 +165,7 @@ class Closing:
         if self.cycles == 1:
             return
         end = self.begin + self.cycles * period
-        histories = [joint.element.steps.history(mbs, complete=complete) for joint in self.joints]
+        histories = [steps.history(mbs, complete=complete) for _, steps in self.films]
         change = max(_change(history, self.begin, end, period) for history in histories)
         quotient = change / self.changes[-1] if self.changes and self.changes[-1] > 0.0 else 1.0
         self.left = change * (quotient / (1.0 - quotient) if quotient < MOST_LEFT / (1.0 + MOST_LEFT) else MOST_LEFT)
@@ -189,17 +198,17 @@ class Closing:
             cycles=self.cycles,
             changes=np.array(self.changes),
             left=self.left,
-            histories={joint.name: joint.history.between(start, end) for joint in self.joints},
+            histories={name: steps.history(mbs).between(start, end) for name, steps in self.films},
         )
 
 
 @contextmanager
 def closing(
-    mbs: exu.MainSystem, joints: Sequence[Joint], aim: UntilPeriodic, settings: exu.SimulationSettings
+    mbs: exu.MainSystem, films: Sequence[tuple[str, Steps]], aim: UntilPeriodic, settings: exu.SimulationSettings
 ) -> Iterator[Closing]:
     """End the run within when its orbits have closed; the user's function comes back then."""
     run = settings.timeIntegration
-    if not joints:
+    if not films:
         raise InputError("SolveDynamic.until_periodic: the system has no lubricated joints whose orbits could close.")
     if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
         raise InputError(
@@ -207,7 +216,7 @@ def closing(
             f"{run.startTime:.6g} to {run.endTime:.6g} s; endTime says how long it may take."
         )
     own = user_function(mbs.GetPostStepUserFunction())
-    watch = Closing(joints, aim, run.startTime, own or None)
+    watch = Closing(films, aim, run.startTime, own or None)
     mbs.SetPostStepUserFunction(watch)
     try:
         yield watch
