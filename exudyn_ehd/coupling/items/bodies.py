@@ -47,7 +47,7 @@ def node_item(mbs: exu.MainSystem, where: str, node: Index) -> Item:
     nt = rigid_nodes.translations(kind)
     position = np.zeros(3)
     position[:nt] = reference[:nt]
-    rotation, _ = rigid_nodes.node_rotation(kind, reference[nt:])
+    rotation = rigid_nodes.rotation_of(kind, reference)
     return Item(
         position=position,
         rotation=rotation,

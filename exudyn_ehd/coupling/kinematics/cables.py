@@ -15,10 +15,18 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import cross
-
 LARGEST_TURN = 0.9
 """|tau| from which the roll is undefined: the cable has turned by some 64 degrees towards its director."""
+
+
+@njit(cache=True)
+def cross(a, b):
+    """Vector product of two 3-vectors."""
+    c = np.empty(3)
+    c[0] = a[1] * b[2] - a[2] * b[1]
+    c[1] = a[2] * b[0] - a[0] * b[2]
+    c[2] = a[0] * b[1] - a[1] * b[0]
+    return c
 
 
 @njit(cache=True)

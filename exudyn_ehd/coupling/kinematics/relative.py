@@ -9,8 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.coupling.kinematics.rigid_nodes import cross, times, transposed_times
+from exudyn_ehd.coupling.kinematics.rigid_nodes import AXIS, PLACE, SPIN, VELOCITY, column, cross, times
 
+# Rows of the Jacobians; numpy's integers, since numba compiles kernels anew for each plain one.
+_JP, _JR, _VQ, _WQ = (np.int64(k) for k in range(4))
 MOTION = ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w")
 """Names of the ten motion components, joint frame."""
 
@@ -18,6 +20,32 @@ MOTION = ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w")
 def skew(v: np.ndarray) -> np.ndarray:
     """Matrix (3, 3) of the cross product with v (3,)."""
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+@njit(cache=True)
+def _minus(a, b):
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@njit(cache=True)
+def _plus(a, b):
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+@njit(cache=True)
+def _in_frame(a, b):
+    """Global 3-tuple in a frame (3, 6)."""
+    return (
+        a[0, 0] * b[0] + a[1, 0] * b[1] + a[2, 0] * b[2],
+        a[0, 1] * b[0] + a[1, 1] * b[1] + a[2, 1] * b[2],
+        a[0, 2] * b[0] + a[1, 2] * b[1] + a[2, 2] * b[2],
+    )
+
+
+@njit(cache=True)
+def _jac_column(jac, which, k):
+    """Column k of Jp, Jr, Vq or Wq."""
+    return jac[which, 0, k], jac[which, 1, k], jac[which, 2, k]
 
 
 @njit(cache=True)
@@ -32,14 +60,15 @@ def relative_motion(frame_h, frame_j, motion_out):
     float
         Cosine of the angle between the axes; the motion is nan if it is below 0.1 (no bearing any more).
     """
-    a_h = frame_h[:, :3]
-    r = frame_j[:, 3] - frame_h[:, 3]
-    d = transposed_times(a_h, r)
-    d_t = transposed_times(a_h, frame_j[:, 4] - frame_h[:, 4] - cross(frame_h[:, 5], r))
-    spin = transposed_times(a_h, frame_j[:, 5] - frame_h[:, 5])
-    a = transposed_times(a_h, frame_j[:, 2])
+    r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
+    omega_h = column(frame_h, SPIN)
+    d = _in_frame(frame_h, r)
+    d_t = _in_frame(frame_h, _minus(_minus(column(frame_j, VELOCITY), column(frame_h, VELOCITY)), cross(omega_h, r)))
+    spin = _in_frame(frame_h, _minus(column(frame_j, SPIN), omega_h))
+    a = _in_frame(frame_h, column(frame_j, AXIS))
     if not a[2] > 0.1:
-        motion_out[:] = np.nan
+        for i in range(10):
+            motion_out[i] = np.nan
         return a[2]
     a_t = cross(spin, a)
     for i in range(2):
@@ -55,57 +84,57 @@ def relative_motion(frame_h, frame_j, motion_out):
 
 
 @njit(cache=True)
-def _motion_variation(d, d_t, spin, a, a_t, dd, dd_t, dspin, da, out):
-    """Variation of the ten motion components from the variation of d, d_t, Omega and a, all in the joint frame."""
-    da_t = cross(dspin, a) + cross(spin, da)
+def _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, out):
+    """Variation of the ten motion components, into column c of ``out``, from ``sign`` times the variation of d, d_t,
+    Omega and a, all 3-tuples in the joint frame."""
+    da_t = _plus(cross(dspin, a), cross(spin, da))
     for i in range(2):
         b = a[i] / a[2]
         b_t = (a_t[i] - b * a_t[2]) / a[2]
         db = (da[i] - b * da[2]) / a[2]
         db_t = (da_t[i] - db * a_t[2] - b * da_t[2] - b_t * da[2]) / a[2]
-        out[i] = dd[i] - db * d[2] - b * dd[2]
-        out[2 + i] = db
-        out[4 + i] = dd_t[i] - db_t * d[2] - b_t * dd[2] - db * d_t[2] - b * dd_t[2]
-        out[6 + i] = db_t
-    out[8] = dspin[0] * a[0] + dspin[1] * a[1] + dspin[2] * a[2] + spin[0] * da[0] + spin[1] * da[1] + spin[2] * da[2]
-    out[9] = dd_t[2] - (da_t[2] * d[2] + a_t[2] * dd[2]) / a[2] + a_t[2] * d[2] * da[2] / (a[2] * a[2])
+        out[i, c] = sign * (dd[i] - db * d[2] - b * dd[2])
+        out[2 + i, c] = sign * db
+        out[4 + i, c] = sign * (dd_t[i] - db_t * d[2] - b_t * dd[2] - db * d_t[2] - b * dd_t[2])
+        out[6 + i, c] = sign * db_t
+    out[8, c] = sign * (
+        dspin[0] * a[0] + dspin[1] * a[1] + dspin[2] * a[2] + spin[0] * da[0] + spin[1] * da[1] + spin[2] * da[2]
+    )
+    out[9, c] = sign * (dd_t[2] - (da_t[2] * d[2] + a_t[2] * dd[2]) / a[2] + a_t[2] * d[2] * da[2] / (a[2] * a[2]))
 
 
 @njit(cache=True)
 def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out):
     """Derivatives (10, n) of the motion with respect to q and q_t, columns in the order housing, journal."""
-    a_h = frame_h[:, :3]
-    axis = frame_j[:, 2].copy()
-    r = frame_j[:, 3] - frame_h[:, 3]
-    omega_h = frame_h[:, 5].copy()
-    u = frame_j[:, 4] - frame_h[:, 4] - cross(omega_h, r)
-    spin_g = frame_j[:, 5] - omega_h
-    d, d_t = transposed_times(a_h, r), transposed_times(a_h, u)
-    spin, a = transposed_times(a_h, spin_g), transposed_times(a_h, axis)
-    a_t = cross(spin, a)
-    zero = np.zeros(3)
+    axis, omega_h = column(frame_j, AXIS), column(frame_h, SPIN)
+    r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
+    u = _minus(_minus(column(frame_j, VELOCITY), column(frame_h, VELOCITY)), cross(omega_h, r))
+    spin_g = _minus(column(frame_j, SPIN), omega_h)
+    d, d_t, spin, a = _in_frame(frame_h, r), _in_frame(frame_h, u), _in_frame(frame_h, spin_g), _in_frame(frame_h, axis)
+    a_t, zero = cross(spin, a), (0.0, 0.0, 0.0)
     n_h = jac_h.shape[2]
-    for side in range(2):
-        jac = jac_h if side == 0 else jac_j
-        start = 0 if side == 0 else n_h
-        for k in range(jac.shape[2]):
-            jp, jr, vq, wq = jac[0, :, k], jac[1, :, k], jac[2, :, k], jac[3, :, k]
-            if side == 0:
-                # the frame turns with the housing: a fixed global vector g changes by -A^T (dphi x g)
-                dd = transposed_times(a_h, -jp - cross(jr, r))
-                dd_t = transposed_times(a_h, -vq - cross(wq, r) + cross(omega_h, jp) - cross(jr, u))
-                dspin = transposed_times(a_h, -wq - cross(jr, spin_g))
-                da = transposed_times(a_h, -cross(jr, axis))
-                dspin_rate = transposed_times(a_h, -jr)
-            else:
-                dd = transposed_times(a_h, jp)
-                dd_t = transposed_times(a_h, vq - cross(omega_h, jp))
-                dspin = transposed_times(a_h, wq)
-                da = transposed_times(a_h, cross(jr, axis))
-                dspin_rate = transposed_times(a_h, jr)
-            _motion_variation(d, d_t, spin, a, a_t, dd, dd_t, dspin, da, motion_q_out[:, start + k])
-            # the velocity changes with the rates as the place does with the coordinates
-            _motion_variation(d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, motion_qt_out[:, start + k])
+    for c in range(n_h + jac_j.shape[2]):
+        with_housing = c < n_h
+        jac, k = (jac_h, c) if with_housing else (jac_j, c - n_h)
+        jp, jr, vq, wq = (
+            _jac_column(jac, _JP, k),
+            _jac_column(jac, _JR, k),
+            _jac_column(jac, _VQ, k),
+            _jac_column(jac, _WQ, k),
+        )
+        moved = cross(omega_h, jp)
+        if with_housing:
+            # the frame turns with the housing: a fixed global vector g changes by -A^T (dphi x g)
+            sign, place = -1.0, _plus(jp, cross(jr, r))
+            rate = _plus(_minus(_plus(vq, cross(wq, r)), moved), cross(jr, u))
+            spun = _plus(wq, cross(jr, spin_g))
+        else:
+            sign, place, rate, spun = 1.0, jp, _minus(vq, moved), wq
+        dd, dd_t, dspin = _in_frame(frame_h, place), _in_frame(frame_h, rate), _in_frame(frame_h, spun)
+        da, dspin_rate = _in_frame(frame_h, cross(jr, axis)), _in_frame(frame_h, jr)
+        _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, motion_q_out)
+        # the velocity changes with the rates as the place does with the coordinates
+        _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt_out)
 
 
 @njit(cache=True)
@@ -114,13 +143,12 @@ def global_loads(frame_h, frame_j, wrench, loads_out):
 
     ``wrench`` (6,) acts on the journal, joint frame, moment about O = p_H; the housing gets exactly minus it about O.
     """
-    force = times(frame_h[:, :3], wrench[:3])
-    moment = times(frame_h[:, :3], wrench[3:])
-    r = frame_j[:, 3] - frame_h[:, 3]
-    loads_out[0] = -force
-    loads_out[1] = -moment
-    loads_out[2] = force
-    loads_out[3] = moment - cross(r, force)
+    force = times(frame_h, (wrench[0], wrench[1], wrench[2]))
+    moment = times(frame_h, (wrench[3], wrench[4], wrench[5]))
+    arm = cross(_minus(column(frame_j, PLACE), column(frame_h, PLACE)), force)
+    for i in range(3):
+        loads_out[0, i], loads_out[1, i] = -force[i], -moment[i]
+        loads_out[2, i], loads_out[3, i] = force[i], moment[i] - arm[i]
 
 
 @njit(cache=True)
@@ -200,39 +228,36 @@ def tangent_matrices(frame_h, frame_j, jac_h, jac_j, loads, tangent, motion_q, m
 
     ``tangent`` (6, 10) is d wrench / d motion in the joint frame.
     """
-    a_h = frame_h[:, :3]
-    r = frame_j[:, 3] - frame_h[:, 3]
-    force, moment = loads[2], -loads[1]
-    n_h, n_j = jac_h.shape[2], jac_j.shape[2]
-    load = np.empty((4, 3))
-    for c in range(n_h + n_j):
-        jac = jac_h if c < n_h else jac_j
-        k = c if c < n_h else c - n_h
+    r = _minus(column(frame_j, PLACE), column(frame_h, PLACE))
+    force, moment = (loads[2, 0], loads[2, 1], loads[2, 2]), (-loads[1, 0], -loads[1, 1], -loads[1, 2])
+    n_h = jac_h.shape[2]
+    n = n_h + jac_j.shape[2]
+    dw, load, column_c = np.empty(6), np.empty((4, 3)), np.empty(n)
+    for c in range(n):
+        jac, k = (jac_h, c) if c < n_h else (jac_j, c - n_h)
         for kind in range(2):
             motion = motion_q if kind == 0 else motion_qt
-            dw = np.zeros(6)
             for i in range(6):
+                dw[i] = 0.0
                 for m in range(10):
                     dw[i] += tangent[i, m] * motion[m, c]
-            df = times(a_h, dw[:3])
-            dm = times(a_h, dw[3:])
-            dmj = dm - cross(r, df)
+            df = times(frame_h, (dw[0], dw[1], dw[2]))
+            dm = times(frame_h, (dw[3], dw[4], dw[5]))
+            dmj = _minus(dm, cross(r, df))
             if kind == 0:
+                turned, moved = _jac_column(jac, _JR, k), cross(_jac_column(jac, _JP, k), force)
                 if c < n_h:
                     # the joint frame turns, and with it the wrench
-                    turn_f = cross(jac[1, :, k], force)
-                    turn_m = cross(jac[1, :, k], moment)
-                    df += turn_f
-                    dm += turn_m
-                    dmj += turn_m - cross(r, turn_f) + cross(jac[0, :, k], force)
+                    turn_f, turn_m = cross(turned, force), cross(turned, moment)
+                    df, dm = _plus(df, turn_f), _plus(dm, turn_m)
+                    dmj = _plus(dmj, _plus(_minus(turn_m, cross(r, turn_f)), moved))
                 else:
-                    dmj -= cross(jac[0, :, k], force)
+                    dmj = _minus(dmj, moved)
             for i in range(3):
                 load[0, i], load[1, i], load[2, i], load[3, i] = -df[i], -dm[i], df[i], dmj[i]
-            column = np.empty(n_h + n_j)
-            generalized_force(jac_h, jac_j, load, column)
-            for i in range(n_h + n_j):
+            generalized_force(jac_h, jac_j, load, column_c)
+            for i in range(n):
                 if kind == 0:
-                    k_out[i, c] += column[i]
+                    k_out[i, c] += column_c[i]
                 else:
-                    d_out[i, c] = column[i]
+                    d_out[i, c] = column_c[i]

@@ -16,7 +16,8 @@ Lie group nodes: q_t holds the local angular velocity, and dq the local incremen
 Euler parameters: the node's rotation is that of e / |e|, so that an iterate off the unit sphere is a pure rotation;
 on the sphere, where Exudyn's constraint holds it, all quantities equal Exudyn's.
 
-Vectors are written in loops: numba takes seconds to compile the message of an assignment to a slice that does not fit.
+Vectors of three are tuples, and arrays are written in loops: slices and expressions of arrays take numba many times as
+long to compile, seconds for the message of an assignment to a slice that does not fit.
 """
 
 from __future__ import annotations
@@ -39,185 +40,200 @@ COORDINATES = {
 }
 """Number of coordinates of each kind."""
 
+# Columns of a frame; numpy's integers, since numba compiles kernels anew for each plain one.
+AXIS, PLACE, VELOCITY, SPIN = (np.int64(k) for k in (2, 3, 4, 5))
+
 
 @njit(cache=True)
 def translations(kind):
     """Number of coordinates of the position, which are the first of a node that moves."""
-    return 2 if kind in (PLANAR, PLANAR_POINT) else 3
+    if kind == PLANAR:
+        return 2
+    return 2 if kind == PLANAR_POINT else 3
 
 
 @njit(cache=True)
 def cross(a, b):
-    """Vector product of two 3-vectors."""
-    c = np.empty(3)
-    c[0] = a[1] * b[2] - a[2] * b[1]
-    c[1] = a[2] * b[0] - a[0] * b[2]
-    c[2] = a[0] * b[1] - a[1] * b[0]
-    return c
+    """Vector product of two 3-tuples."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@njit(cache=True)
+def column(a, k):
+    """Column of a matrix (3, n) as a tuple."""
+    return a[0, k], a[1, k], a[2, k]
 
 
 @njit(cache=True)
 def times(a, b):
-    """Matrix (3, 3) times vector (3,)."""
-    c = np.empty(3)
-    for i in range(3):
-        c[i] = a[i, 0] * b[0] + a[i, 1] * b[1] + a[i, 2] * b[2]
-    return c
+    """First three columns of a matrix times a 3-tuple."""
+    return (
+        a[0, 0] * b[0] + a[0, 1] * b[1] + a[0, 2] * b[2],
+        a[1, 0] * b[0] + a[1, 1] * b[1] + a[1, 2] * b[2],
+        a[2, 0] * b[0] + a[2, 1] * b[1] + a[2, 2] * b[2],
+    )
 
 
 @njit(cache=True)
-def transposed_times(a, b):
-    """Transposed matrix (3, 3) times vector (3,)."""
-    c = np.empty(3)
-    for i in range(3):
-        c[i] = a[0, i] * b[0] + a[1, i] * b[1] + a[2, i] * b[2]
-    return c
-
-
-@njit(cache=True)
-def euler_g(e):
+def _euler_g(e0, e1, e2, e3, g_out):
     """Matrix G (3, 4), bilinear: omega = G(e) e_t for unit e, global components."""
-    g = np.empty((3, 4))
-    g[0, 0], g[0, 1], g[0, 2], g[0, 3] = -2.0 * e[1], 2.0 * e[0], -2.0 * e[3], 2.0 * e[2]
-    g[1, 0], g[1, 1], g[1, 2], g[1, 3] = -2.0 * e[2], 2.0 * e[3], 2.0 * e[0], -2.0 * e[1]
-    g[2, 0], g[2, 1], g[2, 2], g[2, 3] = -2.0 * e[3], -2.0 * e[2], 2.0 * e[1], 2.0 * e[0]
-    return g
+    g_out[0, 0], g_out[0, 1], g_out[0, 2], g_out[0, 3] = -2.0 * e1, 2.0 * e0, -2.0 * e3, 2.0 * e2
+    g_out[1, 0], g_out[1, 1], g_out[1, 2], g_out[1, 3] = -2.0 * e2, 2.0 * e3, 2.0 * e0, -2.0 * e1
+    g_out[2, 0], g_out[2, 1], g_out[2, 2], g_out[2, 3] = -2.0 * e3, -2.0 * e2, 2.0 * e1, 2.0 * e0
 
 
 @njit(cache=True)
-def _rotation_euler(e):
-    norm2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3]
+def _rotation_euler(e0, e1, e2, e3, a_out):
+    """Rotation of e / |e|; returns |e|^2."""
+    norm2 = e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3
     f = 2.0 / norm2
-    a = np.empty((3, 3))
-    a[0, 0] = 1.0 - f * (e[2] * e[2] + e[3] * e[3])
-    a[1, 1] = 1.0 - f * (e[1] * e[1] + e[3] * e[3])
-    a[2, 2] = 1.0 - f * (e[1] * e[1] + e[2] * e[2])
-    a[0, 1], a[1, 0] = f * (e[1] * e[2] - e[0] * e[3]), f * (e[1] * e[2] + e[0] * e[3])
-    a[0, 2], a[2, 0] = f * (e[1] * e[3] + e[0] * e[2]), f * (e[1] * e[3] - e[0] * e[2])
-    a[1, 2], a[2, 1] = f * (e[2] * e[3] - e[0] * e[1]), f * (e[2] * e[3] + e[0] * e[1])
-    return a, norm2
+    a_out[0, 0] = 1.0 - f * (e2 * e2 + e3 * e3)
+    a_out[1, 1] = 1.0 - f * (e1 * e1 + e3 * e3)
+    a_out[2, 2] = 1.0 - f * (e1 * e1 + e2 * e2)
+    a_out[0, 1], a_out[1, 0] = f * (e1 * e2 - e0 * e3), f * (e1 * e2 + e0 * e3)
+    a_out[0, 2], a_out[2, 0] = f * (e1 * e3 + e0 * e2), f * (e1 * e3 - e0 * e2)
+    a_out[1, 2], a_out[2, 1] = f * (e2 * e3 - e0 * e1), f * (e2 * e3 + e0 * e1)
+    return norm2
 
 
 @njit(cache=True)
-def _rotation_vector(v):
-    """Exponential map of a rotation vector (3,)."""
-    angle = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+def _turn_vector(v0, v1, v2, a_out, jr_out):
+    """Exponential map of a rotation vector, and the same matrix as Jr."""
+    angle = np.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
     half = 0.5 * angle
     # sin(half) / angle stays accurate for small angles, 1 - cos(angle) would not
     sinc = 0.5 * (1.0 - half * half / 6.0) if half < 1e-4 else np.sin(half) / angle
-    e = np.empty(4)
-    e[0] = np.cos(half)
+    _rotation_euler(np.cos(half), sinc * v0, sinc * v1, sinc * v2, a_out)
     for i in range(3):
-        e[i + 1] = sinc * v[i]
-    a, _ = _rotation_euler(e)
-    return a
+        for j in range(3):
+            jr_out[i, j] = a_out[i, j]
 
 
 @njit(cache=True)
-def _rotation_tait_bryan(angles):
-    """A = Rx(a) Ry(b) Rz(c)."""
-    ca, sa = np.cos(angles[0]), np.sin(angles[0])
-    cb, sb = np.cos(angles[1]), np.sin(angles[1])
-    cc, sc = np.cos(angles[2]), np.sin(angles[2])
-    a = np.empty((3, 3))
-    a[0, 0], a[0, 1], a[0, 2] = cb * cc, -cb * sc, sb
-    a[1, 0], a[1, 1], a[1, 2] = ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb
-    a[2, 0], a[2, 1], a[2, 2] = sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb
-    return a
+def _turn_tait_bryan(v0, v1, v2, a_out, jr_out):
+    """A = Rx(a) Ry(b) Rz(c), and the global axes about which the three angles turn, as columns of Jr."""
+    ca, sa, cb, sb, cc, sc = np.cos(v0), np.sin(v0), np.cos(v1), np.sin(v1), np.cos(v2), np.sin(v2)
+    a_out[0, 0], a_out[0, 1], a_out[0, 2] = cb * cc, -cb * sc, sb
+    a_out[1, 0], a_out[1, 1], a_out[1, 2] = ca * sc + sa * sb * cc, ca * cc - sa * sb * sc, -sa * cb
+    a_out[2, 0], a_out[2, 1], a_out[2, 2] = sa * sc - ca * sb * cc, sa * cc + ca * sb * sc, ca * cb
+    jr_out[0, 0], jr_out[1, 1], jr_out[2, 1] = 1.0, ca, sa
+    jr_out[0, 2], jr_out[1, 2], jr_out[2, 2] = sb, -sa * cb, ca * cb
 
 
 @njit(cache=True)
-def _tait_bryan_axes(angles):
-    """Global axes (3, 3, columns) about which the three angles turn."""
-    ca, sa = np.cos(angles[0]), np.sin(angles[0])
-    cb, sb = np.cos(angles[1]), np.sin(angles[1])
-    g = np.zeros((3, 3))
-    g[0, 0] = 1.0
-    g[1, 1], g[2, 1] = ca, sa
-    g[0, 2], g[1, 2], g[2, 2] = sb, -sa * cb, ca * cb
-    return g
+def turn(kind, q, reference, a_out, jr_out, theta_out):
+    """Rotation of a node with coordinates ``q`` and reference values ``reference`` (n,).
 
+    Parameters
+    ----------
+    kind, q, reference
+        As in `node_frame`.
+    a_out : ndarray (3, 3)
+        Node to global.
+    jr_out : ndarray (3, 4)
+        Jr in the first m columns.
+    theta_out : ndarray (4,)
+        The m coordinates of the rotation with their reference values.
 
-@njit(cache=True)
-def node_rotation(kind, theta):
-    """Rotation matrix (3, 3), node to global, and Jr (3, m) of a node with rotation coordinates ``theta`` (m,)."""
+    Returns
+    -------
+    int
+        m.
+    """
+    nt = translations(kind)
+    # points come last
+    m = 0 if kind >= POINT else q.size - nt
+    for k in range(4):
+        theta_out[k] = q[nt + k] + reference[nt + k] if k < m else 0.0
+    for i in range(3):
+        for j in range(3):
+            a_out[i, j] = 1.0 if i == j else 0.0
+        for j in range(4):
+            jr_out[i, j] = 0.0
+    v0, v1, v2, v3 = theta_out[0], theta_out[1], theta_out[2], theta_out[3]
     if kind == EULER_PARAMETERS:
-        a, norm2 = _rotation_euler(theta)
-        return a, euler_g(theta) / norm2
-    if kind == TAIT_BRYAN:
-        return _rotation_tait_bryan(theta), _tait_bryan_axes(theta)
-    if kind == ROTATION_VECTOR:
-        a = _rotation_vector(theta)
-        return a, a.copy()
-    a = np.eye(3)
-    if kind != PLANAR:
-        return a, np.zeros((3, 0))
-    jr = np.zeros((3, 1))
-    jr[2, 0] = 1.0
-    a[0, 0], a[0, 1] = np.cos(theta[0]), -np.sin(theta[0])
-    a[1, 0], a[1, 1] = np.sin(theta[0]), np.cos(theta[0])
-    return a, jr
-
-
-@njit(cache=True)
-def _spin_variation(kind, theta, theta_t, a, jr):
-    """d(Jr theta_t) / d theta (3, m) at fixed theta_t."""
-    m = jr.shape[1]
-    w = np.zeros((3, m))
-    if kind == EULER_PARAMETERS:
-        norm2 = theta[0] ** 2 + theta[1] ** 2 + theta[2] ** 2 + theta[3] ** 2
-        g_t = euler_g(theta_t)
+        norm2 = _rotation_euler(v0, v1, v2, v3, a_out)
+        _euler_g(v0, v1, v2, v3, jr_out)
         for i in range(3):
-            omega_i = 0.0
-            for k in range(4):
-                omega_i += jr[i, k] * theta_t[k]
+            for j in range(4):
+                jr_out[i, j] /= norm2
+    elif kind == TAIT_BRYAN:
+        _turn_tait_bryan(v0, v1, v2, a_out, jr_out)
+    elif kind == ROTATION_VECTOR:
+        _turn_vector(v0, v1, v2, a_out, jr_out)
+    elif kind == PLANAR:
+        jr_out[2, 0] = 1.0
+        a_out[0, 0], a_out[0, 1] = np.cos(v0), -np.sin(v0)
+        a_out[1, 0], a_out[1, 1] = np.sin(v0), np.cos(v0)
+    return m
+
+
+def rotation_of(kind: int, reference: np.ndarray) -> np.ndarray:
+    """Rotation matrix (3, 3), node to global, of a node with coordinates ``reference`` (n,)."""
+    a = np.empty((3, 3))
+    turn(kind, np.zeros_like(reference), reference, a, np.empty((3, 4)), np.empty(4))
+    return a
+
+
+@njit(cache=True)
+def _spin_variation(kind, theta, theta_t, a, jr, w_out):
+    """d(Jr theta_t) / d theta (3, m) at fixed theta_t, in the first columns of ``w_out`` (3, 4)."""
+    for i in range(3):
+        for k in range(4):
+            w_out[i, k] = 0.0
+    if kind == EULER_PARAMETERS:
+        norm2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2] + theta[3] * theta[3]
+        _euler_g(theta_t[0], theta_t[1], theta_t[2], theta_t[3], w_out)
+        for i in range(3):
+            omega_i = jr[i, 0] * theta_t[0] + jr[i, 1] * theta_t[1] + jr[i, 2] * theta_t[2] + jr[i, 3] * theta_t[3]
             for k in range(4):
                 # G(e) e_t = -G(e_t) e, and the normalisation 1 / |e|^2
-                w[i, k] = -g_t[i, k] / norm2 - 2.0 * omega_i * theta[k] / norm2
+                w_out[i, k] = -w_out[i, k] / norm2 - 2.0 * omega_i * theta[k] / norm2
     elif kind == TAIT_BRYAN:
-        first = cross(jr[:, 0], jr[:, 1] * theta_t[1] + jr[:, 2] * theta_t[2])
-        second = cross(jr[:, 1], jr[:, 2] * theta_t[2])
-        for i in range(3):
-            w[i, 0], w[i, 1] = first[i], second[i]
+        s, t = theta_t[1], theta_t[2]
+        later = jr[0, 2] * t, jr[1, 2] * t, jr[2, 2] * t
+        both = jr[0, 1] * s + later[0], jr[1, 1] * s + later[1], jr[2, 1] * s + later[2]
+        w_out[0, 0], w_out[1, 0], w_out[2, 0] = cross((jr[0, 0], jr[1, 0], jr[2, 0]), both)
+        w_out[0, 1], w_out[1, 1], w_out[2, 1] = cross((jr[0, 1], jr[1, 1], jr[2, 1]), later)
     elif kind == ROTATION_VECTOR:
-        for k in range(3):
-            e = np.zeros(3)
-            e[k] = 1.0
-            turn = times(a, cross(e, theta_t))
-            for i in range(3):
-                w[i, k] = turn[i]
-    return w
+        x, y, z = theta_t[0], theta_t[1], theta_t[2]
+        for i in range(3):
+            # A (e_k x theta_t)
+            w_out[i, 0] = a[i, 2] * y - a[i, 1] * z
+            w_out[i, 1] = a[i, 0] * z - a[i, 2] * x
+            w_out[i, 2] = a[i, 1] * x - a[i, 0] * y
 
 
 @njit(cache=True)
-def _torque_variation(kind, theta, jr, torque):
-    """d(Jr^T T) / d theta (m, m) at a fixed global torque T."""
-    m = jr.shape[1]
-    h = np.zeros((m, m))
-    if kind == EULER_PARAMETERS:
-        norm2 = theta[0] ** 2 + theta[1] ** 2 + theta[2] ** 2 + theta[3] ** 2
+def _torque_variation(kind, theta, jr, torque, h_out):
+    """d(Jr^T T) / d theta at a fixed global torque T (3-tuple), in the first rows and columns of ``h_out`` (4, 4)."""
+    for i in range(4):
         for j in range(4):
-            e = np.zeros(4)
-            e[j] = 1.0
-            g_j = euler_g(e)
-            for i in range(4):
-                q_i, dq_i = 0.0, 0.0
-                for k in range(3):
-                    q_i += jr[k, i] * torque[k]
-                    dq_i += g_j[k, i] * torque[k]
-                h[i, j] = (dq_i - 2.0 * q_i * theta[j]) / norm2
+            h_out[i, j] = 0.0
+    if kind == EULER_PARAMETERS:
+        norm2 = theta[0] * theta[0] + theta[1] * theta[1] + theta[2] * theta[2] + theta[3] * theta[3]
+        x, y, z = 2.0 * torque[0], 2.0 * torque[1], 2.0 * torque[2]
+        # G is linear: T . G(e_j) e_i, row for row
+        h_out[0, 1], h_out[0, 2], h_out[0, 3] = -x, -y, -z
+        h_out[1, 0], h_out[1, 2], h_out[1, 3] = x, -z, y
+        h_out[2, 0], h_out[2, 1], h_out[2, 3] = y, z, -x
+        h_out[3, 0], h_out[3, 1], h_out[3, 2] = z, -y, x
+        for i in range(4):
+            q_i = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
+            for j in range(4):
+                h_out[i, j] = (h_out[i, j] - 2.0 * q_i * theta[j]) / norm2
     elif kind == TAIT_BRYAN:
         # axis i turns with every angle before it: dg_i / dtheta_j = g_j x g_i for j < i
         for i in range(3):
             for j in range(i):
-                d = cross(jr[:, j], jr[:, i])
-                h[i, j] = d[0] * torque[0] + d[1] * torque[1] + d[2] * torque[2]
+                d = cross(column(jr, j), column(jr, i))
+                h_out[i, j] = d[0] * torque[0] + d[1] * torque[1] + d[2] * torque[2]
     elif kind == ROTATION_VECTOR:
-        local = transposed_times(jr, torque)
-        h[0, 1], h[0, 2] = -local[2], local[1]
-        h[1, 0], h[1, 2] = local[2], -local[0]
-        h[2, 0], h[2, 1] = -local[1], local[0]
-    return h
+        # cross product with the local torque A^T T, Jr = A
+        for i in range(3):
+            j, k = (i + 1) % 3, (i + 2) % 3
+            local = jr[0, i] * torque[0] + jr[1, i] * torque[1] + jr[2, i] * torque[2]
+            h_out[j, k], h_out[k, j] = -local, local
 
 
 @njit(cache=True)
@@ -240,27 +256,27 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
         Entries 0 and 1 are written.
     """
     nt = translations(kind)
-    a, jr = node_rotation(kind, q[nt:] + reference[nt:])
-    s = times(a, rho)
-    omega = np.zeros(3)
-    for i in range(3):
-        for k in range(jr.shape[1]):
-            omega[i] += jr[i, k] * q_t[nt + k]
-    v = cross(omega, s)
+    a, jr, theta = np.empty((3, 3)), np.empty((3, 4)), np.empty(4)
+    m = turn(kind, q, reference, a, jr, theta)
+    s = times(a, (rho[0], rho[1], rho[2]))
     for i in range(3):
         for j in range(3):
             frame_out[i, j] = a[i, 0] * a_loc[0, j] + a[i, 1] * a_loc[1, j] + a[i, 2] * a_loc[2, j]
         frame_out[i, 3] = s[i]
-        frame_out[i, 4] = v[i]
-        frame_out[i, 5] = omega[i]
+        omega_i = 0.0
+        for k in range(m):
+            omega_i += jr[i, k] * q_t[nt + k]
+        frame_out[i, 5] = omega_i
+    frame_out[0, 4], frame_out[1, 4], frame_out[2, 4] = cross(column(frame_out, SPIN), s)
+    for i in range(3):
+        for k in range(q.size):
+            jac_out[0, i, k] = jac_out[1, i, k] = 0.0
     for i in range(nt):
         frame_out[i, 3] += q[i] + reference[i]
         frame_out[i, 4] += q_t[i]
-    jac_out[:2] = 0.0
-    for i in range(nt):
         jac_out[0, i, i] = 1.0
-    for k in range(jr.shape[1]):
-        arm = cross(jr[:, k], s)
+    for k in range(m):
+        arm = cross(column(jr, k), s)
         for i in range(3):
             jac_out[0, i, nt + k], jac_out[1, i, nt + k] = arm[i], jr[i, k]
 
@@ -269,18 +285,23 @@ def node_frame(kind, q, q_t, reference, rho, a_loc, frame_out, jac_out):
 def node_variation(kind, q, q_t, reference, rho, jac_out):
     """Fill Vq and Wq of ``jac_out`` (4, 3, n), whose Jr must be current: variation of v and omega at fixed rates."""
     nt = translations(kind)
-    theta = q[nt:] + reference[nt:]
-    a, jr = node_rotation(kind, theta)
-    s = times(a, rho)
-    w = _spin_variation(kind, theta, q_t[nt:], a, jr)
-    omega = np.zeros(3)
-    for k in range(jr.shape[1]):
-        for i in range(3):
-            omega[i] += jr[i, k] * q_t[nt + k]
-    jac_out[2:] = 0.0
-    for k in range(jr.shape[1]):
+    a, jr, theta, w = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty((3, 4))
+    rates, spin = np.zeros(4), np.zeros(3)
+    m = turn(kind, q, reference, a, jr, theta)
+    s = times(a, (rho[0], rho[1], rho[2]))
+    for k in range(m):
+        rates[k] = q_t[nt + k]
+    _spin_variation(kind, theta, rates, a, jr, w)
+    for i in range(3):
+        for k in range(m):
+            spin[i] += jr[i, k] * rates[k]
+    omega = spin[0], spin[1], spin[2]
+    for i in range(3):
+        for k in range(q.size):
+            jac_out[2, i, k] = jac_out[3, i, k] = 0.0
+    for k in range(m):
         # v = r_t + omega x s, ds = dphi x s
-        turned, moved = cross(w[:, k], s), cross(omega, cross(jr[:, k], s))
+        turned, moved = cross(column(w, k), s), cross(omega, cross(column(jr, k), s))
         for i in range(3):
             jac_out[2, i, nt + k], jac_out[3, i, nt + k] = turned[i] + moved[i], w[i, k]
 
@@ -289,14 +310,16 @@ def node_variation(kind, q, q_t, reference, rho, jac_out):
 def node_geometric(kind, q, reference, rho, force, moment, geo_out):
     """Geometric term d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment at the marker."""
     nt = translations(kind)
-    theta = q[nt:] + reference[nt:]
-    a, jr = node_rotation(kind, theta)
-    s = times(a, rho)
-    m = jr.shape[1]
-    h = _torque_variation(kind, theta, jr, moment + cross(s, force))
-    geo_out[:] = 0.0
+    a, jr, theta, h = np.empty((3, 3)), np.empty((3, 4)), np.empty(4), np.empty((4, 4))
+    m = turn(kind, q, reference, a, jr, theta)
+    s, F = times(a, (rho[0], rho[1], rho[2])), (force[0], force[1], force[2])
+    torque = cross(s, F)
+    _torque_variation(kind, theta, jr, (moment[0] + torque[0], moment[1] + torque[1], moment[2] + torque[2]), h)
+    for i in range(q.size):
+        for j in range(q.size):
+            geo_out[i, j] = 0.0
     for j in range(m):
         # the torque s x F changes with the arm: dT = (dphi x s) x F
-        d_torque = cross(cross(jr[:, j], s), force)
+        d_torque = cross(cross(column(jr, j), s), F)
         for i in range(m):
             geo_out[nt + i, nt + j] = h[i, j] + jr[0, i] * d_torque[0] + jr[1, i] * d_torque[1] + jr[2, i] * d_torque[2]
