@@ -7,6 +7,7 @@ A bush that the carrier's own mass contains is taken off it again as a rigid bod
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -130,8 +131,15 @@ class BushEquations:
         return bmat([[self._moving_mass, coupling], [coupling.T, own]], format="csr")
 
     def rounding(self, reach: np.ndarray) -> float:
-        """What the rounding of coordinates up to a size (n,) makes of forces [N] at most, root of sum of squares."""
-        return self._rounding * float(reach[: self._count].max(initial=0.0))
+        """What the rounding of coordinates up to a size (n,) makes of forces [N] at most, root of sum of squares.
+
+        Nodes on a carrier have the rounding of their places in the model, which are those of the last evaluation.
+        """
+        size = float(reach[: self._count].max(initial=0.0))
+        if self.carrier is None:
+            return self._rounding * size
+        places = float(np.abs(self.carrier.positions()).max(initial=0.0))
+        return math.hypot(self._rounding * size, self._carried_rounding * places)
 
     def require_upright(self, mbs: exu.MainSystem, item: int, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
@@ -195,7 +203,15 @@ class BushEquations:
     @cached_property
     def _rounding(self) -> float:
         """Force [N] per displacement [m]: nodes that are off by their rounding, all to the worst."""
-        rows = abs(self.solid.tangent(np.zeros(self.held.shape))).sum(axis=1)
+        return self._rounding_of(np.arange(self.held.size))
+
+    @cached_property
+    def _carried_rounding(self) -> float:
+        """The same of the carrier's nodes alone."""
+        return self._rounding_of(self._slaved_rows)
+
+    def _rounding_of(self, columns: np.ndarray) -> float:
+        rows = abs(self.solid.tangent(np.zeros(self.held.shape)))[:, columns].sum(axis=1)
         return float(np.finfo(float).eps * np.linalg.norm(rows))
 
     @cached_property

@@ -102,9 +102,10 @@ class GapLimit:
                 part = min(part, allowed, self._allowed_at_end(film, last, after))
         state = _state(mbs)
         if part < 1.0:
-            kept = np.where(additive, 1.0 - part, 0.0)
-            for share, old, new in zip((kept, kept, kept, 1.0 - part), self.before, state, strict=True):
-                new += share * (old - new)
+            taken = np.where(additive, part, 1.0)
+            for share, old, new in zip((taken, taken, taken, part), self.before, state, strict=True):
+                # from the old values: the new ones of a step of any size would round them away
+                new[:] = np.where(share == 1.0, new, old + share * (new - old))
         for old, new in zip(self.before, state, strict=True):
             old[:] = new
 

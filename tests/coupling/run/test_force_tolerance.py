@@ -96,3 +96,46 @@ def test_a_steel_ring_that_flies_without_a_joint_halves_no_step(solve):
     assert len(times) == 1 + steps
     falls = np.array([50.0, -9.81 * steps * step, 0.0])
     assert np.abs(ring.velocities() - falls).max() < 1e-7
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0, 0.0), (-70.0, 10.0, 80.0)], ids=["near", "far"])
+@pytest.mark.parametrize("solve", [ehd.SolveDynamic, ehd.SolveDynamicSparse])
+def test_a_housing_that_falls_with_its_nodal_bush_halves_no_step(solve, place):
+    """Nodes on a carrier have the rounding of their places: forces of 1e-6 N at centimetres, of 1e-3 N at 100 m."""
+    mbs, steps, step = scenes.new_system(), 40, 1e-4
+    mesh = ehd.HollowCylinder(inner_radius=0.03003, thickness=0.02, length=0.066, axial=1, radial=1, circumferential=8)
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+    bodies = [
+        mbs.CreateRigidBody(
+            inertia=RigidBodyInertia(mass=mass, inertiaTensor=0.02 * np.eye(3)),
+            referencePosition=list(place),
+            gravity=[0.0, -9.81, 0.0],
+            initialAngularVelocity=[0.0, 0.0, speed],
+            nodeType=exu.NodeType.RotationRxyz,
+        )
+        for mass, speed in ((3.0, 0.0), (2.0, 300.0))
+    ]
+    joint = ehd.CreateLubricatedJoint(
+        mbs,
+        name="film",
+        itemNumbers=bodies,
+        position=list(place),
+        axis=[0, 0, 1],
+        bearing=ehd.JournalBearing(
+            journal_radius=0.03,
+            length=0.066,
+            radial_clearance=3e-5,
+            lubricant=ehd.Lubricant(viscosity=0.02),
+            film=ehd.FiniteLength(n_theta=32, n_z=4),
+            bush=ehd.ANCFBush(mesh=mesh, material=steel),
+        ),
+    )
+    mbs.Assemble()
+    settings = ehd.ConfigureSolver(scenes.settings(steps * step, steps))
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.timeIntegration.adaptiveStep = False
+    solve(mbs, settings)
+    assert joint.history.time.size == 1 + steps
+    for body in bodies:
+        speed = mbs.GetObjectOutputBody(body, exu.OutputVariableType.Velocity, [0, 0, 0])[1]
+        assert speed == pytest.approx(-9.81 * steps * step, rel=1e-6)

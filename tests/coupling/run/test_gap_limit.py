@@ -1,10 +1,13 @@
 """Newton's method is kept within the films, and ends where it did."""
 
 import math
+from types import SimpleNamespace
 
 import exudyn as exu
 import numpy as np
 import pytest
+import scenes
+from turning import spinning_ring
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.run import gap_limit
@@ -36,6 +39,58 @@ def test_part_of_a_step():
         assert 0.0 < part < 1.0
         assert smallest_gap(before + part * (after - before)) == pytest.approx((1.0 - SHARE) * gap, rel=1e-6)
     assert shortened > 500
+
+
+class Axis:
+    """Film of a journal whose first two coordinates are its place."""
+
+    model = SimpleNamespace(
+        bearing=ehd.JournalBearing(
+            journal_radius=0.01, length=LENGTH, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=0.01)
+        )
+    )
+
+    def __init__(self, old, new):
+        self.last = SimpleNamespace(bodies=self.motion(old), status=None)
+        self.new = new
+
+    def peek(self, mbs):
+        return self.motion(self.new)
+
+    @staticmethod
+    def motion(state):
+        return np.r_[state[0][:2], np.zeros(8)]
+
+
+def test_a_step_of_any_size_leaves_the_integrators_formulas(monkeypatch):
+    """Divergence by 1e30 of the clearance is taken back to the film's half, not to zeros."""
+    h, rng = 1e-3, np.random.default_rng(0)
+    old = [rng.normal(size=3) * size for size in (1e-5, 1e-2, 1e2, 1.0)]
+    for size in (1e-4, 1e3, 1e30):
+        d = rng.normal(size=3) * size
+        new = [old[0] + d, old[1] + 2.0 * d / h, old[2] + 4.0 * d / h**2, old[3] + 1e9 * d]
+
+        limit, states = gap_limit.GapLimit([Axis(old, new)]), [[values.copy() for values in old], new]
+        monkeypatch.setattr(gap_limit, "_state", lambda _, states=states: states[0])
+        limit.start(None)
+        monkeypatch.setattr(gap_limit, "_state", lambda _, states=states: states[1])
+        limit.shorten(None, np.array([1.0, 1.0, 1.0]))
+        gaps = [smallest_gap(Axis.motion(values)) for values in (old, new)]
+        assert gaps[1] == pytest.approx((1.0 - SHARE) * gaps[0], rel=1e-6)
+        moved = [after - before for after, before in zip(new, old, strict=True)]
+        for rate, factor in ((1, 2.0 / h), (2, 4.0 / h**2), (3, 1e9)):
+            assert moved[rate] == pytest.approx(factor * moved[0], rel=1e-6)
+
+
+def test_a_journal_of_finite_elements_goes_on_turning_where_newtons_method_diverges():
+    """Steps of 0.15 rad with factors that are some steps old: it came to rest where it had started, in one step."""
+    mbs, ring, _ = spinning_ring(300.0)
+    start = ring.momentum()[1][2]
+    settings = ehd.ConfigureSolver(scenes.settings(2.5e-3, 5))
+    settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
+    settings.timeIntegration.newton.useModifiedNewton = True
+    ehd.SolveDynamic(mbs, settings)
+    assert 0.98 * start < ring.momentum()[1][2] < start
 
 
 @pytest.mark.parametrize("motion", [np.full(10, np.nan), np.r_[C, np.zeros(9)], np.r_[2.0 * C, np.zeros(9)]])
