@@ -250,8 +250,26 @@ TRAPS = {
         "give 7.8e\\+03",
     ),
 }
+BORE = ehd.HollowCylinder(inner_radius=0.025, thickness=5e-3, length=0.025, axial=1, circumferential=8).mesh().bore
 UNUSUAL = {
     "viscosity in mPa s": (lambda: ehd.Lubricant(viscosity=20.0), "in mPa s, give 0.02"),
+    "viscosity of hot oil in mPa s": (lambda: ehd.Lubricant(viscosity=9.0), "in mPa s, give 0.009"),
+    "viscosities of a law in mPa s": (
+        lambda: ehd.Lubricant(temperature_law=ehd.VogelTemperature(first=(313.0, 40.0), second=(373.0, 6.0))),
+        "in mPa s, give 0.0",
+    ),
+    "relaxation in microseconds": (
+        lambda: ehd.CarreauShear(relaxation_time=1.0, exponent=0.8),
+        "in microseconds, give 1e-06",
+    ),
+    "groove in degrees": (lambda: ehd.AxialGroove(angle=0.0, width_angle=4.0), "in degrees, give 0.0698"),
+    "gravity in mm/s2": (lambda: ehd.Gravity(acceleration=(0.0, -9810.0, 0.0)), "in mm/s2, give 9.81"),
+    "pressure on a solid in MPa": (
+        lambda: ehd.FollowerPressure(surface=BORE, pressure=5.0),
+        "in MPa, give 5e\\+06",
+    ),
+    "cavity below the vacuum": (lambda: ehd.SwiftStieber(cavity_pressure=-3e5), "absolute vacuum"),
+    "cavity of kept oil below the vacuum": (lambda: ehd.ElrodAdams(cavity_pressure=-3e5), "absolute vacuum"),
     "a gas": (lambda: ehd.Lubricant(viscosity=1.8e-5), "gases are compressible"),
     "Young's modulus in MPa": (
         lambda: ehd.SaintVenantKirchhoff(youngs_modulus=210e3, poisson_ratio=0.3, density=7800.0),

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.contract import Index, JointModel, Side
+from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
 from exudyn_ehd.coupling.element.presence import Presence
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.handle import LubricatedJoint
@@ -24,7 +24,6 @@ from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joi
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
-from exudyn_ehd.coupling.run.settings import require_system
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model

@@ -11,7 +11,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.joint.step_rates import StepStart
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import InputError, Status
 
 # Exudyn's index types exist at run time, but not in its type stubs.
 _indices: Any = exu
@@ -20,6 +20,15 @@ Data: TypeAlias = dict[str, Any]
 """An item's data as Exudyn's GetNode, GetObject and GetMarker return them."""
 Index: TypeAlias = SupportsInt
 """Number of an item as Exudyn gives it: a NodeIndex, ObjectIndex, MarkerIndex or SensorIndex."""
+
+
+def require_system(where: str, mbs: exu.MainSystem) -> None:
+    """Refuse what is no system of Exudyn."""
+    if not isinstance(mbs, exu.MainSystem):
+        raise InputError(
+            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
+            "SystemContainer().AddSystem() returns."
+        )
 
 
 class Evaluation(Protocol):

@@ -12,13 +12,13 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
-from exudyn_ehd.coupling.element.failures import HIGHEST_PEAK
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.history import JointHistory, Quantity
 from exudyn_ehd.coupling.record.results import JointResults
 from exudyn_ehd.coupling.record.sensors import add_sensor, reader
 from exudyn_ehd.coupling.run.joint_state import JointState, bore_modes_of, check_owner, digest
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
-from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex
+from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex, require_system
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
@@ -79,6 +79,7 @@ def ReplaceJoint(
     >>> mbs.GetObject(ideal)["activeConnector"]
     False
     """
+    require_system("ReplaceJoint", mbs)
     joint, where = _joint(mbs, objectNumber)
     if journal not in (0, 1):
         raise InputError(f"ReplaceJoint.journal must be 0 or 1, the place of its marker in the joint, got {journal!r}.")
@@ -148,6 +149,7 @@ def ReplaceJoints(
     >>> len(films)
     1
     """
+    require_system("ReplaceJoints", mbs)
     unknown = [kind for kind in types if kind not in TYPES]
     if isinstance(types, str) or unknown:
         raise InputError(f"ReplaceJoints.types must be some of {', '.join(TYPES)}, got {types!r}.")

@@ -117,6 +117,15 @@ def test_liner_is_advised_a_contact():
 def test_what_is_no_system(wrong):
     with pytest.raises(ehd.InputError, match=r"CreateLubricatedJoint\.mbs must be an exudyn\.MainSystem"):
         ehd.CreateLubricatedJoint(wrong, bearing=BEARING)
+    for call in (
+        lambda: ehd.CreateFlexibleBush(wrong, bush=None, outer=None),
+        lambda: ehd.ReplaceJoint(wrong, 0, bearing=BEARING),
+        lambda: ehd.ReplaceJoints(wrong, bearing=BEARING),
+        lambda: ehd.SaveState(wrong, "state.npz"),
+        lambda: ehd.SolveDynamicSparse(wrong),
+    ):
+        with pytest.raises(ehd.InputError, match=r"\.mbs must be an exudyn\.MainSystem"):
+            call()
     for solve in (ehd.SolveDynamic, ehd.SolveStatic):
         with pytest.raises(ehd.InputError, match=rf"{solve.__name__}\.mbs must be"):
             solve(wrong, settings())

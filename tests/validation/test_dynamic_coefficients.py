@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_study_model
 
 SPEED = 100.0
 
@@ -48,3 +49,43 @@ def test_default_grid(table, make_bearing, measured, limit, largest):
     for row in (r for r in table("own_dynamic_coefficients") if r["geometry"] == "plain360_periodicLCP"):
         if row["eps"] <= largest:
             measured(f"K and C at eps {row['eps']}", _errors(row, bearing)[1], limit)
+
+
+# of load, stiffness and damping: up to eps 0.8, up to 0.95, at nine tenths of the tilt that closes the gap
+GRIDS = {
+    (96, 10): ((0.0025, 0.035, 0.07), (0.0075, 0.035, 0.13), (0.035, 0.2, 0.165)),
+    (192, 16): ((0.0005, 0.015, 0.03), (0.0015, 0.015, 0.05), (0.012, 0.08, 0.06)),
+}
+
+
+def _entries(model, clearance, eps, tilt, direction):
+    """Load, stiffness and damping in the frame of a direction."""
+    t = tilt * (1.0 - eps) * clearance / (0.5 * model.bearing.length)
+    c, s = math.cos(direction), math.sin(direction)
+    turn = np.array([[c, s], [-s, c]])
+    motion = np.array([eps * clearance * c, eps * clearance * s, t * c, t * s, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0])
+    evaluation = model.evaluate(motion)
+    tangent = evaluation.tangent()
+    return turn @ evaluation.wrench[:2], turn @ tangent[:2, :2] @ turn.T, turn @ tangent[:2, 4:6] @ turn.T
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.125, 0.5, 1.0])
+def test_table_of_the_grids(make_bearing, measured, ratio):
+    """The table of `FiniteLength`, in directions over one column, against a fine grid's mean over its columns."""
+    fine = build_study_model(make_bearing(ratio, film=ehd.FiniteLength(n_theta=960, n_z=48)), 0.0)
+    models = {
+        grid: build_study_model(make_bearing(ratio, film=ehd.FiniteLength(n_theta=grid[0], n_z=grid[1])), 0.0)
+        for grid in GRIDS
+    }
+    c = fine.bearing.radial_clearance
+    for eps, tilt in ((0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.5, 0.9), (0.8, 0.9), (0.95, 0.9)):
+        true = [_entries(fine, c, eps, tilt, 0.1 + 2.0 * math.pi / 960 * k / 4) for k in range(4)]
+        mean = [np.mean(values, axis=0) for values in zip(*true, strict=True)]
+        for grid, limits in GRIDS.items():
+            for k in range(12):
+                found = _entries(models[grid], c, eps, tilt, 0.1 + 2.0 * math.pi / grid[0] * k / 12)
+                limit = limits[2 if tilt else int(eps > 0.8)]
+                for name, value, exact, bound in zip(("load", "K", "C"), found, mean, limit, strict=True):
+                    worst = float(np.max(np.abs(value - exact)) / np.max(np.abs(exact)))
+                    measured(f"{name} of {grid} at eps {eps}, tilt {tilt}", worst, bound)

@@ -18,7 +18,7 @@ from exudyn import itemInterface as items
 from exudyn_ehd.coupling.bush.equations import BushEquations
 from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.bush.rigid_part import RigidPart
-from exudyn_ehd.coupling.contract import Index, NodeIndex, Side
+from exudyn_ehd.coupling.contract import Index, NodeIndex, Side, require_system
 from exudyn_ehd.coupling.items.carrier import Carrier, initial_frame, positions, velocities
 from exudyn_ehd.coupling.items.resolve import resolve
 from exudyn_ehd.solid.bush import ANCFBush
@@ -242,6 +242,7 @@ def CreateFlexibleBush(
     >>> flexible.nodeNumbers.shape
     (304,)
     """
+    require_system("CreateFlexibleBush", mbs)
     require_type("CreateFlexibleBush.bush", bush, ANCFBush)
     require_type("CreateFlexibleBush.outer", outer, FreeOuter, FixedOuter, CarriedOuter)
     rotation = np.eye(3) if rotationMatrix is None else np.asarray(rotationMatrix, dtype=float)

@@ -13,15 +13,15 @@ from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
 
 # Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
 # none.
 DEEPEST = 1.0
-# Beyond what oil and steel bear, Pa: pressure that no accepted step has unless the user allows more, and mean pressure
-# on the projected area. Films of real machines stay below a third of both.
-HIGHEST_PEAK, HIGHEST_MEAN = 3e9, 1e9
+# Pa, mean pressure on the projected area beyond what oil and steel bear; films of real machines stay below a third.
+HIGHEST_MEAN = 1e9
 # Mean over peak pressure below which no film is.
 SHARE = 0.01
 

@@ -18,15 +18,6 @@ def require_settings(where: str, settings: object) -> None:
         )
 
 
-def require_system(where: str, mbs: exu.MainSystem) -> None:
-    """Refuse what is no system of Exudyn."""
-    if not isinstance(mbs, exu.MainSystem):
-        raise InputError(
-            f"{where}.mbs must be an exudyn.MainSystem, got {type(mbs).__name__}; give what "
-            "SystemContainer().AddSystem() returns."
-        )
-
-
 def require_time(where: str, settings: exu.SimulationSettings) -> None:
     """Refuse a run that ends before it starts."""
     time = settings.timeIntegration

@@ -10,11 +10,11 @@ from typing import overload
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import ObjectIndex
+from exudyn_ehd.coupling.contract import ObjectIndex, require_system
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
-from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
+from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
 from exudyn_ehd.coupling.run.step_size import steps_by_error
@@ -251,6 +251,7 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     >>> ehd.SolveDynamic(mbs, settings, restart="state.npz")  # goes on, also in another process
     True
     """
+    require_system("SaveState", mbs)
     state = SystemState.of(mbs, joints_of(mbs))
     state.save(path)
     return state

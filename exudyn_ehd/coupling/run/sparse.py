@@ -34,7 +34,8 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
-from exudyn_ehd.coupling.run.settings import require_settings, require_system, require_time
+from exudyn_ehd.coupling.contract import require_system
+from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.solve import (
     own_errors,
     progress_of,

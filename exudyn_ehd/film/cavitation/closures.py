@@ -31,7 +31,10 @@ from exudyn_ehd.film.cavitation.active_set import (
     solve_on_active,
 )
 from exudyn_ehd.film.cavitation.line_newton import solve_transposed_with_line, solve_with_line
-from exudyn_ehd.status import Status, require_bool, require_number
+from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require_number, warn_user
+
+# Gauge pressure of the absolute vacuum, Pa, where the air presses most.
+VACUUM = -1.1e5
 
 
 class SymmetricClosure:
@@ -221,8 +224,19 @@ def _solve_linear(system: FilmSystem, work: Workspace) -> tuple[Status, int]:
     return (Status.CONVERGED if ok else Status.NOT_CONVERGED), 1
 
 
+def check_cavity_pressure(name: str, pressure: float) -> None:
+    """Refuse what is no pressure; warn of one below the absolute vacuum, which no gas in a cavity has."""
+    where = f"{name}.cavity_pressure"
+    if require_number(where, pressure, "Pa") < VACUUM:
+        warn_user(
+            f"{where}: {pressure:g} Pa is unusual, bearings have -1e5 Pa (vapour, released air) to what their ends "
+            f"have: it is a gauge pressure, and the absolute vacuum is at -1e5 Pa.",
+            PlausibilityWarning,
+        )
+
+
 def _check_closure(closure: Gumbel | SwiftStieber) -> None:
     name = type(closure).__name__
-    require_number(f"{name}.cavity_pressure", closure.cavity_pressure, "Pa")
+    check_cavity_pressure(name, closure.cavity_pressure)
     require_number(f"{name}.cavity_shear", closure.cavity_shear, at_least=0.0, at_most=1.0, hint="it is a share.")
     object.__setattr__(closure, "line_in_cells", require_bool(f"{name}.line_in_cells", closure.line_in_cells))

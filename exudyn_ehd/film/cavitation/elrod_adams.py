@@ -45,11 +45,11 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     flow_direction,
     solve_transport,
 )
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.cavitation.closures import SwiftStieber, check_cavity_pressure
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
-from exudyn_ehd.status import Status, require_number
+from exudyn_ehd.status import Status
 
 MAX_NEWTON_STEPS = 60
 SET_TOLERANCE = 1e-12
@@ -98,7 +98,7 @@ class ElrodAdams:
     line_in_cells = False
 
     def __post_init__(self) -> None:
-        require_number("ElrodAdams.cavity_pressure", self.cavity_pressure, "Pa")
+        check_cavity_pressure("ElrodAdams", self.cavity_pressure)
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""

@@ -9,10 +9,11 @@ import scenes
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.contract import Trial
-from exudyn_ehd.coupling.element.failures import HIGHEST_MEAN, HIGHEST_PEAK, Failures
+from exudyn_ehd.coupling.element.failures import HIGHEST_MEAN, Failures
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, make_row
 from exudyn_ehd.joint.audit.ringing import RingingWatch
 from exudyn_ehd.joint.balance.hot_oil import HOT, HOTTEST
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.solved_film import History
 

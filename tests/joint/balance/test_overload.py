@@ -1,0 +1,30 @@
+"""Films that neither oil nor steel bears are told of."""
+
+import warnings
+
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+
+BEARING = ehd.JournalBearing(
+    journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02)
+)
+
+
+def test_steady_films_warn_from_where_no_material_bears_them():
+    """The peak is proportional to the speed."""
+    peak = ehd.steady(BEARING, speed=100.0, eccentricity_ratio=0.98).peak_pressure
+    limit = 100.0 * HIGHEST_PEAK / peak
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ehd.steady(BEARING, speed=0.99 * limit, eccentricity_ratio=0.98)
+    with pytest.warns(ehd.OverloadWarning, match="steady: the film has a peak pressure of 3.03e\\+09 Pa") as told:
+        ehd.steady(BEARING, speed=1.01 * limit, eccentricity_ratio=0.98)
+    assert len(told) == 1 and told[0].filename == __file__
+
+
+def test_a_film_that_a_load_has_found_warns_once():
+    with pytest.warns(ehd.OverloadWarning, match="equilibrium: ") as told:
+        ehd.equilibrium(BEARING, speed=300.0, load=(0.0, -2e6))
+    assert len(told) == 1
