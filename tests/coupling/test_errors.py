@@ -177,6 +177,16 @@ def test_run_without_time():
         ehd.SolveDynamic(mbs, nothing)
 
 
+@pytest.mark.parametrize("solve", [ehd.SolveDynamic, ehd.SolveDynamicSparse])
+def test_an_integrator_that_amplifies_is_refused(solve):
+    """Exudyn takes spectral radii above 1, with which every fast vibration grows."""
+    mbs, _ = system()
+    growing = settings()
+    growing.timeIntegration.generalizedAlpha.spectralRadius = 1.5
+    with pytest.raises(ehd.InputError, match=rf"{solve.__name__}.*spectralRadius must be within 0 and 1, got 1\.5"):
+        solve(mbs, growing)
+
+
 def test_state_before_assemble():
     mbs = scenes.new_system()
     items = [mbs.CreateGround(), scenes.add_body(mbs, "Rxyz")]

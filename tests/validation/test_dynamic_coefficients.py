@@ -89,3 +89,23 @@ def test_table_of_the_grids(make_bearing, measured, ratio):
                 for name, value, exact, bound in zip(("load", "K", "C"), found, mean, limit, strict=True):
                     worst = float(np.max(np.abs(value - exact)) / np.max(np.abs(exact)))
                     measured(f"{name} of {grid} at eps {eps}, tilt {tilt}", worst, bound)
+
+
+@pytest.mark.parametrize(
+    ("sommerfeld", "on_the_grid", "in_the_cells"), [(0.3, 0.015, 0.003), (1.0, 0.4, 0.04), (1.3, None, 0.2)]
+)
+def test_critical_mass_in_any_direction_of_the_load(make_bearing, measured, sommerfeld, on_the_grid, in_the_cells):
+    """The rupture line on the grid's columns moves the threshold as the load turns over one of them."""
+    plain = make_bearing(0.5)
+    load = sommerfeld * plain.reference_force(SPEED)
+
+    def masses(bearing):
+        turns = 0.1 + 2.0 * math.pi / 96 * np.arange(8) / 8
+        loads = [(load * math.cos(a), load * math.sin(a)) for a in turns]
+        return np.array([ehd.equilibrium(bearing, speed=SPEED, load=force).critical_mass for force in loads])
+
+    line = ehd.SwiftStieber(line_in_cells=True)
+    true = masses(make_bearing(0.5, cavitation=line, film=ehd.FiniteLength(n_theta=384, n_z=24))).mean()
+    measured("line in cells", np.abs(masses(make_bearing(0.5, cavitation=line)) / true - 1.0).max(), in_the_cells)
+    if on_the_grid is not None:
+        measured("line on the grid", np.abs(masses(plain) / true - 1.0).max(), on_the_grid)

@@ -19,12 +19,18 @@ def require_settings(where: str, settings: object) -> None:
 
 
 def require_time(where: str, settings: exu.SimulationSettings) -> None:
-    """Refuse a run that ends before it starts."""
+    """Refuse a run that ends before it starts, and an integrator that lets every vibration grow."""
     time = settings.timeIntegration
     if not time.endTime > time.startTime:
         raise InputError(
             f"{where}.simulationSettings.timeIntegration.endTime must be after startTime = {time.startTime:.9g} s, got "
             f"{time.endTime:.9g} s."
+        )
+    radius = time.generalizedAlpha.spectralRadius
+    if not radius <= 1.0:
+        raise InputError(
+            f"{where}.simulationSettings.timeIntegration.generalizedAlpha.spectralRadius must be within 0 and 1, got "
+            f"{radius:g}; beyond 1 vibrations grow in every step, ConfigureSolver sets {RADIUS:g}."
         )
 
 

@@ -99,7 +99,13 @@ class GreenwoodTripp:
             roughness_radius_ratio="",
             transition_speed="m/s",
         )
-        require_number("GreenwoodTripp.friction_coefficient", self.friction_coefficient, at_least=0.0)
+        require_number(
+            "GreenwoodTripp.friction_coefficient",
+            self.friction_coefficient,
+            at_least=0.0,
+            at_most=5.0,
+            hint="lubricated metals have 0.05 to 0.2, rubber up to 2.",
+        )
         require_number("GreenwoodTripp.residual_film", self.residual_film, at_least=0.001, at_most=0.2)
 
     @property

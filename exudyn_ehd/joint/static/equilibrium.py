@@ -46,7 +46,9 @@ class EquilibriumResult:
         Whirl frequency at the threshold divided by |omega|; nan if stable at any mass.
     critical_mass : float
         Mass of a rigid symmetric rotor per bearing at the threshold, kg; inf if stable at any mass, 0 if unstable at
-        any.
+        any. It feels the grid most: on the default film the direction of the load moves it by 40 % at an eccentricity
+        ratio of 0.72, and by several times where the bearing is nearly stable at any mass (0.76); with
+        ``SwiftStieber(line_in_cells=True)`` or ``Gumbel(line_in_cells=True)`` by 4 % and 20 %.
     residual : float
         Largest component of film force + load, divided by the load.
     iterations : int

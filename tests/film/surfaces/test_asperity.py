@@ -124,6 +124,7 @@ def test_average_gap_stays_positive_however_deep():
         ("density_radius_roughness", 0.0),
         ("roughness_radius_ratio", math.nan),
         ("friction_coefficient", -0.1),
+        ("friction_coefficient", 10.0),
         ("transition_speed", 0.0),
         ("residual_film", 0.5),
     ],
