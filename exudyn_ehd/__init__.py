@@ -8,7 +8,7 @@ solid      the flexible bush: quadratic elements in absolute nodal coordinates, 
 joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
 coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinematics, histories, sensors
-studies    many runs: `parameter_study`; what accuracy costs in time: `recommend`
+studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
 progress   how far long work is, where somebody looks
@@ -127,6 +127,8 @@ _LAZY = {
     "SurfaceLoad": "solid.loads",
     "Recommendation": "studies.recommend",
     "recommend": "studies.recommend",
+    "StepRecommendation": "studies.steps",
+    "recommend_steps": "studies.steps",
     "mesh_from_arrays": "solid.mesh_import",
     "mesh_from_fem": "solid.mesh_import",
     "mesh_from_file": "solid.mesh_files",
@@ -169,6 +171,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.solid.total_lagrange import NeoHooke, SaintVenantKirchhoff
     from exudyn_ehd.studies.parameters import EquilibriumPoint, StudyTable, parameter_study, varied
     from exudyn_ehd.studies.recommend import Recommendation, recommend
+    from exudyn_ehd.studies.steps import StepRecommendation, recommend_steps
 else:
 
     def __getattr__(name):
@@ -275,6 +278,7 @@ __all__ = [
     "Status",
     "SteadyResult",
     "StepControl",
+    "StepRecommendation",
     "StrainWarning",
     "StribeckResult",
     "StudyTable",
@@ -297,6 +301,7 @@ __all__ = [
     "oil",
     "parameter_study",
     "recommend",
+    "recommend_steps",
     "show_progress",
     "slider_grid",
     "solve_film",

@@ -30,6 +30,7 @@ PURE = {
     "SwiftStieber.cavity_shear",
     "add_bore_modes.axis", "add_bore_modes.tolerance", "add_bore_modes.radius_tolerance", "bearing_grid.stretch",
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
+    "recommend_steps.error",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
     "UntilPeriodic.tolerance",
@@ -55,8 +56,8 @@ READING = {
 # What the package makes, and hands out to be read.
 RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
-    "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StribeckResult",
-    "StudyTable", "SystemState",
+    "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
+    "StribeckResult", "StudyTable", "SystemState",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}
@@ -151,6 +152,9 @@ CALLS = {
     "equilibrium": lambda **k: ehd.equilibrium(BEARING, **({"speed": 100.0, "load": (0.0, -500.0)} | k)),
     "stribeck": lambda **k: ehd.stribeck(BEARING, **({"load": 100.0, "speeds": (10.0,)} | k)),
     "recommend": lambda **k: ehd.recommend(BEARING, eccentricity_ratio=0.5, **k),
+    "recommend_steps": lambda **k: ehd.recommend_steps(
+        BEARING, 0.9, **({"speed": 100.0, "period": 0.02, "load": np.full((8, 2), 100.0), "mass": 1.0} | k)
+    ),
     "oil": lambda **k: ehd.oil("ISO VG 46", **k),
     "Lubricant.at": lambda **k: ehd.oil("ISO VG 46").at(**k),
     "solve_film": _film,
@@ -162,6 +166,8 @@ CALLS = {
 
 def _shaped(name, argument, size):
     """An argument of a size, in the shape that it has."""
+    if name == "recommend_steps" and argument == "load":
+        return np.full((8, 2), size)
     pairs = ("end_pressures", "youngs_moduli", "velocity", "tilt", "load", "surface_speed")
     if argument in pairs and name != "stribeck":
         return (size, size)

@@ -5,6 +5,8 @@ Module map
 parameters      `parameter_study`: a function over lists of parameters, in processes, under MPI, on hosts
 places          where rows are computed, and what becomes of a row whose process dies
 rows            one row, and the file of finished ones
-accuracy_table  measured errors of film models over (eps, L/D, tilt, elasticity)
-recommend       `recommend`: the cheapest film that keeps an error, from that table
+recommend       `recommend`: the cheapest film that keeps an error
+steps           `recommend_steps`: time steps in a mechanism
+film_errors     what a steady film says of a bearing, and how far two grids are apart in it
+richardson      converged values and their own error from three grids
 """

@@ -1,52 +1,51 @@
-"""The cheapest film that keeps a quantity within an error, from the measurements that come with the package."""
+"""The cheapest film that keeps a quantity within an error, measured on the bearing itself.
+
+Films on a ladder of grids, with the rupture line on the grid and inside its cells, are compared with a film of 256 x 24
+intervals at the eccentricities asked for. At each the journal points in twelve directions, with supply in 24, around
+the circumference and spread over the columns of every grid, since errors ripple with the place of the rupture line and
+of the supply on the grid. An error is
+
+    e = MARGIN (max |q - q_fine| + e_fine) / scale,
+
+e_fine from three levels by Richardson's extrapolation, scale the quantity's largest absolute value (of the attitude
+1 rad; of stiffness and damping that of the largest entry).
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-import pathlib
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, TypeAlias
 
-from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.models import Film
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.solid.bush import ModalBush
-from exudyn_ehd.solid.mesh import HollowCylinder
-from exudyn_ehd.status import InputError, require_number
-from exudyn_ehd.studies.accuracy_table import (
-    DATA,
-    FILE,
-    FILMS,
-    NAMES,
-    THICKNESS,
-    TOLERANCE,
-    Cell,
-    bore_compliance,
-    elasticity_parameter,
-    read_cells,
-)
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
+from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.status import EHDError, FilmError, InputError, require_number
+from exudyn_ehd.studies.film_errors import SCALES, measure_motions, motion_at, scale_of, time_of_sweep
+from exudyn_ehd.studies.richardson import converged
 from exudyn_ehd.tables import format_seconds
 
-# Between cells the error ripples with the place of the rupture line on the grid. Over 40 random rigid bearings inside
-# the table, six films and seven quantities, the true error reached 1.45 times the worst neighbouring cell, 0.92 times
-# over 20 with a liner.
-MARGIN = 1.75
-# What the cells were not measured with; each changes the film.
-_PLAIN = (
-    "inlet",
-    "end_pressures",
-    "squeeze",
-    "contact",
-    "supply",
-    "thermal",
-    "asperity",
-    "roughness",
-    "profile",
-    "wear",
-    "cavitation",
-)
-_OIL_LAWS = ("pressure_law", "shear_law", "density_law")
+# Fields of `JournalBearing` to replace.
+Options: TypeAlias = dict[str, Any]
+LADDER = ((32, 4), (48, 6), (64, 8), (96, 10), (128, 12), (192, 16))
+LEVELS = ((64, 6), (128, 12), (256, 24))
+# Time of a film with its line inside the cells over one without.
+LINE_COST = 1.65
+MARGIN = 1.5
+# Of a film, over L D mu omega / psi^2.
+LEAST_LOAD = 1e-6
+# Of the eccentricity; of supplied bearings, whose film changes with the place of the supply in it.
+DIRECTIONS, SUPPLIED_DIRECTIONS = 12, 24
+# Multiples of it, without whole parts, spread over every column of the ladder's grids.
+GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
+COARSEST = 2.0 * math.pi / LADDER[0][0]
+# Largest distance of eccentricity ratios at which errors are measured.
+SPACING = 0.1
+ECCENTRICITY, TILT, RATIO = (0.1, 0.95), (0.0, 0.7), (0.25, 2.0)
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -56,15 +55,16 @@ class Recommendation:
     Attributes
     ----------
     found : bool
-        False: there is no evidence for such a bearing, or no measured setting keeps the error; ``reason`` says which.
+        False: nothing can be said of such a bearing, or no film on the ladder keeps the error; ``reason`` says which.
     film : Film or None
         For ``JournalBearing(film=...)``.
     options : dict
-        All fields of `JournalBearing` that the setting replaces, ``film`` among them.
+        All fields of `JournalBearing` that the setting replaces: ``film``, and ``cavitation`` where the rupture line is
+        to lie inside the cells.
     error : float
-        Bound of the quantity's error that the evidence gives.
+        Bound of the quantity's error, relative.
     seconds : float
-        Measured time per evaluation with tangent, on the machine of the measurement.
+        Processor time per evaluation with tangent, measured here.
     evidence : tuple of str
         The measurements that it rests on.
     reason : str
@@ -84,7 +84,7 @@ class Recommendation:
     found: bool
     reason: str
     film: Film | None = None
-    options: dict[str, Any] = dataclasses.field(default_factory=dict)
+    options: Options = dataclasses.field(default_factory=dict)
     error: float = math.nan
     seconds: float = math.nan
     evidence: tuple[str, ...] = ()
@@ -103,32 +103,35 @@ def recommend(
     *,
     eccentricity_ratio: float | tuple[float, float] | None = None,
     tilt_ratio: float = 0.0,
+    direction: float | None = None,
     speed: float | None = None,
-    data: pathlib.Path = DATA,
 ) -> Recommendation:
-    """The cheapest film that keeps a quantity within an error, for bearings of this kind.
+    """The cheapest film that keeps a quantity within an error, measured on this bearing.
+
+    It takes a second or two for a rigid bearing, longer with heat or a flexible bore.
 
     Parameters
     ----------
     bearing : JournalBearing
-        Plain, rigid, with an `ElasticLiner` or with a `ModalBush` of a hollow cylinder.
+        Any but those with an `ANCFBush` or ``inlet=MaximumGap()``; L/D 0.25 to 2. Its own film does not count.
     error : float
         Relative.
     quantity : str
-        "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "stiffness" or "damping".
+        "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "supply flow", "stiffness"
+        or "damping".
     eccentricity_ratio : float or (lowest, highest)
-        Where the bearing works; the worst of a range counts.
+        Where the bearing works, 0.1 to 0.95; the worst of a range counts.
     tilt_ratio : float
-        Share of the mid-plane's minimum film thickness that the tilt takes at one end.
+        Share of the mid-plane's minimum film thickness that the tilt takes at one end, 0 to 0.7.
+    direction : float, optional
+        Of the eccentricity, rad; without it all around, which matters for supplied and other uneven bearings.
     speed : float
-        rad/s; only for a flexible bore.
-    data : path
-        Folder of the measurements.
+        rad/s; not needed for plain bearings, whose relative errors do not depend on it.
 
     Returns
     -------
     Recommendation
-        ``found=False`` where there is no evidence; it never guesses.
+        ``found=False`` where nothing can be said; it never guesses.
 
     Raises
     ------
@@ -143,11 +146,57 @@ def recommend(
     >>> advice.found, advice.film
     (True, FiniteLength(n_theta=96, n_z=10, stretch=0.75))
     """
+    low, high = _require(bearing, error, quantity, eccentricity_ratio)
+    require_number("recommend: tilt_ratio", tilt_ratio, at_least=0.0, below=1.0)
+    if direction is not None:
+        require_number("recommend: direction", direction, "rad")
+    speed = _speed(bearing, speed)
+    ratio = bearing.length / (2.0 * bearing.journal_radius)
+    place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}"
+    unknown = _unknown(bearing, {"L/D": (ratio, RATIO), "tilt_ratio": (tilt_ratio, TILT)}, (low, high))
+    if unknown:
+        return Recommendation(found=False, reason=f"nothing is known of this bearing: {unknown}.")
+    count = 1 + math.ceil((high - low) / SPACING - 1e-9)
+    ratios = np.linspace(low, high, count)
+    motions = [
+        [motion_at(bearing, speed, float(e), tilt_ratio, a) for a in _angles(bearing, direction)] for e in ratios
+    ]
+    try:
+        truth = [_reference(bearing, quantity, block) for block in motions]
+    except FilmError as failure:
+        return Recommendation(found=False, reason=f"{place}: {failure}")
+    least = math.inf
+    for film, options in _settings(bearing):
+        errors = _errors(bearing, options, quantity, motions, truth)
+        if errors is None or max(errors) > error:
+            least = min(least, math.inf if errors is None else max(errors))
+            continue
+        flat = [motion for block in motions for motion in block]
+        return Recommendation(
+            found=True,
+            film=film,
+            options=options,
+            error=max(errors),
+            seconds=time_of_sweep(build_model(dataclasses.replace(bearing, **options)), flat),
+            reason=f"{_words(options)} for {place}: the {quantity} within {error:g}",
+            evidence=tuple(
+                f"eps {e:.3g}: {100.0 * bound:.2g} %, of it {100.0 * MARGIN * own:.2g} % the reference's own"
+                for e, bound, (_, own) in zip(ratios, errors, truth, strict=True)
+            ),
+        )
+    return Recommendation(
+        found=False,
+        reason=f"{place}: no film on the ladder keeps the {quantity} within {error:g}; the best gives {least:.2g}.",
+    )
+
+
+def _require(
+    bearing: object, error: float, quantity: str, eccentricity_ratio: float | tuple[float, float] | None
+) -> tuple[float, float]:
+    """Checked arguments; the lowest and the highest eccentricity ratio."""
     require_number("recommend: error", error, above=0.0, below=1.0, hint="it is relative.")
     if not isinstance(bearing, JournalBearing):
         raise InputError(f"recommend: expected a JournalBearing, got {bearing!r}.")
-    if speed is not None:
-        require_number("recommend: speed", speed, "rad/s")
     if eccentricity_ratio is None:
         raise InputError("recommend: a bearing needs eccentricity_ratio, a number or (lowest, highest).")
     low, high = eccentricity_ratio if isinstance(eccentricity_ratio, tuple) else (eccentricity_ratio,) * 2
@@ -155,128 +204,137 @@ def recommend(
         raise InputError(
             f"recommend: eccentricity_ratio must be within 0 and 1, lowest first, got {eccentricity_ratio!r}."
         )
-    if quantity not in NAMES:
-        raise InputError(f"recommend: quantity must be one of {list(NAMES)}, got {quantity!r}.")
-    unlike = _not_measured(bearing) or _unlike_measured_bushes(bearing)
-    if unlike:
-        return Recommendation(found=False, reason=f"no evidence: {unlike}.")
-    kind, kappa = _elasticity(bearing, speed)
-    ratio = bearing.length / (2.0 * bearing.journal_radius)
-    corners = _corners(
-        read_cells(data / FILE),
-        kind,
-        {
-            "length_to_diameter": (ratio, ratio),
-            "tilt_ratio": (tilt_ratio, tilt_ratio),
-            "elasticity": (kappa, kappa),
-            "eccentricity_ratio": (low, high),
-        },
-    )
-    place = f"L/D {ratio:.3g}, eps {low:g} to {high:g}, tilt {tilt_ratio:g}, kappa {kappa:.2g}, {kind} bore"
-    return _from_corners(corners, place, error, quantity)
+    if quantity not in SCALES:
+        raise InputError(f"recommend: quantity must be one of {list(SCALES)}, got {quantity!r}.")
+    if quantity == "supply flow" and not bearing.supply:
+        raise InputError("recommend: quantity='supply flow' needs a bearing with supply=(...).")
+    return float(low), float(high)
 
 
-def _from_corners(corners: dict[str, list[Cell]] | str, place: str, error: float, quantity: str) -> Recommendation:
-    """The answer from the cells around a bearing, or from the reason why there are none."""
-    if isinstance(corners, str):
-        return Recommendation(found=False, reason=f"no evidence for {place}: {corners}.")
-    bounds = _bounds(corners, quantity)
-    within = [(seconds, setting, bound) for setting, (bound, seconds) in bounds.items() if bound <= error]
-    if not within:
-        least = min((bound for bound, _ in bounds.values()), default=math.inf)
-        return Recommendation(
-            found=False,
-            reason=f"{place}: no measured setting keeps the {quantity} within {error:g}; the best gives {least:.2g}.",
-        )
-    seconds, setting, bound = min(within)
-    film = FILMS[setting]
-    return Recommendation(
-        found=True,
-        film=film,
-        options={"film": film},
-        error=bound,
-        seconds=seconds,
-        reason=f"{setting} for {place}: the {quantity} within {error:g}",
-        evidence=tuple(
-            f"L/D {c.length_to_diameter:g}, tilt {c.tilt_ratio:g}, kappa {c.elasticity:g}, "
-            f"eps {c.eccentricity_ratio:g}: {100.0 * c.errors[quantity]:.2g} %"
-            for c in corners[setting]
-        ),
-    )
+def _speed(bearing: JournalBearing, speed: float | None) -> float:
+    """The spin; any where relative results do not depend on it."""
+    if speed is not None:
+        return require_number("recommend: speed", speed, "rad/s")
+    oil, closure = bearing.lubricant, bearing.cavitation
+    own = {
+        "a bush": bearing.bush,
+        "supply": bearing.supply,
+        "end_pressures": any(bearing.end_pressures),
+        "thermal": bearing.thermal,
+        "contact": bearing.contact,
+        "asperity": bearing.asperity,
+        "wear": bearing.wear,
+        "a law of the oil": oil.pressure_law or oil.shear_law or oil.density_law,
+        "a cavity pressure": getattr(closure, "cavity_pressure", 0.0),
+    }
+    for name, there in own.items():
+        if there:
+            raise InputError(f"recommend: speed (rad/s) is needed with {name}: relative errors depend on it.")
+    return 100.0
 
 
-def _not_measured(bearing: JournalBearing) -> str:
-    """Which option or law of the oil no cell has; empty if none."""
-    defaults = {f.name: f.default for f in dataclasses.fields(JournalBearing)}
-    options = [(name, getattr(bearing, name)) for name in _PLAIN if getattr(bearing, name) != defaults[name]]
-    laws = [(f"lubricant.{name}", getattr(bearing.lubricant, name)) for name in _OIL_LAWS]
-    for name, value in [*options, *((name, law) for name, law in laws if law is not None)]:
-        return f"no bearing with {name}={value!r} was measured for this table"
-    return ""
-
-
-def _unlike_measured_bushes(bearing: JournalBearing) -> str:
-    """Why no measured bush is like this one; empty if one is."""
-    bush = bearing.bush
-    if bush is None or isinstance(bush, ElasticLiner):
-        return ""
-    if not isinstance(bush, ModalBush):
-        return f"solid bushes were measured as ModalBush only, not as {type(bush).__name__}; compare a finer film"
-    if not isinstance(bush.mesh, HollowCylinder) or not (
-        0.5 <= bush.mesh.thickness / (THICKNESS * bush.mesh.inner_radius) <= 2.0
-    ):
+def _unknown(
+    bearing: JournalBearing, numbers: Mapping[str, tuple[float, tuple[float, float]]], eccentricity: tuple[float, float]
+) -> str:
+    """Why nothing is known of such a bearing; empty if something is."""
+    if isinstance(bearing.bush, ANCFBush):
+        return "an ANCFBush takes minutes a film; ask for the ModalBush of the same mesh, or compare a finer film"
+    if isinstance(bearing.inlet, MaximumGap):
+        return "inlet=MaximumGap() cuts the film where the journal stands; compare a finer film"
+    for name, (value, (lowest, highest)) in numbers.items():
+        if not lowest <= value <= highest:
+            return f"{name} is {value:g}, and this was tried from {lowest:g} to {highest:g}"
+    if not ECCENTRICITY[0] <= eccentricity[0] <= eccentricity[1] <= ECCENTRICITY[1]:
         return (
-            "bushes were measured as hollow cylinders only, half as thick as their radius; "
-            "a factor of two either way counts"
+            f"eccentricity_ratio is {eccentricity[0]:g} to {eccentricity[1]:g}, and this was tried from "
+            f"{ECCENTRICITY[0]:g} to {ECCENTRICITY[1]:g}"
         )
-    if bush.tolerance < TOLERANCE:
-        return f"modes were measured down to tolerance {TOLERANCE:g}, not {bush.tolerance:g}; compare a finer film"
     return ""
 
 
-def _elasticity(bearing: JournalBearing, speed: float | None) -> tuple[str, float]:
-    """Kind of the bore, one of those that were measured, and its elasticity parameter."""
-    bush = bearing.bush
-    if bush is None:
-        return "rigid", 0.0
-    if speed is None:
-        raise InputError("recommend: a flexible bore needs the speed, rad/s: its elasticity parameter grows with it.")
-    if isinstance(bush, ElasticLiner):
-        return "liner", elasticity_parameter(bearing, bush.compliance, speed)
-    assert isinstance(bush, ModalBush) and isinstance(bush.mesh, HollowCylinder)
-    mesh, material = bush.mesh, bush.material
-    compliance = bore_compliance(mesh.thickness, mesh.inner_radius, material.youngs_modulus, material.poisson_ratio)
-    return "solid", elasticity_parameter(bearing, compliance, speed)
+def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
+    """Directions of the eccentricity, rad: all around or where asked, over a column of the coarsest grid."""
+    many = SUPPLIED_DIRECTIONS if bearing.supply and direction is None else DIRECTIONS
+    count = np.arange(many)
+    places = COARSEST * (GOLDEN * count % 1.0 - 0.5)
+    return places + (2.0 * math.pi / many * count if direction is None else direction)
 
 
-def _corners(table: Iterable[Cell], kind: str, box: dict[str, tuple[float, float]]) -> dict[str, list[Cell]] | str:
-    """Cells of every setting around a box of parameters, or what lies outside of the table.
+def _settings(bearing: JournalBearing) -> Iterator[tuple[Film, Options]]:
+    """Films of the ladder and what they replace, the cheapest first."""
+    given: Film = bearing.film
+    own = given if isinstance(given, FiniteLength) else FiniteLength()
+    lined = _with_line(bearing)
+    found: list[tuple[float, Film, Options]] = []
+    for n, m in LADDER:
+        film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
+        for options, cost in (({}, 1.0), (lined, LINE_COST)):
+            if options is not None and (options or not bearing.cavitation.line_in_cells):
+                found.append((cost * n * m, film, {"film": film, **options}))
+    short = ShortBearing(n_theta=64)
+    found.append((0.5 * 64 * 8, short, {"film": short}))
+    yield from (entry[1:] for entry in sorted(found, key=lambda entry: entry[0]))
 
-    A flexible bore between rigid and the softest measured one is judged by rigid cells, too.
+
+def _with_line(bearing: JournalBearing) -> Options | None:
+    """The closure with its rupture line inside the cells; None where it does not go there."""
+    closure = bearing.cavitation
+    if "line_in_cells" not in {f.name for f in dataclasses.fields(closure)}:
+        return None
+    lined: Any = dataclasses.replace(closure, **{"line_in_cells": True})  # type: ignore[arg-type]
+    try:
+        dataclasses.replace(bearing, film=FiniteLength(), cavitation=lined)
+    except InputError:
+        return None
+    return {"cavitation": lined}
+
+
+def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]) -> tuple[np.ndarray, float]:
+    """Values of the finest film over the motions, and their estimated relative error.
+
+    Raises
+    ------
+    FilmError
+        If there is none, or none that carries anything.
     """
-    kept = [c for c in table if c.kind in ("rigid", kind)]
-    chosen = {}
-    for axis, (low, high) in box.items():
-        own = [c for c in kept if c.kind == kind or axis == "elasticity"]
-        values = sorted({getattr(c, axis) for c in own})
-        if low < values[0] or high > values[-1]:
-            return f"{axis} is measured from {values[0]:g} to {values[-1]:g}"
-        first = max(v for v in values if v <= low)
-        last = min(v for v in values if v >= high)
-        chosen[axis] = {v for v in values if first <= v <= last}
-    around: dict[str, list[Cell]] = {}
-    for c in kept:
-        if all(getattr(c, axis) in values for axis, values in chosen.items()):
-            around.setdefault(c.setting, []).append(c)
-    count = math.prod(len(values) for values in chosen.values())
-    return {setting: found for setting, found in around.items() if len(found) == count}
+    options: Options = _with_line(bearing) or {}
+    levels = []
+    for n, m in LEVELS:
+        model = build_model(dataclasses.replace(bearing, film=FiniteLength(n_theta=n, n_z=m), **options))
+        values = measure_motions(model, motions)[0]
+        if float(values["load"].min()) < LEAST_LOAD * bearing.reference_force(motions[0][8]):
+            raise FilmError(
+                "the film carries nothing, and errors relative to nothing mean nothing. With ElrodAdams a film that "
+                "nothing feeds runs dry: give the bearing supply=(...) or end_pressures."
+            )
+        levels.append(values[quantity])
+    found = converged(levels, ratio=2.0, formal_order=2.0, scale=scale_of(quantity, levels[-1]))
+    return found.value, found.error
 
 
-def _bounds(corners: dict[str, list[Cell]], quantity: str) -> dict[str, tuple[float, float]]:
-    """Bound of the error and time by setting, from its worst cell."""
-    out = {}
-    for setting, found in corners.items():
-        errors = [c.errors[quantity] for c in found]
-        if not any(math.isnan(e) for e in errors):
-            out[setting] = MARGIN * max(errors), max(c.seconds for c in found)
-    return out
+def _errors(
+    bearing: JournalBearing,
+    options: Options,
+    quantity: str,
+    motions: list[list[np.ndarray]],
+    truth: list[tuple[np.ndarray, float]],
+) -> list[float] | None:
+    """Bounds of the errors at every eccentricity; None for a film that the bearing or the place does not allow."""
+    try:
+        model = build_model(dataclasses.replace(bearing, **options))
+        values = [measure_motions(model, block)[0][quantity] for block in motions]
+    except EHDError:
+        return None
+    return [
+        MARGIN * (float(np.max(np.abs(value - fine))) / scale_of(quantity, fine) + own)
+        for value, (fine, own) in zip(values, truth, strict=True)
+    ]
+
+
+def _words(options: Options) -> str:
+    """A setting in words."""
+    film = options["film"]
+    grid = f"{film.n_theta} x {film.n_z}"
+    if isinstance(film, ShortBearing):
+        return f"short bearing {grid}"
+    return f"2D {grid}, line in cells" if "cavitation" in options else f"2D {grid}"

@@ -11,14 +11,13 @@ from collections.abc import Callable
 
 from exudyn_ehd.status import EHDError
 from exudyn_ehd.storage import replacing
-from exudyn_ehd.studies import accuracy_table
-from tests.benchmarks.accuracy import catalogue, measure_cells, order
+from tests.benchmarks.accuracy import catalogue, order
 from tests.benchmarks.accuracy.costs import bushes, effects, growth, once
 from tests.benchmarks.accuracy.errors.study import Study, machine, run_study
 from tests.benchmarks.accuracy.report import guide, pictures
 from tests.benchmarks.accuracy.table import DATA, Cost, Row, format_costs, format_rows, read_table, write_table
 
-CELLS, GROWTH = "cells", "growth"
+GROWTH = "growth"
 # Of one setting: processor time in s after which it is not timed more than three times.
 BUDGET = 2.0
 # Processes that time every bore, and runs in each: seconds with a nodal bush.
@@ -67,7 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--only", nargs="*", default=[], metavar="NAME", help="what has one of these in its name; see --list")
     add("--repeats", type=int, default=5, help="timed runs per setting")
     add("--processes", type=int, default=1, help="more than 1: side by side, errors only, no times")
-    add("--ship", action="store_true", help="write the tables where they are shipped: data, cells into the package")
+    add("--ship", action="store_true", help="write the tables where they are shipped")
     add("--draw", action="store_true", help="measure nothing, draw the shipped tables")
     add("--guide", action="store_true", help="put the shipped tables between the markers of the READMEs and stop")
     text = "time the shipped studies in several runs, compare the order, stop"
@@ -126,10 +125,6 @@ def _other_tables(folder: pathlib.Path, repeats: int, ship: bool) -> dict[str, C
     def all_once() -> None:
         write(guide.PAID_ONCE, once.measure_once(progress=_say), "what is paid once; medians over 2 turns")
 
-    def all_cells() -> None:
-        note = "errors: worst over 8 directions, with the reference's own; time per evaluation with tangent"
-        measure_cells.measure_all(accuracy_table.DATA if ship else folder, _say, f"{note}; {machine()}")
-
     def all_growths() -> None:
         found = growth.all_growths(min(repeats, 3))
         print(growth.growth_text(found))
@@ -139,7 +134,6 @@ def _other_tables(folder: pathlib.Path, repeats: int, ship: bool) -> dict[str, C
         guide.EFFECT_FACTORS: all_effects,
         guide.BUSH_COSTS: all_bushes,
         guide.PAID_ONCE: all_once,
-        CELLS: all_cells,
         GROWTH: all_growths,
     }
 

@@ -6,15 +6,15 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.status import InputError
-from exudyn_ehd.studies.accuracy_table import NAMES
+from exudyn_ehd.studies.film_errors import SCALES
 from tests.benchmarks.accuracy.advice_for_scenes import advice_for_scene
 from tests.benchmarks.accuracy.scenes import measured
 from tests.benchmarks.accuracy.scenes.setting import Integration, Setting
 from tests.benchmarks.accuracy.scenes.steady import QUANTITIES
 
 
-def test_the_packages_table_has_the_quantities_of_steady_scenes():
-    assert tuple(q.name for q in QUANTITIES) == NAMES
+def test_recommend_knows_the_quantities_of_steady_scenes():
+    assert {q.name: q.scale for q in QUANTITIES} == {n: s for n, s in SCALES.items() if n != "supply flow"}
 
 
 def _values(scene, quantity, options, **integration):
@@ -32,9 +32,9 @@ def test_steady_scene():
     quantity, value = _values(scene, "peak pressure", advice.options)
     fine = _values(scene, "peak pressure", {"film": ehd.FiniteLength(n_theta=256, n_z=24)})[1]
     assert quantity.distance(value, fine) < 0.01
-    # another eccentricity has no table of its own, but cells
+    # another eccentricity has no table of its own
     near = dataclasses.replace(scene, eccentricity_ratio=0.7)
-    assert "L/D" in advice_for_scene(near, 0.01, "load").evidence[0]
+    assert "eps 0.7" in advice_for_scene(near, 0.01, "load").evidence[0]
     with pytest.raises(InputError, match="one of the scene's"):
         advice_for_scene(scene, 0.01, "colour")
 

@@ -1,0 +1,269 @@
+"""How many time steps a bearing needs in a mechanism, measured on the bearing alone under the load of one cycle.
+
+The journal, a mass with a given spin, carries the cycle's load on the film, in Exudyn and with the settings of
+`ConfigureSolver`, for two periods; the second one counts. Runs with N and 2 N steps a period differ by
+
+    d_N = max over the instants of the coarser run of |h_N - h_2N| / max(min h_2N, c / 100),    h the minimum film
+          thickness,
+
+which falls fourfold from N to 2 N where the integrator has reached its second order. What is left to the limit behind
+the run with N steps is then d_N + d_2N + ... of all finer runs, and behind the last d / (r - 1) with the last factor r
+between changes, cut off at 4 and at the square root of 2. A last r above 8 says that the run before was too coarse to
+belong to the order of the others: one more is made.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+import warnings
+
+import exudyn as exu
+import numpy as np
+from exudyn.itemInterface import (
+    MarkerNodeCoordinate,
+    NodePointGround,
+    NodeRigidBody2D,
+    ObjectConnectorCoordinate,
+    ObjectRigidBody2D,
+)
+from numpy.typing import ArrayLike
+from scipy.interpolate import CubicSpline
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.api import CreateLubricatedJoint
+from exudyn_ehd.coupling.record.summary import without_lines
+from exudyn_ehd.coupling.run.settings import ConfigureSolver
+from exudyn_ehd.coupling.run.solve import SolveDynamic
+from exudyn_ehd.status import EHDError, InputError, RunError, require_number, require_plausible, require_type, warn_user
+from exudyn_ehd.studies.richardson import LOWEST_ORDER
+
+FEWEST, LEVELS = 90, 7
+FEWEST_ROWS = 8
+# What else moves in a mechanism adds to the error of its bearing.
+MARGIN = 2.0
+# Changes that fall faster from run to run tell of a first run too coarse to belong to the order of the others.
+FASTEST = 8.0
+# Thinner films than this share of the clearance, as of surfaces in contact, are no measure.
+THINNEST = 0.01
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class StepRecommendation:
+    """Outcome of `recommend_steps`.
+
+    Attributes
+    ----------
+    found : bool
+        False: no number of steps that was tried keeps the error, or the film fails; ``reason`` says which.
+    steps : int
+        Steps in a period; for ``timeIntegration.numberOfSteps`` times the number of periods.
+    error : float
+        Bound of the error of the minimum film thickness, relative to its smallest value in the period.
+    evidence : tuple of str
+        The runs that it rests on.
+    reason : str
+
+    Examples
+    --------
+    After the example of `recommend_steps`:
+
+    >>> advice.found, advice.error < 0.02
+    (True, True)
+    """
+
+    found: bool
+    reason: str
+    steps: int = 0
+    error: float = math.nan
+    evidence: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return "\n".join([self.reason, *(f"  {line}" for line in self.evidence)])
+
+
+def recommend_steps(
+    bearing: JournalBearing,
+    error: float = 0.01,
+    *,
+    speed: float | ArrayLike,
+    period: float,
+    load: ArrayLike,
+    mass: float,
+) -> StepRecommendation:
+    """The fewest time steps in a period that keep the minimum film thickness within an error.
+
+    It runs the bearing alone for two periods of the load: seconds for a rigid bearing. What else moves in a mechanism
+    has errors of its own, so that no fewer than 90 steps are named.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        Any that moves in a plane; with an `ANCFBush` it takes minutes.
+    error : float
+        Of the minimum film thickness, relative to its smallest value in the period.
+    speed : float or (n,) array
+        Spin of the journal in the housing, rad/s; of a pin that swings at the instants of the load.
+    period : float
+        Of the load, s: a turn of a crank, two of a four-stroke engine.
+    load : (n, 2) array
+        Force on the journal at n equal intervals of a period, in the housing's frame, N, n >= 8: of a run with an ideal
+        joint, say.
+    mass : float
+        Of the lighter of the two bodies, kg.
+
+    Returns
+    -------
+    StepRecommendation
+
+    Raises
+    ------
+    InputError
+        For arguments that can't be meant.
+
+    Examples
+    --------
+    After the example of `JournalBearing`:
+
+    >>> turn = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    >>> load = 2000.0 * np.column_stack([np.sin(turn), -1.5 + np.cos(turn)])
+    >>> advice = ehd.recommend_steps(bearing, 0.02, speed=314.0, period=0.02, load=load, mass=1.0)
+    >>> 90 <= advice.steps <= 720
+    True
+    """
+    require_type("recommend_steps: bearing", bearing, JournalBearing)
+    require_number("recommend_steps: error", error, above=0.0, below=1.0, hint="it is relative.")
+    require_number("recommend_steps: period", period, "s", above=0.0)
+    require_number("recommend_steps: mass", mass, "kg", above=0.0)
+    cycle, spins = _require_cycle(load, speed)
+    motion = _periodic(np.broadcast_to(spins, len(cycle)), period)
+    force = _periodic(cycle, period)
+    runs: list[np.ndarray] = []
+    changes: list[float] = []
+    evidence: list[str] = []
+    for level in range(LEVELS):
+        steps = FEWEST * 2**level
+        try:
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                runs.append(_second_period(bearing, steps, motion, force, mass))
+        except EHDError as failure:
+            return StepRecommendation(
+                found=False, reason=f"the film fails with {steps} steps a period: {failure}", evidence=tuple(evidence)
+            )
+        if level:
+            floor = max(float(np.min(runs[-1])), THINNEST * bearing.radial_clearance)
+            changes.append(float(np.max(np.abs(runs[-1][::2] - runs[-2]))) / floor)
+            evidence.append(f"{steps // 2} to {steps} steps a period: {100.0 * changes[-1]:.2g} %")
+        bounds = _bounds(changes)
+        kept = [k for k, bound in enumerate(bounds) if bound <= error]
+        if kept:
+            _say_again(caught)
+            return _found(FEWEST * 2 ** kept[0], bounds[kept[0]], error, evidence)
+    return StepRecommendation(
+        found=False,
+        reason=f"no number of steps up to {FEWEST * 2 ** (LEVELS - 3)} a period keeps the minimum film thickness "
+        f"within {error:g}; try StepControl(error=...)",
+        evidence=tuple(evidence),
+    )
+
+
+def _require_cycle(load: ArrayLike, speed: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
+    """Load (n, 2) and spin, one number or (n,)."""
+    cycle, spins = np.asarray(load, dtype=float), np.asarray(speed, dtype=float)
+    if cycle.ndim != 2 or cycle.shape[1] != 2 or len(cycle) < FEWEST_ROWS or not np.all(np.isfinite(cycle)):
+        raise InputError(
+            f"recommend_steps: load must be an array (n, 2) of finite forces in N, n >= {FEWEST_ROWS}, got shape "
+            f"{cycle.shape}."
+        )
+    if spins.shape not in ((), (len(cycle),)) or not np.all(np.isfinite(spins)):
+        raise InputError(
+            f"recommend_steps: speed must be a finite number or one for each of the {len(cycle)} rows of load, rad/s, "
+            f"got shape {spins.shape}."
+        )
+    require_plausible("recommend_steps: load", load, cycle)
+    require_plausible("recommend_steps: speed", speed, spins)
+    return cycle, spins
+
+
+def _found(steps: int, left: float, error: float, evidence: list[str]) -> StepRecommendation:
+    reason = f"{steps} steps a period: the minimum film thickness within {error:g}, bound {left:.2g}"
+    return StepRecommendation(found=True, steps=steps, error=left, reason=reason, evidence=tuple(evidence))
+
+
+def _bounds(changes: list[float]) -> list[float]:
+    """Bounds of the distances to the limit of the runs that have two finer ones, from the changes between all."""
+    if len(changes) < 2 or changes[-2] > FASTEST * changes[-1]:
+        return []
+    ratio = changes[-2] / changes[-1] if changes[-1] > 0.0 else 4.0
+    behind = changes[-1] / (min(max(ratio, 2.0**LOWEST_ORDER), 4.0) - 1.0)
+    return [MARGIN * (sum(changes[k:]) + behind) for k in range(len(changes) - 1)]
+
+
+def _say_again(caught: list[warnings.WarningMessage]) -> None:
+    """Warnings of the finest run; those of coarser ones are about steps that nobody takes."""
+    for text, kind in {(str(w.message), w.category) for w in caught}:
+        warn_user(text, kind)
+
+
+def _periodic(values: np.ndarray, period: float) -> CubicSpline:
+    """A smooth periodic function through values at equal intervals."""
+    times = np.linspace(0.0, period, len(values) + 1)
+    return CubicSpline(times, np.concatenate([values, values[:1]]), bc_type="periodic")
+
+
+def _second_period(
+    bearing: JournalBearing, steps: int, spin: CubicSpline, force: CubicSpline, mass: float
+) -> np.ndarray:
+    """Minimum film thickness (steps + 1,) over the second period."""
+    period, turned = float(force.x[-1]), spin.antiderivative()
+    whole = float(turned(period))
+
+    def angle(t: float) -> float:
+        cycles, rest = divmod(t, period)
+        return cycles * whole + float(turned(rest))
+
+    def pull(_: object, t: float, load: object) -> list[float]:
+        x, y = force(t)
+        return [float(x), float(y), 0.0]
+
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    # where the load presses it
+    first = force(0.0)
+    place = 0.5 * bearing.radial_clearance * first / max(float(np.hypot(*first)), 1e-300)
+    node = mbs.AddNode(
+        NodeRigidBody2D(
+            referenceCoordinates=[0, 0, 0],
+            initialCoordinates=[*place, 0.0],
+            initialVelocities=[0.0, 0.0, float(spin(0.0))],
+        )
+    )
+    inertia = 0.5 * mass * bearing.journal_radius**2
+    body = mbs.AddObject(ObjectRigidBody2D(nodeNumber=node, mass=mass, inertia=inertia))
+    fixed = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0))
+    rotation = mbs.AddMarker(MarkerNodeCoordinate(nodeNumber=node, coordinate=2))
+    mbs.AddObject(
+        ObjectConnectorCoordinate(
+            markerNumbers=[fixed, rotation],
+            offsetUserFunction=lambda mbs, t, item, offset: angle(t),
+            offsetUserFunction_t=lambda mbs, t, item, offset: float(spin(t)),
+        )
+    )
+    mbs.CreateForce(itemNumber=body, loadVector=[0.0, 0.0, 0.0], loadVectorUserFunction=pull)
+    items = [mbs.CreateGround(), body]
+    joint = CreateLubricatedJoint(
+        mbs, name="journal", itemNumbers=items, position=[0, 0, 0], axis=[0, 0, 1], bearing=bearing
+    )
+    mbs.Assemble()
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 2.0 * period, 2 * steps
+    settings.timeIntegration.verboseMode = 0
+    settings.solution.file.write = False
+    ConfigureSolver(settings)
+    with without_lines():
+        if not SolveDynamic(mbs, settings):
+            raise RunError("recommend_steps: Exudyn's solver gave up for a reason of its own; see its messages.")
+        history = joint.history
+    grid = period + period * np.arange(steps + 1) / steps
+    return np.interp(grid, history.time, history.minimum_gap)
