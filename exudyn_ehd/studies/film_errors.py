@@ -10,6 +10,7 @@ from typing import TypeAlias
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
@@ -77,7 +78,7 @@ def measure_motions(model: Model, motions: Motions) -> tuple[dict[str, np.ndarra
     for motion in motions:
         evaluation = _evaluate(model, motion)
         if evaluation.status is not Status.CONVERGED:
-            raise FilmError(f"{evaluation.status.name}: {evaluation.status.advice}")
+            raise FilmError(f"{evaluation.status.name}: {advice(evaluation.status, model.bearing)}")
         iterations += evaluation.iterations
         for name, value in _quantities(model, evaluation, motion).items():
             columns.setdefault(name, []).append(value)

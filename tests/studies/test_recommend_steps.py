@@ -89,7 +89,7 @@ def test_fewer_steps_for_less(monkeypatch):
     turn = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False)
     load = 6000.0 * np.column_stack([np.sin(turn), -1.2 + np.cos(turn)])
     options = {"speed": 300.0, "period": 0.02, "load": load, "mass": 1.0}
-    rough, close = (ehd.recommend_steps(_bearing(), error, **options) for error in (0.1, 0.002))
+    rough, close = (ehd.recommend_steps(_bearing(), error, **options) for error in (0.1, 0.001))
     assert rough.steps < close.steps
     assert "steps a period" in str(close)
     monkeypatch.setattr(tried, "LEVELS", 4)
