@@ -11,6 +11,7 @@ coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinem
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name
+kernels    compilation of first films by two processes
 progress   how far long work is, where somebody looks
 storage    files on disk: whole or absent, and arrays kept between runs
 status     outcomes, errors and checks of input

@@ -171,7 +171,7 @@ def give_kernels_a_cache() -> None:
     numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"] = folder
     warnings.warn(
         "exudyn_ehd: numba can write its cache neither next to the package nor in the user's cache folder; kernels are "
-        f"compiled anew in every run (10 to 20 s). To keep them, {remedy}",
+        f"compiled anew in every run (10 s). To keep them, {remedy}",
         stacklevel=2,
     )
 

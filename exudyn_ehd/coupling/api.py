@@ -27,6 +27,7 @@ from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.model.compile import compile_together
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
 if TYPE_CHECKING:
@@ -233,10 +234,9 @@ def CreateLubricatedJoint(
     rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = joint_points(housing, journal, position, useGlobalFrame)
     bearing, housing = _on_its_housing(mbs, bearing, housing, points[0], rotation)
-    model = cast(JointModel, build_model(bearing))
     joint = attach(
         mbs,
-        model,
+        _model_of(bearing, housing, journal),
         housing,
         journal,
         points,
@@ -253,6 +253,13 @@ def CreateLubricatedJoint(
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
+
+
+def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:
+    """The film's model, its kernels and those of its items compiled."""
+    if isinstance(bearing, JournalBearing) and any(item.node is not None for item in items):
+        compile_together(bearing, "bodies")
+    return cast(JointModel, build_model(bearing))
 
 
 def _on_its_housing(

@@ -1,0 +1,70 @@
+"""First films from empty caches: with a helper, without one, and where nothing can be written."""
+
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.kernels import ahead
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HELPERS = 1 if ahead._cores() > 1 else 0
+FILM = """
+import exudyn_ehd as ehd
+from exudyn_ehd.kernels import ahead
+start, ahead.helpers = ahead._start_helper, []
+def noted():
+    ahead.helpers.append(start())
+    return ahead.helpers[-1]
+ahead._start_helper = noted
+b = ehd.JournalBearing(journal_radius=.01, length=.02, radial_clearance=2e-5, lubricant=ehd.Lubricant(viscosity=.04))
+film = ehd.steady(b, speed=314.0, eccentricity_ratio=0.6)
+print(len(ahead.helpers), [helper.returncode for helper in ahead.helpers])
+print(*film.force)
+"""
+
+
+def expected():
+    """The film's force in this process, N."""
+    oil = ehd.Lubricant(viscosity=0.04)
+    b = ehd.JournalBearing(journal_radius=0.01, length=0.02, radial_clearance=2e-5, lubricant=oil)
+    return ehd.steady(b, speed=314.0, eccentricity_ratio=0.6).force
+
+
+def first_film(folder, **environment):
+    """Helpers that started and the force of a first film in a new process."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("PYTEST_XDIST_WORKER", ahead.HELPER_VARIABLE)}
+    done = subprocess.run(
+        [sys.executable, "-c", FILM], env=kept | environment, cwd=folder, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    return int(lines[-2].split()[0]), np.array(lines[-1].split(), dtype=float), done.stderr
+
+
+@pytest.mark.slow
+def test_first_films_are_the_same_with_and_without_a_helper(tmp_path):
+    # a second process with the first cache has nothing to compile
+    for name, switch, wanted in (("with", "1", HELPERS), ("with", "1", 0), ("without", "0", 0)):
+        found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path / name), EXUDYN_EHD_HELPER=switch)
+        assert found == wanted and not errors
+        # arrays lie elsewhere in every process, which a vectorised sum rounds otherwise
+        np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_a_first_film_where_nothing_can_be_written(tmp_path):
+    # not by root either: files in the places of folders
+    shutil.copytree(ROOT / "exudyn_ehd", tmp_path / "exudyn_ehd", ignore=lambda *_: {"__pycache__"})
+    for folder, _, _ in list(os.walk(tmp_path / "exudyn_ehd")):
+        (pathlib.Path(folder) / "__pycache__").touch()
+    nowhere = {"HOME": os.devnull, "XDG_CACHE_HOME": os.devnull, "TMPDIR": str(tmp_path), "PYTHONPATH": str(tmp_path)}
+    found, force, errors = first_film(tmp_path, NUMBA_CACHE_DIR=f"{os.devnull}/kernels", **nowhere)
+    assert found == HELPERS and "numba can write its cache neither" in errors
+    np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
+    assert not list(tmp_path.glob("exudyn_ehd_kernels*")), "the folder of a process goes with it"

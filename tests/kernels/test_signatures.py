@@ -1,0 +1,64 @@
+"""The table of the first films' kernels: read, written, and as the films have it."""
+
+import collections
+import inspect
+
+import pytest
+from numba.core import types
+
+from exudyn_ehd.film.reynolds.links import Coefficients
+from exudyn_ehd.kernels import ahead
+from exudyn_ehd.kernels.signatures import TABLE, find, read_types, table, write_type
+
+f2 = types.Array(types.float64, 2, "C")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("f i u b -", (types.float64, types.int64, types.uint64, types.boolean, types.none)),
+        ("f2 i1A", (f2, types.Array(types.int64, 1, "A"))),
+        ("(f2 f2) (f i)", (types.UniTuple(f2, 2), types.Tuple((types.float64, types.int64)))),
+        (
+            f"film.reynolds.links:Coefficients({' '.join(['f2'] * 10)})",
+            (types.NamedUniTuple(f2, 10, Coefficients),),
+        ),
+    ],
+)
+def test_types_as_text(text, expected):
+    assert read_types(text) == expected
+    assert " ".join(write_type(kind) for kind in expected) == text
+
+
+@pytest.mark.parametrize("kind", [types.float32, types.unicode_type, types.Array(types.float64, 1, "C", readonly=True)])
+def test_other_types_have_no_text(kind):
+    with pytest.raises(ValueError, match="no text for"):
+        write_type(kind)
+
+
+def test_every_line_names_a_kernel_and_what_it_calls():
+    names = {kernel.function for kernel in table()}
+    for kernel in table():
+        function = find(kernel.function).py_func
+        arguments = read_types(kernel.arguments)
+        assert len(arguments) == len(inspect.signature(function).parameters), kernel.function
+        assert " ".join(write_type(kind) for kind in arguments) == kernel.arguments
+        assert set(kernel.after) <= names - {kernel.function}
+    # one kind of every kernel, but for a film's derivatives as fields or as rows, and for a part that may be absent
+    counts = collections.Counter((k.function, k.group) for k in table())
+    several = {"film.reynolds.link_derivatives:derivatives_of", "film.reynolds.balance:part"}
+    assert {name for (name, _), n in counts.items() if n > 1} == several
+    for group, probe in ahead.PROBES.items():
+        assert [k.group for k in table() if k.function == probe] == [group]
+
+
+@pytest.mark.slow
+def test_the_table_is_what_first_films_compile():
+    """If not: ``python -m tests.benchmarks.first_films`` writes it anew."""
+    from tests.benchmarks import first_films
+
+    def content(lines):
+        return {tuple(part.strip() for part in line.split("|")[:3]) for line in lines}
+
+    found = first_films.lines_of({film: first_films.notes_of(film) for film in first_films.FILMS})
+    assert content(found) == content(TABLE.read_text(encoding="utf-8").splitlines())
