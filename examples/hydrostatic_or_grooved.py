@@ -10,7 +10,7 @@ Swift-Stieber's (pressure and slope vanish at the rupture line) and Elrod and Ad
    only the mass-conserving film knows, and only it notices that a groove under the load starves the film until it can't
    carry.
 3. What happens when the load sweeps over the groove? The journal turns at 3000 rpm, the load of 2 kN with a tenth of
-   it.
+   it. The run begins half a turn of the load before the turn that is shown.
 
 Run ``python examples/hydrostatic_or_grooved.py``; pictures are written to ``results/hydrostatic_or_grooved``.
 """
@@ -151,6 +151,14 @@ def turning_load(
     return np.degrees(LOAD_SPEED * history.time) - 180.0, history
 
 
+def open_end(history: ehd.JointHistory) -> float:
+    """Largest distance of the last quarter turn of the load from where the journal was a turn before, over c."""
+    turn = 2.0 * math.pi / LOAD_SPEED
+    late = history.time >= history.time[-1] - 0.25 * turn
+    before = [np.interp(history.time[late] - turn, history.time, places) for places in history.eccentricity.T]
+    return float(np.hypot(*(history.eccentricity[late] - np.transpose(before)).T).max()) / history.radial_clearance
+
+
 def figures(films, sweeps, runs) -> dict[str, float]:
     """Numbers that the example is there for."""
     rows = {}
@@ -179,6 +187,7 @@ def figures(films, sweeps, runs) -> dict[str, float]:
             history.minimum_gap[late][thinnest]
         )
         rows[f"{closure}: load's angle from the groove then [deg]"] = float(angle[late][thinnest])
+        rows[f"{closure}: journal's distance from a turn before, over c"] = open_end(history)
     return rows
 
 
@@ -206,14 +215,19 @@ def draw(films, sweeps, runs, folder: pathlib.Path) -> None:
         xticks=range(-180, 181, 60),
         ylim=(0, 90),
     )
+    closed = max(open_end(history) for _, history in runs.values())
     for closure, (angle, history) in runs.items():
-        late = angle >= -90.0
-        axes[1, 1].plot(angle[late], 1e6 * history.minimum_gap[late], color=COLOURS[closure], label=closure)
+        # the closed turn from 0 to 360 degrees, with the groove in the middle
+        late = angle >= 0.0
+        shown = np.where(angle[late] > 180.0, angle[late] - 360.0, angle[late])
+        order = np.argsort(shown)
+        axes[1, 1].plot(shown[order], 1e6 * history.minimum_gap[late][order], color=COLOURS[closure], label=closure)
     axes[1, 1].set(
         xlabel="load's angle from the groove [°]",
         ylabel="minimum film thickness [µm]",
-        title="a load of 2 kN turns over the groove",
-        xticks=range(-90, 361, 90),
+        title=f"a load of 2 kN turns over the groove, closed within {closed:.0e} c",
+        xticks=range(-180, 181, 60),
+        xlim=(-180, 180),
         ylim=(0, 85),
     )
     for ax in axes[1]:
