@@ -379,6 +379,13 @@ def _sketch(axes) -> None:
     axes.set_title("rocker at its lowest,\nat its highest in grey")
 
 
+def _say_closed(fig, runs: list[Run], turns: int) -> None:
+    """Title: how far the last turn is from the one before."""
+    closed = max(run.closed for run in runs)
+    if not math.isnan(closed):
+        fig.suptitle(f"the last two of {turns} turns; the journals' orbits have closed within {closed:.1g} c")
+
+
 @styled(10.0)
 def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path: pathlib.Path) -> None:
     """Load and tilt of the right bearing, its films, and the tool against the ideal mechanism."""
@@ -436,10 +443,7 @@ def draw(runs: dict[str, Run], parallel: ehd.JointHistory, start_up: float, path
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3, frameon=False, columnspacing=1.0)
     for ax in (axes[0, 0], axes[1, 0], axes[1, 1]):
         ax.set_ylim(0, None)
-    closed = max(runs[name].closed for name in colours)
-    if not math.isnan(closed):
-        turns = round((end + before) / 360.0)
-        fig.suptitle(f"the last two of {turns} turns; the journals' orbits have closed within {closed:.1g} c")
+    _say_closed(fig, [runs[name] for name in colours], round((end + before) / 360.0))
     fig.savefig(path, dpi=85)
     plt.close(fig)
 
