@@ -15,6 +15,7 @@ from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.impedance import ImpedanceEvaluation, ImpedanceModel
 from exudyn_ehd.joint.model.quantities import supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.static.equilibrium import whirl_threshold
 from exudyn_ehd.status import FilmError, Status
 
 Motions: TypeAlias = Sequence[np.ndarray] | np.ndarray
@@ -31,6 +32,7 @@ SCALES: Mapping[str, float | None] = {
     "leakage": None,
     "stiffness": None,
     "damping": None,
+    "critical mass": None,
     "supply flow": None,
 }
 _FROM_MODEL = {
@@ -109,8 +111,10 @@ def _quantities(model: Model, evaluation: Evaluated, motion: np.ndarray) -> Valu
         "attitude": math.atan2(tangential, -radial),
     }
     row |= {name: known[key] for name, key in _FROM_MODEL.items() if key in known}
-    row["stiffness"] = -turn @ tangent[:2, :2] @ turn.T
-    row["damping"] = -turn @ tangent[:2, 4:6] @ turn.T
+    stiffness, damping = (-turn @ tangent[:2, k : k + 2] @ turn.T for k in (0, 4))
+    # at rest as at any speed: the critical mass has none in it
+    mass = whirl_threshold(stiffness, damping, abs(float(motion[8])) or 1.0)[1]
+    row |= {"stiffness": stiffness, "damping": damping, "critical mass": mass}
     if model.bearing.supply and isinstance(evaluation, Evaluation) and evaluation.film is not None:
         row["supply flow"] = supply_flows(evaluation.film)
     return row

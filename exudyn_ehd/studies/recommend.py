@@ -117,8 +117,8 @@ def recommend(
     error : float
         Relative.
     quantity : str
-        "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "supply flow", "stiffness"
-        or "damping".
+        "load", "attitude", "friction", "peak pressure", "minimum film thickness", "leakage", "supply flow",
+        "stiffness", "damping" or "critical mass".
     eccentricity_ratio : float or (lowest, highest)
         Where the bearing works, 0.1 to 0.95; the worst of a range counts.
     tilt_ratio : float
@@ -307,6 +307,8 @@ def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]
                 "the film carries nothing, and errors relative to nothing mean nothing. With ElrodAdams a film that "
                 "nothing feeds runs dry: give the bearing supply=(...) or end_pressures."
             )
+        if not np.all(np.isfinite(values[quantity])):
+            raise FilmError(f"there is no {quantity}: the journal does not whirl there at any mass.")
         levels.append(values[quantity])
     found = converged(levels, ratio=2.0, formal_order=2.0, scale=scale_of(quantity, levels[-1]))
     return found.value, found.error
@@ -324,6 +326,8 @@ def _errors(
         model = build_model(dataclasses.replace(bearing, **options))
         values = [measure_motions(model, block)[0][quantity] for block in motions]
     except EHDError:
+        return None
+    if not all(np.all(np.isfinite(value)) for value in values):
         return None
     return [
         MARGIN * (float(np.max(np.abs(value - fine))) / scale_of(quantity, fine) + own)

@@ -68,7 +68,7 @@ def draw(seed: int) -> Question:
             # a film that nothing feeds runs dry
             options.setdefault("supply", (supplies[rng.integers(4)],))
         laws = {name: options.pop(name) for name in ("pressure_law", "shear_law") if name in options}
-        known = [name for name in SCALES if name != "supply flow" or "supply" in options]
+        known = [n for n in SCALES if n != "critical mass" and (n != "supply flow" or "supply" in options)]
         question = {
             "eccentricity_ratio": float(rng.uniform(0.1, 0.95)),
             "tilt_ratio": float(rng.choice([0.0, rng.uniform(0.0, 0.7)])),

@@ -68,6 +68,19 @@ def test_stiffness_wants_the_line_inside_the_cells():
     assert ehd.recommend(lined, 0.01, "stiffness", eccentricity_ratio=0.7).film == advice.film
 
 
+def test_critical_mass():
+    place = {"eccentricity_ratio": (0.2, 0.6)}
+    advice = ehd.recommend(_bearing(1.0), 0.05, "critical mass", **place)
+    assert advice.options["cavitation"] == ehd.SwiftStieber(line_in_cells=True)
+    question = dataclasses.replace(
+        draw(0), bearing=_bearing(1.0), eccentricity_ratio=0.55, tilt_ratio=0.0, quantity="critical mass"
+    )
+    assert true_error(question, advice) <= 0.05
+    stable = ehd.recommend(_bearing(1.0), 0.05, "critical mass", eccentricity_ratio=0.9)
+    assert not stable.found
+    assert "does not whirl" in stable.reason
+
+
 def test_supply():
     """The flow of a hole, from wherever the journal presses, and where it is known to press."""
     hole = ehd.Hole(angle=1.0, diameter=4e-3, pressure=2e5)
