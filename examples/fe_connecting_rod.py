@@ -9,7 +9,9 @@ firing is less than half as thick as in a rigid bore; a wide one backs the whole
 pressure is largest, and the peak is below the rigid one. A bush in a rigid housing can't tell the two apart. (The wide
 shank is the heavier one: between firings its inertia asks for more force than that of the narrow one, whose mass the
 rigid rod has.) The run begins half a turn before the one that is shown, at the inner dead centre, so that the journal
-has left the middle of its bore and the rod's first vibrations are gone.
+has left the middle of its bore and the rod's first vibrations are gone. It does not go on until the cycle of two turns
+closes, which takes two and a half times as long: there, the turn of the next firing is within 3 % of the clearance of
+the one shown at its beginning, within 0.5 % from 60 degrees on, and has its peak and minimum film thickness to 0.1 %.
 
 Run ``python examples/fe_connecting_rod.py``; the picture is written to ``results``.
 """
@@ -43,6 +45,8 @@ GAS_FORCE, GAS_WIDTH = 25e3, 0.35
 FIRING = 0.4 * math.pi
 BORE, LENGTH = 0.024, 0.022
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+# Largest distance of the pin from where it is a cycle later, over the clearance; from longer runs.
+CYCLE_LATER = 0.03
 # element counts: along the axis of the bores, along the shank; across it, of the 40 around the big eye
 AXIAL, ALONG = 2, 7
 SHANKS = {"narrow shank": 4, "wide shank": 10}
@@ -299,6 +303,7 @@ def draw(cases: dict, rods: dict, path: Path) -> None:
     axes["f"].annotate("firing", (math.degrees(FIRING), 0.0), xytext=(3, 4), textcoords="offset points", color="0.4")
     axes["f"].set_title("rigid rod's force lies under the narrow shank's")
     axes["p"].legend()
+    figure.suptitle(f"turn of a firing; a cycle later all pins are within {CYCLE_LATER:g} c of these places")
     for a, (name, (fem, _)) in zip("nw", rods.items()):
         draw_rod(axes[a], fem)
         axes[a].set_title(

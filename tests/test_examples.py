@@ -69,6 +69,27 @@ def test_elastic_big_end(example, tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("flexible", [False, True])
+def test_connecting_rod_a_cycle_later(example, flexible):
+    """How far the turn that the picture shows is from the one after the next firing, as its story says."""
+    module = example("fe_connecting_rod")
+    fem, _ = module.rod_fem(module.SHANKS["narrow shank"], tolerance=0.02)
+    run = module.simulate(
+        module.big_end(quick=False), fem, flexible=flexible, start=-math.pi, turns=3.5, steps_per_turn=720
+    )
+    h, cycle = run["history"], 4.0 * math.pi / module.SPEED
+    later = run["angle_deg"] >= 720.0
+    before = h.time[later] - cycle
+    moved = h.eccentricity[later] - np.transpose([np.interp(before, h.time, place) for place in h.eccentricity.T])
+    distance, angle = np.hypot(*moved.T) / h.radial_clearance, run["angle_deg"][later] - 720.0
+    assert distance.max() == pytest.approx(module.CYCLE_LATER if flexible else 0.0127, rel=0.1)
+    assert distance[angle >= 60.0].max() < 0.005
+    first = h.between(before[0], before[-1])
+    assert h.minimum_gap[later].min() == pytest.approx(first.minimum_gap.min(), rel=1e-3)
+    assert h.peak_pressure[later].max() == pytest.approx(first.peak_pressure.max(), rel=1e-3)
+
+
+@pytest.mark.slow
 def test_fe_connecting_rod(example, tmp_path):
     module = example("fe_connecting_rod")
     cases = module.main(quick=True, results=tmp_path)
