@@ -250,13 +250,13 @@ def simulate(
     }
 
 
-def draw_rod(axes, fem: FEMinterface) -> None:
+def draw_rod(axes, fem: FEMinterface, color: str) -> None:
     """Draw the mesh from the side, and deformed by a firing load: a parabola over 120 degrees on the shank's side."""
     nodes, elements = np.asarray(fem.nodes["Position"]), fem.elements[0]["Hex20"]
     shape = 300.0 * firing_shape(fem)[0]
     ring = [4, 12, 5, 13, 6, 14, 7, 15, 4]
     top = elements[nodes[elements[:, 4], 2] > 0.499 * LENGTH]
-    for u, style in ((np.zeros_like(nodes), {"color": "0.75", "lw": 0.6}), (shape, {"color": "C1", "lw": 0.8})):
+    for u, style in ((np.zeros_like(nodes), {"color": "0.75", "lw": 0.6}), (shape, {"color": color, "lw": 0.8})):
         x = 1e3 * (nodes + u)[top][:, ring]
         axes.plot(x[..., 0].T, x[..., 1].T, **style)
     axes.set(xlabel="x [mm]", ylabel="y [mm]", aspect="equal")
@@ -305,7 +305,7 @@ def draw(cases: dict, rods: dict, path: Path) -> None:
     axes["p"].legend()
     figure.suptitle(f"turn of a firing; a cycle later all pins are within {CYCLE_LATER:g} c of these places")
     for a, (name, (fem, _)) in zip("nw", rods.items()):
-        draw_rod(axes[a], fem)
+        draw_rod(axes[a], fem, next(line.get_color() for line in axes["p"].lines if line.get_label() == name))
         axes[a].set_title(
             f"{name} under 25 kN at the bore, small end held:\ndisplacement 300 times, in grey without load"
         )
