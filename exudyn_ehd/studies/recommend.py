@@ -1,9 +1,9 @@
 """The cheapest film that keeps a quantity within an error, measured on the bearing itself.
 
 Films on a ladder of grids, with the rupture line on the grid and inside its cells, are compared with a film of 256 x 24
-intervals at the eccentricities asked for. At each the journal points in twelve directions, with supply in 24, around
-the circumference and spread over the columns of every grid, since errors ripple with the place of the rupture line and
-of the supply on the grid. An error is
+intervals at the eccentricities asked for. At each the journal points in twelve directions, with supply or a profile in
+24, around the circumference and spread over the columns of every grid, since errors ripple with the place of the
+rupture line and of the supply on the grid. An error is
 
     e = MARGIN (max |q - q_fine| + e_fine) / scale,
 
@@ -38,8 +38,8 @@ LINE_COST = 1.65
 MARGIN = 1.5
 # Of a film, over L D mu omega / psi^2.
 LEAST_LOAD = 1e-6
-# Of the eccentricity; of supplied bearings, whose film changes with the place of the supply in it.
-DIRECTIONS, SUPPLIED_DIRECTIONS = 12, 24
+# Of the eccentricity; of bearings with supply or a profile, whose film changes with the place of these in it.
+DIRECTIONS, UNEVEN_DIRECTIONS = 12, 24
 # Multiples of it, without whole parts, spread over every column of the ladder's grids.
 GOLDEN = 0.5 * (math.sqrt(5.0) - 1.0)
 COARSEST = 2.0 * math.pi / LADDER[0][0]
@@ -254,7 +254,7 @@ def _unknown(
 
 def _angles(bearing: JournalBearing, direction: float | None) -> np.ndarray:
     """Directions of the eccentricity, rad: all around or where asked, over a column of the coarsest grid."""
-    many = SUPPLIED_DIRECTIONS if bearing.supply and direction is None else DIRECTIONS
+    many = UNEVEN_DIRECTIONS if (bearing.supply or bearing.profiles) and direction is None else DIRECTIONS
     count = np.arange(many)
     places = COARSEST * (GOLDEN * count % 1.0 - 0.5)
     return places + (2.0 * math.pi / many * count if direction is None else direction)
