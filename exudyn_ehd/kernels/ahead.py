@@ -10,6 +10,7 @@ run, and with ``EXUDYN_EHD_HELPER=0``.
 
 from __future__ import annotations
 
+import itertools
 import multiprocessing
 import os
 import pathlib
@@ -34,7 +35,7 @@ PROBES = {
     "film": "film.cavitation.active_set:prolong_set",
     "swift": "film.loads:couette_integral",
     "elrod": "film.cavitation.lagging_void:lag_void",
-    "bodies": "coupling.kinematics.relative:global_loads",
+    "bodies": "coupling.kinematics.relative:_jac_column",
 }
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from exudyn_ehd.kernels.helper import main; main()"
 _seen: set[str] = set()
@@ -50,7 +51,8 @@ def compile_ahead(*groups: str) -> None:
         return
     _seen.update(new)
     lines = dict(enumerate(table()))
-    absent = {group for group in new if not _is_cached(group, lines.values())}
+    # behind the first group that is not in the cache the others are not asked for: what is there is read in a moment
+    absent = list(itertools.dropwhile(lambda group: _is_cached(group, lines.values()), new))
     wanted = {number: kernel for number, kernel in lines.items() if kernel.group in absent}
     if len(wanted) >= FEWEST:
         _Shares(wanted).compile()
