@@ -200,6 +200,7 @@ class EquilibriumPoint:
             **{name: float(getattr(eq.film, name)) for name in names},
             "whirl_ratio": eq.whirl_ratio,
             "critical_mass": eq.critical_mass,
+            "critical_mass_error": eq.critical_mass_error,
         }
 
 
