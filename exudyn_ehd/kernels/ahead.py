@@ -135,18 +135,21 @@ class _Shares:
     def _feed(self, helper: subprocess.Popen[str]) -> None:
         """Give the helper one kernel after the other; where it fails, give its kernel back."""
         number = None
-        with helper, suppress(OSError, ValueError):
-            assert helper.stdin is not None and helper.stdout is not None
-            if helper.stdout.readline().strip() == str(TABLE):
-                while (number := self._take(helping=True)) is not None:
-                    print(number, file=helper.stdin, flush=True)
-                    if helper.stdout.readline().strip() != str(number):
-                        break
-                    self._finish(number)
-        with self.change:
-            if number is not None:
-                self.left.append(number)
-            self.change.notify_all()
+        try:
+            # a pipe that is broken is so once more when it is closed
+            with suppress(OSError, ValueError), helper:
+                assert helper.stdin is not None and helper.stdout is not None
+                if helper.stdout.readline().strip() == str(TABLE):
+                    while (number := self._take(helping=True)) is not None:
+                        print(number, file=helper.stdin, flush=True)
+                        if helper.stdout.readline().strip() != str(number):
+                            break
+                        self._finish(number)
+        finally:
+            with self.change:
+                if number is not None:
+                    self.left.append(number)
+                self.change.notify_all()
 
 
 def _start_helper() -> subprocess.Popen[str]:
