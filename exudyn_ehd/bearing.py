@@ -279,15 +279,18 @@ def _check_line(bearing: JournalBearing) -> None:
     if not bearing.cavitation.line_in_cells:
         return
     film, closure, oil = type(bearing.film).__name__, type(bearing.cavitation).__name__, bearing.lubricant
-    clips = bearing.cavitation.clips
-    kinds = (FiniteLength, LongBearing, ShortBearing if clips else ImpedanceMap)
+    clips, oil_counts = bearing.cavitation.clips, bearing.cavitation.conserves_mass
+    rigid = clips or oil_counts
+    kinds: tuple[type, ...] = (FiniteLength, LongBearing)
+    if not oil_counts:
+        kinds += (ShortBearing if clips else ImpedanceMap,)
     others = {
         f"film={film}(...)": not isinstance(bearing.film, kinds),
-        "a bush": clips and bearing.bush is not None,
-        "Lubricant.density_law": clips and oil.density_law is not None,
-        "Lubricant.shear_law": clips and oil.shear_law is not None,
+        "a bush": rigid and bearing.bush is not None,
+        "Lubricant.density_law": rigid and oil.density_law is not None,
+        "Lubricant.shear_law": rigid and oil.shear_law is not None,
     }
-    swift_short = isinstance(bearing.film, ShortBearing) and not clips
+    swift_short = isinstance(bearing.film, ShortBearing) and not rigid
     same = "; with Gumbel(line_in_cells=True) the film is the same while the journal is aligned" if swift_short else ""
     for other, there in others.items():
         if there:

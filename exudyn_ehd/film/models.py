@@ -17,9 +17,10 @@ from exudyn_ehd.film.grid import FilmGrid, bearing_grid, long_bearing_grid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.sor import ClassicSolver, ClassicSOR
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.film.supply.areas import AxialGroove, SupplyArea, placed
@@ -190,6 +191,13 @@ class LongSolver(FilmSolver):
         out = super().line_gradients()
         if out is not None:
             out.by[7] = 0.0
+        return out
+
+    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
+        """As `FilmSolver.fill_gradients`, with no flow by vz."""
+        out = super().fill_gradients()
+        for line in out or ():
+            line.by[7] = 0.0
         return out
 
 

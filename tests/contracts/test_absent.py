@@ -109,6 +109,10 @@ EFFECTS = {
         ("film.cavitation.line_kernels", "film.solvers.liner.line"),
         {"cavitation": ehd.SwiftStieber(line_in_cells=True), "bush": LINER},
     ),
+    "line of a film that conserves mass": (
+        ("film.cavitation.oil_line.curve", "film.cavitation.oil_line.newton"),
+        {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
+    ),
     "holes": (
         ("film.supply.cuts", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5),)},
@@ -138,6 +142,7 @@ SHARED = {
     "lubricant.lubricant",
     "lubricant.named_oils",
     "reynolds.links",
+    "solvers.closure",
     "solvers.exact",
     "solvers.linear",
     "reynolds.stepped_gap",

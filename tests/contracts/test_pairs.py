@@ -39,7 +39,10 @@ CLOSURES = {
     "swift": ehd.SwiftStieber(cavity_pressure=-5e4),
     "elrod": ehd.ElrodAdams(cavity_pressure=-5e4),
 }
-LINE = ehd.SwiftStieber(cavity_pressure=-5e4, line_in_cells=True)
+LINES = {
+    "swift": ehd.SwiftStieber(cavity_pressure=-5e4, line_in_cells=True),
+    "elrod": ehd.ElrodAdams(cavity_pressure=-5e4, line_in_cells=True),
+}
 CLOSURES |= {c.__name__: by_itself(c) for c in CAVITATION if c not in map(type, CLOSURES.values())}
 
 # A liner's contact comes out of its film solve, so that everything that acts besides meets another program.
@@ -64,7 +67,7 @@ PAIRS = [
 ]
 
 
-def _bearing(names, closure):
+def _bearing(names, closure, closures=CLOSURES):
     options, lubricant = {}, {}
     for name in names:
         for key, value in EFFECTS[name].items():
@@ -83,7 +86,7 @@ def _bearing(names, closure):
         radial_clearance=CLEARANCE,
         lubricant=ehd.Lubricant(viscosity=0.02, **lubricant),
         film=ehd.FiniteLength(n_theta=40, n_z=6),
-        cavitation=CLOSURES.get(closure, LINE),
+        cavitation=closures[closure],
         **options,
     )
 
@@ -97,8 +100,12 @@ def _differences(model, history, step, direction, h=1e-6):
 @pytest.mark.parametrize("closure", CLOSURES)
 @pytest.mark.parametrize("pair", PAIRS, ids="-".join)
 def test_pair(pair, closure):
+    _check_pair(pair, closure, CLOSURES)
+
+
+def _check_pair(pair, closure, closures):
     try:
-        model = build_model(_bearing(pair, closure))
+        model = build_model(_bearing(pair, closure, closures))
     except ehd.InputError as error:
         # refused when described, with both options' names or a next step in the text
         assert len(str(error)) > 60
@@ -131,7 +138,13 @@ LINE_PAIRS = [p for p in itertools.combinations(EFFECTS, 2) if {"carreau", "dens
 @pytest.mark.slow
 @pytest.mark.parametrize("pair", [*LINE_PAIRS, *LINER_TRIPLES], ids="-".join)
 def test_pair_with_a_line_in_its_cells(pair):
-    test_pair(pair, "line in its cells")
+    _check_pair(pair, "swift", LINES)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", list(itertools.combinations(EFFECTS, 2)), ids="-".join)
+def test_pair_with_a_line_of_oil_in_its_cells(pair):
+    _check_pair(pair, "elrod", LINES)
 
 
 def _check_mass(model, evaluation, history, step):

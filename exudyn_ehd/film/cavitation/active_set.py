@@ -17,6 +17,7 @@ from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
 from exudyn_ehd.film.banded.substitution import solve_ldl
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
+from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.reynolds.links import Coefficients
@@ -53,6 +54,8 @@ class FilmSystem:
         1 / time step since ``mass_old``, 1/s; 0: steady.
     line : RuptureLine or None
         Where the film's edge lies inside its cells; None: on vertices.
+    oil_line : OilLine or None
+        The same of a film that conserves mass.
     linked : (n,) bool array
         Columns with a link to the next one.
     """
@@ -74,13 +77,15 @@ class FilmSystem:
         self.fill, self.mass_old = empty, empty.copy()
         self.prompt, self.late = np.ones(shape), np.zeros(shape)
         self.line: RuptureLine | None = None
+        self.oil_line: OilLine | None = None
         self.linked = grid.link_x != 0.0
 
     @property
     def coefficients(self) -> Coefficients:
         """These arrays as kernels take them."""
+        late = self.late if self.oil_line is None else self.oil_line.late
         return Coefficients(
-            self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed, self.prompt, self.late
+            self.kx, self.kz, self.fx, self.fz, self.H, self.H_t, self.area, self.fixed, self.prompt, late
         )
 
 

@@ -46,20 +46,6 @@ FULL_COUNT, FRONT, STRIDE, WIDTH, DRIVEN, RECEIVED = range(6)
 
 
 @njit(cache=True)
-def flow_direction(f):
-    """1 or -1 if no link carries oil the other way, 0 if some do."""
-    least = 0.0
-    most = 0.0
-    for i in range(f.shape[0]):
-        for j in range(f.shape[1]):
-            least = min(least, f[i, j])
-            most = max(most, f[i, j])
-    if least >= 0.0:
-        return 1
-    return -1 if most <= 0.0 else 0
-
-
-@njit(cache=True)
 def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
     """Append the cavitated vertices to ``order`` along the flow.
 
@@ -96,10 +82,11 @@ def _order_cavity(full, fixed, fx, along, across, count, order, place_out):
 
 
 @njit(cache=True)
-def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out):
+def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out, curve):
     """Right-hand sides b and c into ``x_out`` and the lists of U, D, K and R with C.
 
-    Returns the number of front vertices, those of cut links among them; -1 for a singular D.
+    Returns the number of front vertices, those of cut links among them; -1 for a singular D. With a ``curve`` as for
+    `factor_transport` without right-hand sides.
     """
     m, size = full.shape[1], full.size
     kx, kz, fx, fz = film.kx.reshape(-1), film.kz.reshape(-1), film.fx.reshape(-1), film.fz.reshape(-1)
@@ -119,6 +106,7 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
         else:
             rhs = 0.0
             store = area[own] * H_t[own]
+        kept = store
         along = across = -1
         by_along = by_across = 0.0
         fresh = True
@@ -158,6 +146,17 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                 rhs += inflow * before
             elif known or sets[at]:
                 rhs += inflow * (prompt[at] + late[at])
+                if curve is not None and curve[0][at] > 0.0:
+                    by_line = inflow * prompt[at] * curve[0][at]
+                    if is_full:
+                        source, by = number[at], by + by_line
+                    elif k != 0.0:
+                        t.driven_by[driven - 1] += by_line
+                    else:
+                        t.driven_from[driven] = number[at]
+                        t.driven_to[driven] = c
+                        t.driven_by[driven] = by_line
+                        driven += 1
             else:
                 rhs += inflow * late[at]
                 inflow *= prompt[at]
@@ -180,6 +179,10 @@ def _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, 
                 received += 1
         if is_full:
             x_out[r] = rhs - store
+            if curve is not None:
+                curve[2][r] = (store - kept) * curve[0][own] + kept * curve[1][own]
+                if fronts > t.loop.shape[0]:
+                    return fronts
             continue
         if not abs(store) > 1e-300:
             return -1
@@ -272,7 +275,7 @@ def _factor_loop(t, placed):
 
 
 @njit(cache=True)
-def factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x_out):
+def factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x_out, curve):
     """Factor for the given sets; returns (ok, number of unknowns).
 
     Parameters
@@ -289,6 +292,9 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
         Out.
     x_out : (n m,) array
         Right-hand sides b and c.
+    curve : three (n m,) arrays or None
+        Of a film whose full vertices may lack oil: what flows and what fills change by with their pressures, and, out,
+        what this adds to the diagonals of A; what flows on by it joins K, or C. Right-hand sides are the caller's then.
     """
     count = placed = fronts = width = 0
     for spare in (full.shape[1] // CUT_ROWS, 0):
@@ -297,7 +303,7 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
         if placed < 0:
             return False, 0
         t.shape[WIDTH] = width
-        fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out)
+        fronts = _gather(film, inverse_step, mass_old, pc, full, order, count, placed, P, t, x_out, curve)
         if 0 <= fronts <= t.loop.shape[0]:
             break
     if not 0 <= fronts <= t.loop.shape[0]:
@@ -305,6 +311,9 @@ def factor_transport(film, inverse_step, mass_old, pc, full, along, across, orde
     stride = fronts + -fronts % 4
     t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE] = count, fronts, stride
     assemble_band(film.kx, film.kz, t.number, order, count, width, FIRST_ROW, t.band)
+    if curve is not None:
+        for r in range(count):
+            t.band[r, 0] += curve[2][r]
     if not factor_band(t.band, count, width, FIRST_ROW, t.diagonal):
         return False, 0
     if fronts > 0:

@@ -1,7 +1,7 @@
 """Cavitation closures: what the film does where the linear Reynolds equation would go below the cavity pressure.
 
 Each closure is a small frozen object, which a scene names: what a film needs of it stands in
-`exudyn_ehd.film.solvers.linear.Closure`. All pressures here are scaled (see `exudyn_ehd.film.reynolds.links`);
+`exudyn_ehd.film.solvers.closure.Closure`. All pressures here are scaled (see `exudyn_ehd.film.reynolds.links`);
 ``cavity_pressure`` of the specs is a gauge pressure in Pa.
 
 * `FullSommerfeld`: nothing; negative pressures stay.

@@ -42,14 +42,16 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     FULL_COUNT,
     WIDTH,
     factor_transport,
-    flow_direction,
     solve_transport,
 )
 from exudyn_ehd.film.cavitation.closures import SwiftStieber, check_cavity_pressure
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
+from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
+from exudyn_ehd.film.cavitation.oil_line.newton import solve_on_curve
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance, film_slopes
-from exudyn_ehd.status import Status
+from exudyn_ehd.film.reynolds.balance import film_balance, film_slopes, film_terms, oil_links
+from exudyn_ehd.film.reynolds.links import flow_direction
+from exudyn_ehd.status import Status, require_bool
 
 MAX_NEWTON_STEPS = 60
 SET_TOLERANCE = 1e-12
@@ -71,10 +73,17 @@ class ElrodAdams:
     In time its history is the void of the gap; full films are squeezed as under `SwiftStieber`. Flows balance what they
     bring to rounding; the content keeps to that within half a step of the gap's rate, over any number of steps.
 
+    With ``line_in_cells`` steady stiffness is within 1.5 % in any direction (default grid, eccentricity ratio 0.6 to
+    0.9, L/D 0.5 and 1) instead of 9 %, and damping varies by 1.3 % with the direction instead of 10 %, in two to
+    three times the time. Where the film reforms it does so on the grid's vertices: damping may be off by 6 % for it.
+
     Parameters
     ----------
     cavity_pressure : float
         Gauge pressure of the cavity, Pa; about -1e5 for oil vapour or released air, 0 for a vented cavity.
+    line_in_cells : bool
+        True: the film ruptures where it does, inside the cells of the grid; not with bushes, density and shear laws;
+        see `exudyn_ehd.film.cavitation.oil_line.curve`. False: on their vertices.
 
     Source
     ------
@@ -91,17 +100,36 @@ class ElrodAdams:
     """
 
     cavity_pressure: float = 0.0
+    line_in_cells: bool = False
 
     cavity_shear = 1.0
     conserves_mass = True
     clips = False
-    line_in_cells = False
 
     def __post_init__(self) -> None:
         check_cavity_pressure("ElrodAdams", self.cavity_pressure)
+        object.__setattr__(self, "line_in_cells", require_bool("ElrodAdams.line_in_cells", self.line_in_cells))
 
     def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         """Newton from ``work.active``; cold starts come from the Swift-Stieber set."""
+        if system.oil_line is None:
+            return self._solve_plain(system, work)
+        steps = 0
+        if work.known:
+            work.known, steps = self._move_line(system, system.oil_line, work)
+            work.warm = work.known
+        if not work.known:
+            # from the film with its line on the grid
+            system.oil_line.late[:] = system.late
+            status, count = self._solve_plain(system, work)
+            steps += count
+            if status is Status.CONVERGED:
+                work.known, count = self._move_line(system, system.oil_line, work)
+                steps += count
+        work.warm = work.known
+        return (Status.CONVERGED if work.known else Status.NOT_CONVERGED), steps
+
+    def _solve_plain(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]:
         steps, was_warm = 0, work.warm
         if not was_warm:
             np.logical_not(system.fixed, out=work.active)
@@ -139,6 +167,27 @@ class ElrodAdams:
             work.upper,
             work.inv_diag,
             work.transport,
+            work.unknowns,
+            s.pressure,
+            s.fill,
+        )
+        return ok, steps
+
+    def _move_line(self, s: FilmSystem, line: OilLine, work: Workspace) -> tuple[bool, int]:
+        """From a film to the one with its line inside the cells."""
+        factors = work.lower, work.upper, work.inv_diag, work.transport
+        ok, steps, work.count, work.width, work.convected = solve_on_curve(
+            s.coefficients,
+            s.late,
+            s.b,
+            s.inverse_step,
+            s.mass_old,
+            s.cavity_pressure,
+            work.active,
+            line.fields,
+            work.order,
+            work.number,
+            factors,
             work.unknowns,
             s.pressure,
             s.fill,
@@ -196,20 +245,6 @@ class ElrodAdams:
 
 
 @njit(cache=True)
-def film_terms(film, inverse_step, mass_old):
-    """`FilmTerms` of the mass-conserving film of `Coefficients`; parameters as for `solve_elrod`."""
-    grow, kept, nothing = np.empty(film.H.shape), np.empty(film.H.shape), np.zeros(film.H.shape)
-    n, m = film.H.shape
-    for i in range(n):
-        for j in range(m):
-            grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
-            kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
-    return FilmTerms(
-        film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.prompt, film.late, film.fixed
-    )
-
-
-@njit(cache=True)
 def assemble_elrod(terms, links, pc, full, number, order, count, P, lower, upper, rhs):
     """Matrix and right-hand side for the given sets; unknowns are P at full vertices and fill at cavitated ones.
 
@@ -235,20 +270,6 @@ def assemble_elrod(terms, links, pc, full, number, order, count, P, lower, upper
         rhs[r] = -left[order[r]]
 
 
-@njit(cache=True)
-def _linked(film, full):
-    """Whether vertices are linked in theta (not zero), are unknown, and are full or prescribed, (n, m) each.
-
-    Oil also links columns that exchange no pressure flow (short bearings).
-    """
-    links, free, sets = np.empty(full.shape), np.empty(full.shape, dtype=np.bool_), np.empty(full.shape, dtype=np.bool_)
-    for i in range(full.shape[0]):
-        for j in range(full.shape[1]):
-            links[i, j] = abs(film.kx[i, j]) + abs(film.fx[i, j])
-            free[i, j], sets[i, j] = not film.fixed[i, j], full[i, j] or film.fixed[i, j]
-    return links, free, sets
-
-
 @njit(cache=True, inline="always")
 def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, number, lower, upper, inv_diag, t, x, P):
     """Unknowns x for the given sets; returns (ok, count, width, convected).
@@ -257,11 +278,11 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
     """
     along, across = directions
     if along != 0 and across != 0:
-        ok, count = factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x)
+        ok, count = factor_transport(film, inverse_step, mass_old, pc, full, along, across, order, P, t, x, None)
         if ok:
             solve_transport(t, count, x)
             return True, count, 1, True
-    links, free, sets = _linked(film, full)
+    links, free, sets = oil_links(film, full)
     count, width = number_cells(free, links, order, number)
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
     terms = film_terms(film, inverse_step, mass_old)

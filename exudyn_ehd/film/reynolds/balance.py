@@ -46,6 +46,35 @@ def terms_of(f, fixed):
 
 
 @njit(cache=True)
+def film_terms(film, inverse_step, mass_old):
+    """`FilmTerms` of the mass-conserving film of `Coefficients`; ``inverse_step``: 1 / time step since the
+    content ``mass_old`` (n, m), 0 of a steady film."""
+    grow, kept, nothing = np.empty(film.H.shape), np.empty(film.H.shape), np.zeros(film.H.shape)
+    n, m = film.H.shape
+    for i in range(n):
+        for j in range(m):
+            grow[i, j] = inverse_step * film.H[i, j] if inverse_step > 0.0 else film.H_t[i, j]
+            kept[i, j] = -inverse_step * mass_old[i, j] if inverse_step > 0.0 else 0.0
+    return FilmTerms(
+        film.kx, film.kz, film.fx, film.fz, grow, nothing, kept, film.area, film.prompt, film.late, film.fixed
+    )
+
+
+@njit(cache=True)
+def oil_links(film, full):
+    """Whether vertices are linked in theta (not zero), are unknown, and are full or prescribed, (n, m) each.
+
+    Oil also links columns that exchange no pressure flow (short bearings).
+    """
+    links, free, sets = np.empty(full.shape), np.empty(full.shape, dtype=np.bool_), np.empty(full.shape, dtype=np.bool_)
+    for i in range(full.shape[0]):
+        for j in range(full.shape[1]):
+            links[i, j] = abs(film.kx[i, j]) + abs(film.fx[i, j])
+            free[i, j], sets[i, j] = not film.fixed[i, j], full[i, j] or film.fixed[i, j]
+    return links, free, sets
+
+
+@njit(cache=True)
 def part(x, start, stop):
     """Part of a field, flat; None of None."""
     if x is None:

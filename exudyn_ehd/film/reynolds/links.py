@@ -205,6 +205,20 @@ def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
         fz_out[i, m - 1] = 0.0
 
 
+@njit(cache=True)
+def flow_direction(f):
+    """1 or -1 if no link carries oil the other way, 0 if some do."""
+    least = 0.0
+    most = 0.0
+    for i in range(f.shape[0]):
+        for j in range(f.shape[1]):
+            least = min(least, f[i, j])
+            most = max(most, f[i, j])
+    if least >= 0.0:
+        return 1
+    return -1 if most <= 0.0 else 0
+
+
 @njit(cache=True, fastmath=_FAST)
 def right_hand_side(fx, fz, b_out):
     """b = net Couette inflow of every control volume."""

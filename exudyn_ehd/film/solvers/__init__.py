@@ -2,6 +2,7 @@
 
 Module map
 ----------
+closure         what a cavitation model offers
 linear          linear for given sets: rigid surfaces, incompressible
 newton          the driver for gaps or densities that depend on the pressure
 exact           adjoints of what it finds

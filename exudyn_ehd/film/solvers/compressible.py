@@ -32,9 +32,9 @@ from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
 from exudyn_ehd.film.reynolds.balance import FilmTerms, film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect
+from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
-from exudyn_ehd.film.solvers.linear import Closure
 from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 

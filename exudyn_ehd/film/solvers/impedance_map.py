@@ -33,7 +33,8 @@ from scipy.interpolate import CubicSpline
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
 from exudyn_ehd.film.reynolds.gap import rigid_gap
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.closure import Closure
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.status import FilmError, Status, require_integer, require_number
 from exudyn_ehd.storage import Shapes, cached_arrays
 

@@ -5,19 +5,17 @@ The straight line gap -> coefficients -> pressure -> sensitivities.
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, prolong_set
-from exudyn_ehd.film.cavitation.elrod_adams import film_terms
 from exudyn_ehd.film.cavitation.lagging_void import lag_void, outflow_of
 from exudyn_ehd.film.cavitation.line_newton import refine_factor
+from exudyn_ehd.film.cavitation.oil_line.curve import OilLine, weigh_flows
 from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, contract_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.loads import scatter
-from exudyn_ehd.film.reynolds.balance import film_balance
+from exudyn_ehd.film.reynolds.balance import film_balance, film_terms
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, add_cuts, contract_links, link_derivatives
 from exudyn_ehd.film.reynolds.links import (
     FluxEffect,
@@ -25,40 +23,11 @@ from exudyn_ehd.film.reynolds.links import (
     set_links,
     vertex_balance,
 )
+from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.status import Status
 
 # Stands for a vanishing time step where only the rates at one instant are asked for, s.
 INSTANT = 1e-9
-
-
-class Closure(Protocol):
-    """What a cavitation model offers.
-
-    See `exudyn_ehd.film.cavitation.closures` and `exudyn_ehd.film.cavitation.elrod_adams`.
-    """
-
-    @property
-    def cavity_pressure(self) -> float: ...
-
-    @property
-    def cavity_shear(self) -> float: ...
-
-    @property
-    def conserves_mass(self) -> bool: ...
-
-    @property
-    def clips(self) -> bool: ...
-
-    @property
-    def line_in_cells(self) -> bool: ...
-
-    def solve(self, system: FilmSystem, work: Workspace) -> tuple[Status, int]: ...
-
-    def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None: ...
-
-    def adjoint_columns(self, work: Workspace, rhs: np.ndarray) -> None: ...
-
-    def direct(self, work: Workspace, rhs: np.ndarray) -> None: ...
 
 
 class FilmSolver:
@@ -105,7 +74,12 @@ class FilmSolver:
         self.system = FilmSystem(grid, clips=closure.clips, fills=closure.conserves_mass)
         self.H, self.H_t = self.system.H, self.system.H_t
         self.HF = np.ones(shape)
-        self.line = self.system.line = RuptureLine(shape) if closure.line_in_cells and not closure.clips else None
+        self.line: RuptureLine | None = None
+        self.oil_line: OilLine | None = None
+        if closure.line_in_cells and closure.conserves_mass:
+            self.oil_line = self.system.oil_line = OilLine(shape)
+        elif closure.line_in_cells and not closure.clips:
+            self.line = self.system.line = RuptureLine(shape)
         self.work = Workspace(*shape)
         self.flux_effects = flux_effects
         self.flux = link_flux(self.HF, flux_effects) if flux_effects else None
@@ -126,7 +100,8 @@ class FilmSolver:
             self.coarse = FilmSolver(
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
             )
-            self.coarse.line = self.coarse.system.line = None  # of which the sets alone are asked for
+            # of which the sets alone are asked for
+            self.coarse.line = self.coarse.system.line = self.coarse.oil_line = self.coarse.system.oil_line = None
 
     @property
     def pressure(self) -> np.ndarray:
@@ -144,7 +119,8 @@ class FilmSolver:
         s = self.system
         if not self.closure.conserves_mass:
             return self.ones
-        return s.prompt * s.fill + s.late if self.lagging else s.fill
+        late = s.coefficients.late
+        return s.prompt * s.fill + late if self.lagging or self.oil_line is not None else s.fill
 
     @property
     def content(self) -> np.ndarray:
@@ -321,7 +297,13 @@ class FilmSolver:
         cell, face, speed = contract_links(lam, self.link_derivatives())
         cell -= lam * by_gap
         rate = -lam * by_rate
-        contract_line(lam, self.line_gradients(), cell, face, rate, speed)
+        fills, s = self.fill_gradients(), self.system
+        if fills is None:
+            contract_line(lam, self.line_gradients(), cell, face, rate, speed)
+        else:
+            store = s.area * (s.inverse_step * s.H if s.inverse_step > 0.0 else s.H_t)
+            for weighed, line in zip((weigh_flows(lam, s.coefficients), lam * store), fills, strict=True):
+                contract_line(weighed, line, cell, face, rate, speed)
         return Sensitivities(cell, face, rate, speed)
 
     def line_gradients(self) -> LineGradients | None:
@@ -329,12 +311,27 @@ class FilmSolver:
 
         For the last solution, at fixed pressure.
         """
+        fills = self.fill_gradients()
+        if fills is not None and self.oil_line is not None:
+            w, y = self.work, self.system
+            return self.oil_line.balance_gradients(fills, y.coefficients, y.inverse_step, w.order[: w.count])
         if self.line is None:
             return None
         v = self.vx, self.vz
         return self.line.gradients(
             self.work, (self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh
         )
+
+    def fill_gradients(self) -> tuple[LineGradients, LineGradients] | None:
+        """Derivatives of what flows carry from vertices at a mass-conserving film's line inside its cells, and of their
+        fills; None without.
+
+        For the last solution, at fixed pressure; ``rows`` are flat vertices.
+        """
+        if self.oil_line is None:
+            return None
+        v = self.vx, self.vz
+        return self.oil_line.gradients((self.H, self.HF), self.flux, v, self.flow_x, self.squeeze, self.grid.mesh)
 
     def couette_flows(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Couette flows of the links in theta and z, and the rate of a full film's content per area, all (n, m)."""

@@ -58,8 +58,8 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.balance import film_balance
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities, mass_flows
 from exudyn_ehd.film.reynolds.links import FluxEffect, add_squeeze, link_flux, right_hand_side
+from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
-from exudyn_ehd.film.solvers.linear import Closure
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
 from exudyn_ehd.film.solvers.liner.continuation import cold_start, pseudo_transient
 from exudyn_ehd.film.solvers.liner.elements import GapSlopes, Rates, ends_open, smallest_true_gap

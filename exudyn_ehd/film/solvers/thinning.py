@@ -14,7 +14,8 @@ from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.reynolds.links import FluxEffect
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.closure import Closure
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.nonlinear import NonlinearFilmSolver
 from exudyn_ehd.status import Status
 

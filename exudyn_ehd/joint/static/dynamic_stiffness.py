@@ -25,11 +25,12 @@ from scipy.sparse import coo_matrix, csc_matrix, diags_array
 from scipy.sparse.linalg import splu
 
 from exudyn_ehd.film.banded.assemble import add_corners, add_tangents
-from exudyn_ehd.film.cavitation.elrod_adams import film_terms
-from exudyn_ehd.film.reynolds.balance import FilmTerms, film_slopes
+from exudyn_ehd.film.cavitation.oil_line.curve import add_curve
+from exudyn_ehd.film.reynolds.balance import FilmTerms, film_slopes, film_terms
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
-from exudyn_ehd.joint.solved_film import SolvedFilm
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
+from exudyn_ehd.joint.tangent.line import by_fills, true_fills
 from exudyn_ehd.joint.tangent.wrench import adjoint_rows, balance_gradients
 
 # Whirl ratios between which a threshold is looked for: a journal bearing's is near one half.
@@ -65,6 +66,9 @@ class FilmResponse:
             store = store * np.where(w.active, rho_P, rho).reshape(-1)
         number = np.full(w.order.size, -1)
         number[order] = np.arange(order.size)
+        if s.oil_line is not None:
+            add_curve(s.oil_line.fields, terms, slopes)
+            store += (s.area * s.H * s.oil_line.rise).reshape(-1)
         if isinstance(s, ThinningFilmSolver):
             along, *across = s.response()
             add_tangents(along, terms.kx, terms.kz, full, slopes)
@@ -74,8 +78,13 @@ class FilmResponse:
             self.matrix = _matrix(slopes, number, shape[1])
         self.store = diags_array(store[order])
         self.rows = adjoint_rows(film)[:2].T.astype(complex)
-        by_motion = -balance_gradients(film) * (film.scales.force * film.parts.motion_scale)[:, None]
-        self.by_pose, self.by_rate = by_motion[:2].copy(), by_motion[4:6].copy()
+        scale = -(film.scales.force * film.parts.motion_scale)[:, None]
+        by_motion, by_fill = balance_gradients(film) * scale, np.zeros((MOTION_SIZE, w.count))
+        fills = true_fills(film)
+        if fills is not None:
+            by_fill = by_fills(film, fills, s.area * s.H, number, w.count) * scale
+        # the content at a mass-conserving film's line follows position and velocity, its rate their rates
+        self.by_pose, self.by_rate, self.by_sway = by_motion[:2].copy(), by_motion[4:6] + by_fill[:2], by_fill[4:6]
         pose, rate = self._gradients(0.0)
         self.rest = -tangent[:2, :2] - pose, -tangent[:2, 4:6] - rate
 
@@ -87,7 +96,7 @@ class FilmResponse:
     def _gradients(self, frequency: float) -> tuple[np.ndarray, np.ndarray]:
         """What the film's pressure gives to stiffness and damping at a frequency (2, 2), complex."""
         lam = splu(csc_matrix(self.matrix + 1j * frequency * self.store)).solve(self.rows, trans="T")
-        return (self.by_pose @ lam).T, (self.by_rate @ lam).T
+        return (self.by_pose @ lam).T, ((self.by_rate + 1j * frequency * self.by_sway) @ lam).T
 
 
 def _matrix(slopes: np.ndarray, number: np.ndarray, m: int) -> csc_matrix:

@@ -11,8 +11,9 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
+from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
-from exudyn_ehd.film.solvers.linear import Closure, FilmSolver
+from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
@@ -184,8 +185,9 @@ def _any_gap_solver(
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
     solver: CompressibleFilmSolver | ThinningFilmSolver
-    if closure.line_in_cells and closure.clips:
-        raise InputError("solve_film: Gumbel.line_in_cells=True does not go with Lubricant.density_law; use Gumbel().")
+    if closure.line_in_cells and (closure.clips or closure.conserves_mass):
+        name = type(closure).__name__
+        raise InputError(f"solve_film: {name}.line_in_cells=True does not go with Lubricant.density_law; use {name}().")
     if closure.line_in_cells:
         solver = ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=law)
     else:

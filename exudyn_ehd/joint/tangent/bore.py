@@ -34,11 +34,11 @@ from exudyn_ehd.film.sensitivity.rigid import integral_weights, motion_columns
 from exudyn_ehd.joint.bore.shapes import Bore
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, ContactFields, SolvedFilm
 from exudyn_ehd.joint.tangent.drag import drag_by_gap, pulls_unevenly
+from exudyn_ehd.joint.tangent.line import true_line
 from exudyn_ehd.joint.tangent.wrench import (
     adjoint_rows,
     gap_derivatives,
     shear_needs_adjoint,
-    true_line,
     wrench_tangent,
 )
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, add_line_columns, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns
 from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs, shear_adjoint_rhs, slope_adjoint_rhs, weigh_rows
 from exudyn_ehd.film.reynolds.gap import contract_ends, contract_pose
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
@@ -31,6 +31,7 @@ from exudyn_ehd.joint.tangent.drag import (
     drag_by_deflection,
     pulls_unevenly,
 )
+from exudyn_ehd.joint.tangent.line import by_fills, true_fills, true_line
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 
@@ -95,6 +96,9 @@ def _integral_gradients(film: SolvedFilm, gradient: np.ndarray) -> tuple[np.ndar
     shear = shear_needs_adjoint(film)
     dc = gradient[4] if shear else np.zeros(MOTION_SIZE)
     couette = _couette_direct(film, dc)
+    fills = true_fills(film)
+    if fills is not None:
+        dc += by_fills(film, fills, _ratio(film) * film.grid.weight / film.solver.H)[:, 0]
     extra = gradient[4 + shear : 6 + shear] if has_extra_rows(film) else _NO_EXTRA
     if film.limited is not None and not film.parts.uneven_drag:
         add_closed_by_pose(film, film.limited, couette[0], dc, extra)
@@ -135,12 +139,6 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         if line is not None:
             add_line_columns(line, at, out)
     return out
-
-
-def true_line(film: SolvedFilm) -> LineGradients | None:
-    """The rupture line's part of the balances' derivatives, to the true gap; None without."""
-    line, f = film.solver.line_gradients(), film.limited
-    return line if line is None or f is None else to_true_gap(line, f.slope, f.bend, f.face_slope)
 
 
 def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -250,15 +248,22 @@ def _shear_row(film: SolvedFilm, row: np.ndarray) -> None:
     Through pressure where they are pressures, through fill elsewhere.
     """
     p, s, g, w, oil = film.parts, film.solver, film.grid, film.solver.work, film.oil
-    ratio = s.ones if oil.ratio is None else oil.ratio
+    ratio = _ratio(film)
     by_pressure, by_gap = s.nothing if oil.ratio_q is None else oil.ratio_q, None
     if p.liner is not None:
         by_gap = ratio, s.nothing if oil.ratio_h is None else oil.ratio_h, p.liner.gap_slopes.H_P
     by_fill = ratio if s.closure.conserves_mass else s.nothing
+    if s.oil_line is not None:
+        # at the line the fill follows the pressure
+        by_pressure = by_pressure * s.fill + ratio * s.oil_line.rise
     shear_adjoint_rhs(w.order, w.count, g.weight, s.H, w.active, by_pressure, by_fill, by_gap, row)
     by_others = film.gather_shear(g.weight * film.share() / s.H)
     if by_others is not None:
         row += by_others.reshape(-1)[w.order[: w.count]]
+
+
+def _ratio(film: SolvedFilm) -> np.ndarray:
+    return film.solver.ones if film.oil.ratio is None else film.oil.ratio
 
 
 def _couette_direct(film: SolvedFilm, dc: np.ndarray) -> np.ndarray:

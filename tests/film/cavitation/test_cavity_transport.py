@@ -13,11 +13,10 @@ from exudyn_ehd.film.cavitation.cavity_transport import (
     RECEIVED,
     WIDTH,
     factor_transport,
-    flow_direction,
     solve_transport,
 )
 from exudyn_ehd.film.cavitation.elrod_adams import assemble_elrod, film_terms
-from exudyn_ehd.film.reynolds.links import Coefficients
+from exudyn_ehd.film.reynolds.links import Coefficients, flow_direction
 
 N, M, PC = 14, 6, -0.3
 CASES = {
@@ -98,7 +97,7 @@ def check(arguments, P, rtol, atol):
     t = transport_buffers(N, M, np.full((N * M, 2 * M + 2 + PAD), np.nan))
     order, x = np.zeros(N * M, dtype=np.int64), np.zeros(N * M)
     along, across = flow_direction(arguments[0].fx), flow_direction(arguments[0].fz)
-    ok, count = factor_transport(*arguments, along, across, order, P, t, x)
+    ok, count = factor_transport(*arguments, along, across, order, P, t, x, None)
     assert ok
     assert count == len(b)
     # the same unknowns in another order
@@ -158,7 +157,7 @@ def test_oil_that_goes_round_is_left_to_the_folded_ring():
     arguments, P = film(columns=(3, 9))
     arguments[-1][:, 3] = False
     t = transport_buffers(N, M, np.zeros((N * M, 2 * M + 2 + PAD)))
-    ok, _ = factor_transport(*arguments, 1, 1, np.zeros(N * M, dtype=np.int64), P, t, np.zeros(N * M))
+    ok, _ = factor_transport(*arguments, 1, 1, np.zeros(N * M, dtype=np.int64), P, t, np.zeros(N * M), None)
     assert not ok
 
 

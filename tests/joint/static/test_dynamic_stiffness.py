@@ -62,6 +62,11 @@ SCENES = {
         "cavitation": ehd.ElrodAdams(),
         "supply": (ehd.AxialGroove(angle=2.0, width_angle=0.5, length=0.02, pressure=1e5),),
     },
+    "line in its cells": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True)},
+    "shallow, line in its cells": {
+        "cavitation": ehd.ElrodAdams(cavity_pressure=-1e5, line_in_cells=True),
+        "contact": ehd.RegularisedWall(onset=1.2e-5),
+    },
     "shallow": {"contact": ehd.RegularisedWall(onset=1.2e-5)},
 }
 
