@@ -25,7 +25,7 @@ from exudyn_ehd.status import InputError, require_number, require_size, require_
 SETTLED_STEP = 1e-4
 # Relative errors of the critical mass from here on are told when a result is printed.
 SURE = 0.05
-# Error of the critical mass per squared cancellation on 96 columns: line on the grid, with Gumbel, inside its cells.
+# Error of the critical mass per squared cancellation on 96 columns: line on the grid, with Gümbel, inside its cells.
 ON_GRID, CLIPPED, IN_CELLS = 0.02, 0.03, 0.003
 LOADS = {"smallest": 1e-30, "largest": 1e15}
 
