@@ -50,6 +50,7 @@ from exudyn_ehd.pictures.style import styled
 
 STEEL, POISSON, DENSITY = 2.1e11, 0.3, 7850.0
 DIAMETER, SPAN = 0.022, 0.6
+RADIUS, WIDTH = 0.015, 0.015  # of the journals
 DISC_MASS, DISC_RADIUS = 1.6, 0.05
 ECCENTRICITY = 5e-6  # of the disc's centre of mass
 TAP_TIME, TAP_PERIOD = 0.01, 0.2
@@ -65,8 +66,8 @@ IN_PLANE = (1, 2, 4, 5)  # of a node's coordinates: y, z and the rotations about
 def bearing(*, quick: bool = False) -> ehd.JournalBearing:
     """One of the two bearings."""
     return ehd.JournalBearing(
-        journal_radius=0.015,
-        length=0.015,
+        journal_radius=RADIUS,
+        length=WIDTH,
         radial_clearance=CLEARANCE,
         lubricant=ehd.Lubricant(viscosity=0.05),
         film=ehd.FiniteLength(n_theta=64, n_z=4) if quick else ehd.FiniteLength(n_theta=96, n_z=6),
@@ -497,15 +498,40 @@ def _draw_orbits(orbits, disc, ride: RunUp, threshold: float, bending: float) ->
     disc.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=3, frameon=False)
 
 
+def _sketch(ax) -> None:
+    """The rotor from the side, 1 : 1 in both directions."""
+    half, wide = 0.5 * DIAMETER, 0.5 * WIDTH
+    ax.plot([-0.08, SPAN + 0.08], [0.0, 0.0], color="0.8", lw=0.8, ls="-.")
+    ax.add_patch(plt.Rectangle((-wide, -half), SPAN + 2.0 * wide, DIAMETER, fc="0.85", ec="black", lw=0.8))
+    thick = 0.25 * DISC_RADIUS
+    ax.add_patch(
+        plt.Rectangle((0.5 * SPAN - thick, -DISC_RADIUS), 2.0 * thick, 2.0 * DISC_RADIUS, fc="0.6", ec="black")
+    )
+    for x, name in ((0.0, "left"), (SPAN, "right")):
+        ax.add_patch(plt.Rectangle((x - wide, -RADIUS), WIDTH, 2.0 * RADIUS, fc="0.85", ec="black", lw=0.8))
+        for low in (RADIUS, -RADIUS - 0.02):
+            ax.add_patch(plt.Rectangle((x - wide, low), WIDTH, 0.02, fc="tab:blue", ec="none"))
+        ax.text(x, -0.07, f"{name} bearing, on oil", ha="center", color="tab:blue")
+    ax.annotate(
+        "", (-0.07, 0.022), (-0.07, -0.022), arrowprops={"arrowstyle": "->", "connectionstyle": "arc3,rad=-0.6"}
+    )
+    ax.text(-0.1, 0.0, "spin", ha="right", va="center")
+    ax.text(0.5 * SPAN + 1.5 * thick, 0.028, f"disc, {DISC_MASS:g} kg")
+    ax.text(0.24 * SPAN, 0.02, "flexible shaft", ha="center")
+    ax.set(aspect="equal", xlim=(-0.2, SPAN + 0.15), ylim=(-0.085, 0.06))
+    ax.set_axis_off()
+
+
 @styled(10.0)
 def draw(linear: LinearRotor, rates: dict[float, tuple[complex, complex]], ride: RunUp, path: pathlib.Path) -> None:
     """Waterfall, frequencies and growth rates against linear theory, orbits."""
     threshold, bending = linear.threshold() / HZ, linear.first_bending / HZ
-    fig = plt.figure(figsize=(14, 9), layout="constrained")
-    grid = fig.add_gridspec(2, 3, width_ratios=(1.5, 1, 1))
+    fig = plt.figure(figsize=(14, 10), layout="constrained")
+    grid = fig.add_gridspec(3, 3, width_ratios=(1.5, 1, 1), height_ratios=(0.36, 1, 1))
+    _sketch(fig.add_subplot(grid[0, 1:]))
     _draw_waterfall(fig.add_subplot(grid[:, 0]), ride, threshold, bending)
-    _draw_modes(fig.add_subplot(grid[0, 1]), fig.add_subplot(grid[0, 2]), linear, rates, ride, threshold)
-    _draw_orbits(fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2]), ride, threshold, bending)
+    _draw_modes(fig.add_subplot(grid[1, 1]), fig.add_subplot(grid[1, 2]), linear, rates, ride, threshold)
+    _draw_orbits(fig.add_subplot(grid[2, 1]), fig.add_subplot(grid[2, 2]), ride, threshold, bending)
     fig.savefig(path, dpi=85)
     plt.close(fig)
 
