@@ -22,7 +22,7 @@ _NONE = np.int64(0)
 _NOWHERE = np.int64(-1)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def number_cells(active, kx, order_out, number_out):
     """Number the active cells, all their links in the band; returns (count, half-bandwidth).
 

@@ -34,10 +34,22 @@ def solve_ldl(band, inverse, count, width, x):
     _solve_rows(band, band, _YES, _YES, inverse, count, width, x)
 
 
+@njit(cache=True, inline="always")
+def solve_ldl_one(band, inverse, count, width, x):
+    """As `solve_ldl` for one right-hand side x (count,), in kernels that need no more."""
+    _solve_one(band, band, _YES, _YES, inverse, count, width, x)
+
+
 @njit(cache=True)
 def solve_lu(lower, upper, inverse, count, width, x):
     """Solve ``A x = b`` with the factor of `lu.factor_lu` for every row of x (k, count), in place."""
     _solve_rows(lower, upper, _NO, _YES, inverse, count, width, x)
+
+
+@njit(cache=True, inline="always")
+def solve_lu_one(lower, upper, inverse, count, width, x):
+    """As `solve_lu` for one right-hand side x (count,), in kernels that need no more."""
+    _solve_one(lower, upper, _NO, _YES, inverse, count, width, x)
 
 
 @njit(cache=True)

@@ -15,7 +15,7 @@ from numba import njit
 
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_cells
-from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
 from exudyn_ehd.film.cavitation.oil_line.curve import OilLine
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine
@@ -113,7 +113,7 @@ def gather_rhs(kx, kz, b, active, order, count, P, rhs_out):
         rhs_out[r] = s
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, number, band, inv_diag, unknowns, P):
     """Factor and solve on the active vertices; P holds the known pressures elsewhere. Returns (ok, count, width).
 
@@ -127,7 +127,7 @@ def solve_on_active(kx, kz, b, active, order, old_order, old_count, old_width, n
     if not factor_band(band, count, width, first, inv_diag):
         return False, count, width
     gather_rhs(kx, kz, b, active, order, count, P, unknowns)
-    solve_ldl(band, inv_diag, count, width, unknowns.reshape(1, unknowns.size))
+    solve_ldl_one(band, inv_diag, count, width, unknowns)
     flat = P.reshape(-1)
     for r in range(count):
         flat[order[r]] = unknowns[r]

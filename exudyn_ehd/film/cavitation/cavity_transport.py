@@ -36,7 +36,7 @@ from numba import njit
 from exudyn_ehd.film.banded.ldl import assemble_band, factor_band
 from exudyn_ehd.film.banded.many_sides import solve_columns
 from exudyn_ehd.film.banded.numbering import number_along
-from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.substitution import solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW
 
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
@@ -343,7 +343,7 @@ def solve_transport(t, unknowns, x):
     count, fronts, stride = t.shape[FULL_COUNT], t.shape[FRONT], t.shape[STRIDE]
     placed = unknowns - count
     P, fill = x[:count], x[count:unknowns]
-    solve_ldl(t.band, t.diagonal, count, t.shape[WIDTH], P.reshape(1, count))
+    solve_ldl_one(t.band, t.diagonal, count, t.shape[WIDTH], P)
     if fronts > 0:
         trial = fill.copy()
         _convect(t, placed, P, trial)

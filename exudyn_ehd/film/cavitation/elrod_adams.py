@@ -33,7 +33,7 @@ from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.many_sides import solve_in_tiles
 from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_transposed
+from exudyn_ehd.film.banded.substitution import solve_ldl, solve_lu, solve_lu_one, solve_lu_transposed
 from exudyn_ehd.film.banded.workspace import Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem
 from exudyn_ehd.film.cavitation.cavity_adjoint import reduce_transposed, solve_transport_transposed
@@ -289,7 +289,7 @@ def _solve_sets(film, inverse_step, mass_old, pc, full, directions, order, numbe
     assemble_elrod(terms, links, pc, sets, number, order, count, P, L, U, x)
     if not factor_lu(L, U, count, width, inv_diag):
         return False, count, width, False
-    solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))
+    solve_lu_one(L, U, inv_diag, count, width, x)
     return True, count, width, False
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 
 from exudyn_ehd.film.banded.numbering import first_changed_row, number_along
-from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.banded.substitution import solve_ldl, solve_ldl_one
 from exudyn_ehd.film.banded.workspace import FIRST_ROW, Workspace
 from exudyn_ehd.film.cavitation.active_set import FilmSystem, solve_on_active, update_active_set
 from exudyn_ehd.film.cavitation.line_steps import (
@@ -98,7 +98,7 @@ def approach_film(links, line, active, factor, last, x, lack, p):
     size = _size(x, count)
     for _ in range(MOST_APPROACHES if count > 0 else 0):
         old = known.copy(), s.copy(), free.copy(), places.copy()
-        solve_ldl(band, inv_diag, count, width, x.reshape(1, x.size))
+        solve_ldl_one(band, inv_diag, count, width, x)
         in_line, in_film, _, changes = move_film(line, number, order, count, x, np.int64(1), active, p)
         lacks(links, p, lack)
         changes += relax_line(links, line, active, lack, p) + join_film(links, line, active, lack, p)
@@ -150,7 +150,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
         in_line = in_film = 0.0
         for reuse in range(MOST_REUSES + 1):
             stale = line_rows(lack, line, number, order, count, active, x) if reuse > 0 else kept
-            solve_ldl(band, inv_diag, count, width, x.reshape(1, x.size))
+            solve_ldl_one(band, inv_diag, count, width, x)
             last_line, last_film = in_line, in_film
             in_line, in_film, changed, changes = move_film(line, number, order, count, x, step, active, p)
             stale = max(stale, changed)

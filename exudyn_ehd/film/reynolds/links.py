@@ -160,7 +160,7 @@ def plain_flux(H, HF, gap_z_out, gx, gx_h, gz, gz_h):
             gz_h[i, j] = 3.0 * h * h
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, inline="always")
 def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
     """Conductances of the links with their metric, ``H^3 width / distance``.
 
@@ -190,7 +190,7 @@ def conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out):
         kz_out[i, m - 1] = 0.0
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, inline="always")
 def couette_fluxes(H, HF, flow, vx, vz, mesh, fx_out, fz_out):
     """Couette fluxes of the links; 0 where there is no link. ``flow`` as in `conductances`."""
     n, m = H.shape
@@ -219,7 +219,7 @@ def flow_direction(f):
     return -1 if most <= 0.0 else 0
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, inline="always")
 def right_hand_side(fx, fz, b_out):
     """b = net Couette inflow of every control volume."""
     n, m = fx.shape
@@ -232,7 +232,7 @@ def right_hand_side(fx, fz, b_out):
             b_out[i, j] += fz[i, j - 1] - fz[i, j]
 
 
-@njit(cache=True, fastmath=_FAST)
+@njit(cache=True, fastmath=_FAST, inline="always")
 def add_squeeze(H_t, width_x, width_z, b_out):
     """Subtract the storage term ``dH/dt area``."""
     n, m = H_t.shape
@@ -241,7 +241,7 @@ def add_squeeze(H_t, width_x, width_z, b_out):
             b_out[i, j] -= H_t[i, j] * width_x[i] * width_z[j]
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath=_FAST)
 def set_links(H, HF, H_t, flow, vx, vz, flow_x, mesh, kx_out, kz_out, fx_out, fz_out, b_out):
     """Coefficients of the links and right-hand side in one call; ``H_t``: None without the storage term."""
     conductances(H, HF, flow, flow_x, mesh, kx_out, kz_out)

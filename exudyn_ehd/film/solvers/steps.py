@@ -14,7 +14,7 @@ from numba import njit
 from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
-from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.cavitation.line_kernels import add_line, bend_to_line, lean_to_line
 from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
@@ -130,7 +130,7 @@ def _solve(residual, factored, count, width, P, pc, line):
         lean_to_line(P, pc, order, count, line[0], x)
     if count > 0:
         L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-        solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))
+        solve_lu_one(L, U, inv_diag, count, width, x)
     if line is None:
         return 0.0
     return bend_to_line(P, pc, order, count, line[0], line[1], x)

@@ -13,7 +13,7 @@ from numba import njit
 from exudyn_ehd.film.banded.assemble import assemble, dense_band
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.substitution import solve_lu_one
 from exudyn_ehd.film.cavitation.cavity_transport import factor_transport, solve_transport
 from exudyn_ehd.film.cavitation.lagging_void import hold_back
 from exudyn_ehd.film.cavitation.oil_line.curve import FILLED, add_curve, curve_terms, lack
@@ -230,7 +230,7 @@ def _solve(lacks, order, count, width, convected, factors, x):
         solve_transport(t, count, x)
     else:
         L, U = dense_band(lower, count, width), dense_band(upper, count, width)
-        solve_lu(L, U, inv_diag, count, width, x.reshape(1, x.size))
+        solve_lu_one(L, U, inv_diag, count, width, x)
 
 
 @njit(cache=True)
