@@ -7,7 +7,7 @@ with the cube of its size, and what it may miss with its size: a step's demand i
 size, and the next one follows the largest demand of late.
 
 A change of the size costs an error of its own: velocities carry an error of h^2 along, that of the size before, and go
-over to the new one within a step or two. So sizes change seldom, and the first steps behind a change don't count.
+over to the new one within a step or two. So sizes grow by a tenth at a time, and smaller changes are left out.
 """
 
 from __future__ import annotations
@@ -30,10 +30,12 @@ from exudyn_ehd.status import Status
 FIRST, LARGEST = 0.125, 4.0
 # What a step has missed, over what it may miss, from which it is repeated.
 REFUSED = 8.0
-# Largest change of the size at once, and changes that are not worth one.
-SHRINK, GROW, SAME = 0.3, 2.0, (0.7, 1.7)
-# Part of its demand that a step hands on, and steps behind a change that do not count.
-KEPT, QUIET = 0.97, 3
+# Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
+SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
+# Part of its demand that a step hands on.
+KEPT = 0.97
+# What steps may miss, over what the error asked for allows: errors of steps that follow each other cancel in part.
+CANCELLED = 1.5
 # Shares of a step: one that ended so early was repeated; rounding.
 SHORTENED, ROUNDING = 0.99, 1e-6
 # Steps that Exudyn never takes before it doubles one of itself.
@@ -86,7 +88,7 @@ class _Joint:
         gap = max(film["minimum_gap"], SMALLEST_GAP_SHARE * bearing.radial_clearance)
         deflection = deflections if self.lags else None
         self.after, used = next_error(
-            times, motions, tangent, self.before, bearing.length, self.error * gap, deflection
+            times, motions, tangent, self.before, bearing.length, CANCELLED * self.error * gap, deflection
         )
         return used
 
@@ -140,7 +142,7 @@ class StepSize:
         self.time = math.nan
         self.demand = 0.0
         self.used: float | None = None
-        self.unchanged = self.refused = 0
+        self.refused = 0
 
     def look(self, mbs: exu.MainSystem, time: float) -> list[float]:
         """User function after Newton's method: error, and step size to repeat the step with."""
@@ -169,18 +171,15 @@ class StepSize:
 
     def _adapt(self, step: float) -> None:
         """The size to go on with, behind an accepted step."""
-        self.unchanged += 1
         if step < SHORTENED * self.planned:
             # repeated, here or by Exudyn
-            self.size, self.unchanged, self.demand = step, 0, max(self.demand, 1.0 / step)
-        if self.used is None or self.unchanged <= QUIET:
-            return
-        self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
-        wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
-        factor = min(GROW, max(SHRINK, wanted / self.size))
-        if not SAME[0] < factor < SAME[1]:
-            self.size *= factor
-            self.unchanged = 0
+            self.size, self.demand = step, max(self.demand, 1.0 / step)
+        elif self.used is not None:
+            self.demand = max(math.sqrt(self.used) / step, KEPT * self.demand)
+            wanted = min(1.0 / self.demand if self.demand > 0.0 else math.inf, LARGEST * self.usual)
+            factor = wanted / self.size
+            if factor < WORTH or factor > GROW:
+                self.size *= min(GROW, max(SHRINK, factor))
 
     def _landing(self, time: float) -> float:
         """The next step, which ends at the next time that is asked for or is at most half the way there."""
