@@ -25,6 +25,8 @@ CHEAPEST = (
     ("steady_500_film", "load"),
     ("steady_800_film", "load"),
     ("steady_800_film", "peak pressure"),
+    ("steady_800_film", "stiffness"),
+    ("steady_800_film", "damping"),
     ("steady_950_film", "load"),
     ("steady_800_tilted_film", "load"),
     ("orbit_film", "path"),
@@ -108,8 +110,8 @@ def numbers_text(folder: pathlib.Path) -> str:
             f"{_percent(paper.error)}.",
             f"- A step of one rotor on its film takes {format_seconds(joints.seconds[0])}, a step of "
             f"{joints.sizes[-1]:.0f} of them {format_seconds(joints.seconds[-1])}.",
-            f"- The first film of a new installation takes {format_seconds(first.seconds)}. "
-            f"(Processor time, {machine_of(notes)}, one thread.)",
+            f"- The first film of a new installation takes {format_seconds(first.seconds)} by the clock. "
+            f"(All else is processor time, {machine_of(notes)}, one thread.)",
         ]
     )
 
@@ -222,7 +224,7 @@ def once_text(folder: pathlib.Path) -> str:
         times = [c for per in (once.EMPTY, once.FULL) for c in costs if c.what == name and c.per == per]
         lines.append([name, *("failed" if c.failure else format_seconds(c.seconds) for c in times)])
     head = ["paid once", once.EMPTY, once.FULL]
-    return table(head, lines) + "\n\n" + _source(PAID_ONCE, notes, "Processor time")
+    return table(head, lines) + "\n\n" + _source(PAID_ONCE, notes, "Processor time, where it does not say by the clock")
 
 
 BLOCKS: dict[str, Callable[[pathlib.Path], str]] = {

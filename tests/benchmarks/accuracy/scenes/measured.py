@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from functools import partial
+from typing import Any
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import FilmEnergy
@@ -164,11 +165,6 @@ def big_end() -> MovingScene:
     )
 
 
-WHIRL_SPIN = 300.0
-WHIRL_MASS_RATIO = 1.1
-WHIRL_TURNS = 8
-
-
 def whirl() -> MovingScene:
     """Rigid rotor 10 % above its threshold mass at eccentricity ratio 0.2, released close to its equilibrium."""
     bearing = JournalBearing(
@@ -201,9 +197,6 @@ def whirl() -> MovingScene:
     )
 
 
-CONTACT = GreenwoodTripp(composite_roughness=0.4e-6, composite_modulus=1.1e11)
-
-
 def start_stop() -> MovingScene:
     """Loaded journal that starts from rest on its bush and stops again: boundary, mixed and full lubrication."""
     bearing = JournalBearing(
@@ -217,25 +210,26 @@ def start_stop() -> MovingScene:
     )
     load, end = (0.0, -1500.0), 1.0
     motion = mechanisms.StartStop(top=30.0, end=end)
-    rest = equilibrium(bearing, speed=1e-3, load=load).position
     return MovingScene(
         name="start_stop",
         title="start and stop in mixed friction",
         bearing=bearing,
-        build=partial(
-            mechanisms.rotor,
-            mass=5.0,
-            load=load,
-            angle=motion.angle,
-            spin=motion.spin_at,
-            position=(float(rest[0]), float(rest[1])),
-        ),
+        build=partial(_rotor_at_rest, mass=5.0, load=load, angle=motion.angle, spin=motion.spin_at),
         end=end,
         steps=480,
         samples=80,
         observe=mixed,
         quantities=mixed_quantities(25e-6),
     )
+
+
+def _rotor_at_rest(bearing: JournalBearing, *, load: tuple[float, float], **options: Any) -> mechanisms.Built:
+    """`mechanisms.rotor` that lies where this very film and its asperities carry the load at rest.
+
+    Another film's place is off by a part of the asperities' height, from which contact throws the journal.
+    """
+    rest = equilibrium(dataclasses.replace(bearing, asperity=CONTACT), speed=1e-3, load=load).position
+    return mechanisms.rotor(bearing, load=load, position=(float(rest[0]), float(rest[1])), **options)
 
 
 SCENES: Mapping[str, Callable[[], MovingScene]] = {
