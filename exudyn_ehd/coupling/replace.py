@@ -137,7 +137,7 @@ def ReplaceJoints(
     Raises
     ------
     InputError
-        For types that it does not know, and as `ReplaceJoint`.
+        For types that it does not know, a system without such joints, and as `ReplaceJoint`.
 
     Examples
     --------
@@ -153,15 +153,24 @@ def ReplaceJoints(
     unknown = [kind for kind in types if kind not in TYPES]
     if isinstance(types, str) or unknown:
         raise InputError(f"ReplaceJoints.types must be some of {', '.join(TYPES)}, got {types!r}.")
+    if not callable(bearing):
+        require_type("ReplaceJoints.bearing", bearing, JournalBearing)
     films: dict[int, LubricatedJoint] = {}
+    found = False
     for k in range(mbs.systemData.NumberOfObjects()):
         number = ObjectIndex(k)
         joint = mbs.GetObject(number)
         if joint["objectType"] not in types or not joint["activeConnector"] or not _turns(joint):
             continue
+        found = True
         own = bearing if isinstance(bearing, JournalBearing) else bearing(k)
         if own is not None:
             films[k] = ReplaceJoint(mbs, number, bearing=own, **options)
+    if not found:
+        raise InputError(
+            f"ReplaceJoints: the system has no active joint of type {', '.join(types)} with one rotation free; make "
+            "the joints first, or put films in place with CreateLubricatedJoint."
+        )
     return films
 
 

@@ -62,7 +62,13 @@ def plot_orbit(
     Returns
     -------
     matplotlib Figure
+
+    Raises
+    ------
+    InputError
+        If the history has no steps.
     """
+    _require_steps("plot_orbit", history)
     c = history.radial_clearance
     unit = unit_for("length", c)
     with styled():
@@ -113,12 +119,13 @@ def plot_load(
     Raises
     ------
     InputError
-        If ``ax`` is not polar.
+        If ``ax`` is not polar, or the history has no steps.
     """
     if ax is not None and ax.name != "polar":
         raise InputError(
             f"plot_load: ax must be polar, got {ax.name} axes; use subplots(subplot_kw={{'projection': 'polar'}})."
         )
+    _require_steps("plot_load", history)
     load = -history.force[:, :2]
     size = np.hypot(load[:, 0], load[:, 1])
     unit = unit_for("force", size)
@@ -194,8 +201,9 @@ def plot_traces(
     Raises
     ------
     InputError
-        For quantities that are no scalars of a history, or that the film does not provide.
+        For quantities that are no scalars of a history, or that the film does not provide; for histories without steps.
     """
+    _require_steps("plot_traces", history)
     names = [_checked(history, q) for q in ([quantities] if isinstance(quantities, (str, Enum)) else quantities)]
     given = None if ax is None else np.atleast_1d(np.asarray(ax, dtype=object)).ravel()
     if not names or (given is not None and given.size != len(names)):
@@ -238,6 +246,11 @@ def plot_traces(
             figure.align_ylabels(panels)
         panels[-1].set_xlabel(label("time" if angle is None else angle_text, unit))
         return finish(figure, path)
+
+
+def _require_steps(where: str, history: History) -> None:
+    if history.time.size == 0:
+        raise InputError(f"{where}: the history has no steps; run a solver first.")
 
 
 def _checked(history: History, quantity: Enum | str) -> str:

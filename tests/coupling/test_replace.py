@@ -128,6 +128,21 @@ def test_all_joints_of_a_model_at_once():
         ehd.ReplaceJoints(mbs, bearing=BEARING, types=("Ground",))
 
 
+def test_a_model_in_which_nothing_is_replaced_says_so():
+    """No joint at all, all of them replaced already, no bearing."""
+    mbs, _ = chain(0)
+    with pytest.raises(ehd.InputError, match=r"no active joint of type JointRevoluteZ, .* with one rotation free"):
+        ehd.ReplaceJoints(mbs, bearing=BEARING)
+    mbs, _ = chain(2)
+    with pytest.raises(ehd.InputError, match=r"ReplaceJoints.bearing must be JournalBearing"):
+        ehd.ReplaceJoints(mbs, bearing=None)
+    assert len(ehd.ReplaceJoints(mbs, bearing=BEARING)) == 2
+    with pytest.raises(ehd.InputError, match=r"no active joint"):
+        ehd.ReplaceJoints(mbs, bearing=BEARING)
+    mbs, _ = chain(1)
+    assert ehd.ReplaceJoints(mbs, bearing=lambda k: None) == {}
+
+
 def constrained(*axes):
     return lambda mbs, items, place, turn: mbs.CreateGenericJoint("pivot", items, list(place), constrainedAxes=[*axes])
 

@@ -74,6 +74,13 @@ def test_traces_refuse_what_can_not_be_drawn(history):
         plot_traces(history, ax=[Figure().add_subplot()])
 
 
+@pytest.mark.parametrize("plot", [plot_orbit, plot_load, plot_traces])
+def test_a_history_without_steps_is_no_empty_picture(history, plot):
+    history.time = history.time[:0]
+    with pytest.raises(InputError, match=rf"{plot.__name__}: the history has no steps; run a solver first"):
+        plot(history)
+
+
 @pytest.mark.parametrize(
     ("kind", "value", "symbol", "shown"),
     [

@@ -13,15 +13,10 @@ from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above
-from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
 
-# Deepest overlap of journal and rigid bore in an accepted step, over the clearance: contacts that yield by more are
-# none.
-DEEPEST = 1.0
-# Pa, mean pressure on the projected area beyond what oil and steel bear; films of real machines stay below a third.
-HIGHEST_MEAN = 1e9
 # Mean over peak pressure below which no film is.
 SHARE = 0.01
 
@@ -109,7 +104,7 @@ class Failures:
     def _mean(self, force: np.ndarray) -> float:
         """Mean pressure of a force (3,) on the projected area, Pa."""
         x, y, z = force.tolist()
-        return math.sqrt(x * x + y * y + z * z) / (2.0 * self.bearing.journal_radius * self.bearing.length)
+        return mean_pressure(self.bearing, math.sqrt(x * x + y * y + z * z))
 
     def thrown(self, time: float, trial: Trial, force: float, mean: float) -> FilmError:
         """A run that rings with forces many times as large as their ``mean``, N, over three steps."""
@@ -176,9 +171,8 @@ class Failures:
             return None
         return self._at(
             time,
-            "the journal was pressed through its contact by more than the clearance; "
-            f"{self._place(trial.motion)}check load, mass and units; give the contact more stiffness "
-            "(RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
+            f"{PRESSED_THROUGH}; {self._place(trial.motion)}check load, mass and units; give the contact more "
+            "stiffness (RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
 
     def overload(self, row: np.ndarray) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
@@ -52,7 +53,7 @@ def squeeze(case: Case) -> Finding:
         case.largest("squeeze_share"),
         case.bearing.squeeze,
         mattering="use squeeze=True: without it the film has no damping.",
-        switch=lambda bearing: replace(bearing, squeeze=True),
+        switch=partial(replace, squeeze=True),
     )
 
 
@@ -104,9 +105,9 @@ def mass_conservation(case: Case) -> Finding | None:
 INDICATORS = (
     Indicator(misalignment),
     Indicator(surfaces.elasticity, rigid),
-    Indicator(surfaces.shape, lambda b: replace(b, profile=None)),
+    Indicator(surfaces.shape, partial(replace, profile=None)),
     Indicator(oil.piezoviscosity, isoviscous),
-    Indicator(oil.heating, lambda b: replace(b, thermal=None)),
+    Indicator(oil.heating, partial(replace, thermal=None)),
     Indicator(oil.temperature),
     Indicator(oil.shear_thinning, newtonian),
     Indicator(surfaces.roughness, smooth),

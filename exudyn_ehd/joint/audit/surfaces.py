@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -52,7 +53,7 @@ def elasticity(case: Case) -> Finding:
         f"deflection of {'a steel ring' if liner is None else 'the liner'} / minimum film thickness",
         max(compliance * s.peak_pressure / gap(s) for s in case.samples),
         False,
-        steel_ring if liner is None else lambda bearing: replace(bearing, bush=liner),
+        steel_ring if liner is None else partial(replace, bush=liner),
         probe=coarse_ring if liner is None else None,
         mattering="even steel gives way: give the bearing bush=ModalBush(...) of its housing."
         if liner is None
@@ -71,7 +72,7 @@ def shape(case: Case) -> Finding | None:
         "profile height / minimum film thickness",
         value,
         True,
-        lambda bearing: replace(bearing, profile=None),
+        partial(replace, profile=None),
         needless="the film is much thicker than the profile: profile=None.",
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
@@ -100,7 +101,11 @@ def warmer(rise: float, coefficient: float) -> Switch:
     r = 0.0
     for _ in range(40):
         r = 0.5 * (r + rise * math.exp(-coefficient * r))
-    return lambda bearing: _oil(bearing, viscosity=bearing.lubricant.viscosity * math.exp(-coefficient * r))
+    return partial(_thinner, math.exp(-coefficient * r))
+
+
+def _thinner(factor: float, bearing: JournalBearing) -> JournalBearing:
+    return _oil(bearing, viscosity=factor * bearing.lubricant.viscosity)
 
 
 def thinning(bearing: JournalBearing) -> JournalBearing:
@@ -173,5 +178,8 @@ def two_dimensional(bearing: JournalBearing) -> JournalBearing:
 
 def refined(n_theta: int, n_z: int) -> Switch:
     """With a grid of this size."""
-    sizes = {"n_theta": n_theta, "n_z": n_z}
-    return lambda bearing: replace(bearing, film=replace(bearing.film, **sizes))  # type: ignore[arg-type]
+    return partial(_on_grid, n_theta, n_z)
+
+
+def _on_grid(n_theta: int, n_z: int, bearing: JournalBearing) -> JournalBearing:
+    return replace(bearing, film=replace(bearing.film, n_theta=n_theta, n_z=n_z))

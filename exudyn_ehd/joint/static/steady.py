@@ -16,7 +16,7 @@ from exudyn_ehd.joint.audit.audit import Audit, audit_states
 from exudyn_ehd.joint.audit.samples import FilmState
 from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.hot_oil import warn_of_heat
-from exudyn_ehd.joint.balance.overload import warn_of_overload
+from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import film_record
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
@@ -145,8 +145,8 @@ def steady(
     """Film at a prescribed position.
 
     An `ANCFBush` is in static equilibrium with the film, at any strain, as in a joint. A `ModalBush` is linear; where
-    its bore yields by more than 1 % of the wall, a `StrainWarning` says so. Films with more than 3 GPa, which neither
-    oil nor steel bears, give an `OverloadWarning`.
+    its bore yields by more than 1 % of the wall, a `StrainWarning` says so. Films with more than 3 GPa, or a
+    mean of more than 1 GPa with their contact, which neither oil nor steel bears, give an `OverloadWarning`.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def steady(
     InputError
         For values that are not numbers.
     FilmError
-        If there is no film at this position.
+        If there is no film at this position, or the journal is through its contact by more than the clearance.
 
     Examples
     --------
@@ -243,8 +243,9 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
     warn_of_heat(film.temperature, film.grid, where)
     q, wrench = evaluation.quantities(), evaluation.wrench
     peak, angle, _ = refined_peak(film)
-    warn_of_overload(peak, where)
     force = math.hypot(wrench[0], wrench[1])
+    refuse_pressed_through(model.bearing, q["minimum_gap"], where)
+    warn_of_overload(model.bearing, peak, force, where)
     reference = model.bearing.reference_force(motion[8])
     attitude = math.nan
     if math.hypot(motion[0], motion[1]) > 0.0 and force > 0.0:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -321,6 +322,16 @@ def test_every_film_model_and_closure(name, eps):
 def test_equilibrium_has_an_audit():
     result = ehd.equilibrium(bearing(), speed=SPEED, load=(0.0, -1000.0))
     check_readable(result.film.audit())
+
+
+@pytest.mark.parametrize("name", [name for name in MODELS if name not in ("long", "long with a groove", "classic")])
+def test_audits_go_to_other_processes(name):
+    """And their switches work there; the three left out have none for the steel that gives way."""
+    made = bearing(**MODELS.get(name, {}))
+    found = audit(made, eps=0.7)
+    sent = pickle.loads(pickle.dumps(found))
+    assert str(sent) == str(found)
+    assert repr(sent.improved(made)) == repr(found.improved(made))
 
 
 def test_standstill_has_an_audit():
