@@ -269,7 +269,18 @@ class JournalBearing:
         return self.radial_clearance / self.journal_radius
 
     def reference_force(self, speed: float) -> float:
-        """L D mu |omega| / psi^2 in N, the unit of the Sommerfeld number, for a spin ``speed`` in rad/s."""
+        """L D mu |omega| / psi^2, the unit of the Sommerfeld number.
+
+        Parameters
+        ----------
+        speed : float
+            Relative spin omega, rad/s.
+
+        Returns
+        -------
+        float
+            N.
+        """
         area = 2.0 * self.journal_radius * self.length
         return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
 

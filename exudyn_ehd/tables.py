@@ -128,11 +128,22 @@ class Table:
     """Named columns (n,) of numbers: printed, in notebooks, as CSV, as a data frame."""
 
     def to_csv(self, path: str | pathlib.Path) -> None:
-        """Write the table: a header of names with units, a row per line, remarks last."""
+        """Write the table: a header of names with units, a row per line, remarks last.
+
+        Parameters
+        ----------
+        path : path
+        """
         write_csv(path, self._columns(), more=self._units(), remarks=self._remarks())
 
     def to_dataframe(self) -> DataFrame:
-        """The table as a pandas DataFrame, SI units, remarks in columns of their own; needs pandas."""
+        """The table as a pandas DataFrame; needs pandas.
+
+        Returns
+        -------
+        pandas DataFrame
+            SI units, remarks in columns of their own.
+        """
         return data_frame({**self._columns(), **self._remarks()})
 
     def __str__(self) -> str:

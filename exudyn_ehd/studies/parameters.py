@@ -83,14 +83,32 @@ class StudyTable(Table):
     units: dict[str, str]
 
     def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self.columns:
+            raise KeyError(f"StudyTable has no column {name!r}; it has {', '.join(self.columns)}.")
         return self.columns[name]
 
     def __len__(self) -> int:
         return len(self.errors)
 
     def grid(self, name: str) -> np.ndarray:
-        """A column as an array over the parameters, in their order, for contour plots and the like."""
-        return self.columns[name].reshape(self.shape)
+        """A column as an array over the parameters, for contour plots and the like.
+
+        Parameters
+        ----------
+        name : str
+            Of the column.
+
+        Returns
+        -------
+        ndarray
+            One dimension for each parameter, in their order; SI units.
+
+        Raises
+        ------
+        KeyError
+            For a column that the table does not have.
+        """
+        return self[name].reshape(self.shape)
 
     def plot(self, name: str, *, along: str = "", ax: Axes | None = None, path: Target = None) -> Figure:
         """Draw a column over one parameter, with a curve for every combination of the others.

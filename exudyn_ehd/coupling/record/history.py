@@ -189,7 +189,22 @@ class JointHistory(History, HistoryPictures):
         )
 
     def between(self, start: float = -math.inf, end: float = math.inf) -> JointHistory:
-        """The steps with ``start <= time <= end`` (s), to rounding: a billionth of the record's length."""
+        """The steps with ``start <= time <= end``, to rounding: a billionth of the record's length.
+
+        Parameters
+        ----------
+        start, end : float
+            s.
+
+        Returns
+        -------
+        JointHistory
+
+        Raises
+        ------
+        InputError
+            If the start lies after the end.
+        """
         if not start <= end:
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
         slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
@@ -211,11 +226,22 @@ class JointHistory(History, HistoryPictures):
             np.savez_compressed(file, format=_FORMAT, **fields)
 
     def to_csv(self, path: str | pathlib.Path) -> None:
-        """Write all columns as text, names and SI units in the first line; vectors by their components."""
+        """Write all columns as text, names and SI units in the first line; vectors by their components.
+
+        Parameters
+        ----------
+        path : path
+        """
         write_csv(path, self._columns(), more=dict(zip(_PARTS["motion"], _MOTION_UNITS, strict=True)))
 
     def to_dataframe(self) -> DataFrame:
-        """The columns of `to_csv` as a pandas DataFrame, SI units, a row per step; needs pandas."""
+        """The columns of `to_csv` as a pandas DataFrame; needs pandas.
+
+        Returns
+        -------
+        pandas DataFrame
+            SI units, a row per step.
+        """
         return data_frame(self._columns())
 
     def _columns(self) -> dict[str, np.ndarray]:
@@ -240,6 +266,11 @@ class JointHistory(History, HistoryPictures):
         period : float, optional
             Duration of a cycle, s, counted from the first row; for journals that swing. By default revolutions of the
             journal against the housing are counted.
+
+        Returns
+        -------
+        Revolutions
+            A table, one row for each.
 
         Raises
         ------

@@ -95,7 +95,16 @@ class Lubricant:
         return float(self.temperature_law.viscosity(self.temperature, self.density))
 
     def at(self, temperature: float) -> Lubricant:
-        """The same lubricant at another temperature, K.
+        """The same lubricant at another temperature.
+
+        Parameters
+        ----------
+        temperature : float
+            K.
+
+        Returns
+        -------
+        Lubricant
 
         Raises
         ------

@@ -113,6 +113,10 @@ class Audit:
         bearing : JournalBearing
             The one that was audited.
 
+        Returns
+        -------
+        JournalBearing
+
         Raises
         ------
         InputError

@@ -120,11 +120,25 @@ class EquilibriumResult:
         return np.array([force(-s) - force(s) for s in step * np.eye(2, MOTION_SIZE)]).T / (2.0 * step)
 
     def dynamic_stiffness(self, frequencies: Sequence[float] | np.ndarray) -> np.ndarray:
-        """Z = K + i nu C (k, 2, 2) in N/m at the frequencies nu (k,), rad/s: the force's amplitude is -Z x for a
-        motion x exp(i nu t).
+        """Z = K + i nu C: the force's amplitude is -Z x for a motion x exp(i nu t).
 
         With `ElrodAdams` K and C depend on the frequency, as the cavity's oil follows the journal with a delay; see
         `exudyn_ehd.joint.static.dynamic_stiffness`.
+
+        Parameters
+        ----------
+        frequencies : (k,) array
+            nu, rad/s.
+
+        Returns
+        -------
+        ndarray (k, 2, 2)
+            Complex, N/m.
+
+        Raises
+        ------
+        InputError
+            For frequencies that are no list of finite numbers.
         """
         nu = np.asarray(frequencies, dtype=float)
         if nu.ndim != 1 or not np.all(np.isfinite(nu)):

@@ -121,6 +121,10 @@ class SteadyResult(Film, FilmPictures):
             Of which to say whether its elasticity would matter; for bearings without one.
         measure_time : bool
             Measure the share of the time that every effect takes which is on.
+
+        Returns
+        -------
+        Audit
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
