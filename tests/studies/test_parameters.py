@@ -56,7 +56,7 @@ def test_rows_are_single_calls_in_order(point, table):
             k += 1
     # thicker oil carries on a thicker film
     assert np.all(np.diff(table.grid("minimum_gap"), axis=1) > 0.0)
-    with pytest.raises(KeyError, match="no column .minimum_film.; it has .*minimum_gap"):
+    with pytest.raises(KeyError, match=r"no column .minimum_film.; it has .*minimum_gap"):
         table.grid("minimum_film")
     assert np.all(table["seconds"] > 0.0)
 
