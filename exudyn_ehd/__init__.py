@@ -48,6 +48,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, Roelands
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature, VogelTemperature, WaltherTemperature
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
+from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, CircumferentialGroove, Hole, Pocket
@@ -231,6 +232,7 @@ __all__ = [
     "GreenwoodTripp",
     "Gumbel",
     "Held",
+    "Hirs",
     "Hole",
     "HollowCylinder",
     "HotFilmWarning",
@@ -249,6 +251,7 @@ __all__ = [
     "MemoryWarning",
     "ModalBush",
     "NeoHooke",
+    "NgPan",
     "OnCylinder",
     "OnPlane",
     "OutOfRound",

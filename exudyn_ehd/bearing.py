@@ -12,6 +12,7 @@ from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
+from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import SupplyArea, require_areas
@@ -118,6 +119,8 @@ class JournalBearing:
         What the surfaces' shape adds to the gap: `OutOfRound`, `Crown`, `EdgeRelief`, `AxialProfile`, `ProfileTable`.
     wear : ArchardWear or None
         Wear of the bore by the asperity contact.
+    turbulence : NgPan, Hirs or None
+        Turbulent film by the local Reynolds number; None: laminar.
 
     Raises
     ------
@@ -152,6 +155,7 @@ class JournalBearing:
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
     wear: ArchardWear | None = None
+    turbulence: NgPan | Hirs | None = None
 
     def __post_init__(self) -> None:
         self._check_sizes()
@@ -171,6 +175,7 @@ class JournalBearing:
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
         _check_line(self)
+        _check_turbulence(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -311,6 +316,18 @@ def _check_line(bearing: JournalBearing) -> None:
             )
 
 
+def _check_turbulence(bearing: JournalBearing) -> None:
+    """Refuse what has no turbulent form: properties by the pressure, and factors of a laminar profile."""
+    oil, laws = bearing.lubricant, ("pressure_law", "density_law", "shear_law")
+    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
+    others += [] if bearing.roughness is None else ["JournalBearing.roughness"]
+    if bearing.turbulence is not None and others:
+        raise InputError(
+            f"JournalBearing.turbulence={type(bearing.turbulence).__name__}() does not go with {', '.join(others)}: "
+            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth; leave one out."
+        )
+
+
 _OPTIONS: dict[str, tuple[type, ...]] = {
     "lubricant": (Lubricant,),
     "film": (FiniteLength, ShortBearing, LongBearing, ClassicSOR, ImpedanceMap),
@@ -321,6 +338,7 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "asperity": (GreenwoodTripp, type(None)),
     "roughness": (PatirCheng, type(None)),
     "wear": (ArchardWear, type(None)),
+    "turbulence": (NgPan, Hirs, type(None)),
 }
 
 

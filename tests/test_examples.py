@@ -286,6 +286,24 @@ def test_hydrostatic_or_grooved(example, tmp_path):
     assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60
 
 
+def test_turbulent_bearing(example, tmp_path):
+    rows = example("turbulent_bearing").main(quick=True, output=tmp_path)
+    assert (tmp_path / "turbulent_bearing.png").stat().st_size > 10_000
+    thin, loss, critical, orbit = (
+        {name: rows[f"{name}: {what}"] for name in ("laminar", "Ng-Pan", "Hirs")}
+        for what in (
+            "minimum film thickness at 3000 rpm [um]",
+            "power loss at 3000 rpm [W]",
+            "critical mass / mass at 5000 rpm",
+            "orbit at the end / at the start",
+        )
+    )
+    for law in ("Ng-Pan", "Hirs"):
+        assert 1.7 < thin[law] / thin["laminar"] < 2.1 and 4.0 < loss[law] / loss["laminar"] < 6.0
+        # the orbit grows where the critical mass says so, and only there
+        assert critical[law] < 1.0 < critical["laminar"] and orbit[law] > 1.5 and orbit["laminar"] < 0.5
+
+
 def test_reading_results(example, tmp_path):
     found = example("reading_results").main(quick=True, results=tmp_path)
     assert [path.name for path in found["files"]] == [

@@ -33,7 +33,8 @@ PURE = {
     "recommend_steps.error",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
-    "UntilPeriodic.tolerance",
+    "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
+    "NgPan.onset",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {

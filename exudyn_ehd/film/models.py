@@ -292,8 +292,8 @@ def film_solver(
     if isinstance(film, ClassicSOR):
         if flux_effects:
             raise InputError(
-                "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, shear thinning "
-                "or temperature field; use film=FiniteLength(...)."
+                "JournalBearing.film=ClassicSOR(...) is the paper's plain film and takes no roughness, turbulence, "
+                "shear thinning or temperature field; use film=FiniteLength(...)."
             )
         return ClassicSolver(film, grid, closure, squeeze=squeeze)
     kinds = (FilmSolver, LongSolver, ThinningFilmSolver, LongThinningSolver)

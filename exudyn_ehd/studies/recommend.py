@@ -224,6 +224,7 @@ def _speed(bearing: JournalBearing, speed: float | None) -> float:
         "contact": bearing.contact,
         "asperity": bearing.asperity,
         "wear": bearing.wear,
+        "turbulence": bearing.turbulence,
         "a law of the oil": oil.pressure_law or oil.shear_law or oil.density_law,
         "a cavity pressure": getattr(closure, "cavity_pressure", 0.0),
     }

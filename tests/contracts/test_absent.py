@@ -45,6 +45,7 @@ EFFECTS = {
     ),
     "asperity": (("film.surfaces.asperity", "film.surfaces.average_gap"), {"asperity": ASPERITY}),
     "roughness": (("film.surfaces.flow_factors",), {"roughness": ehd.PatirCheng(composite_roughness=1e-6)}),
+    "turbulence": (("film.reynolds.turbulence",), {"turbulence": ehd.Hirs(onset=2.0, full=4.0, coefficient=5.0)}),
     "wear": (("film.surfaces.wear",), {"asperity": ASPERITY, "wear": ehd.ArchardWear(wear_rate=1e-15)}),
     "profile": (("film.surfaces.profile",), {"profile": ehd.Crown(drop=2e-6)}),
     "pressure law": (("film.lubricant.pressure_viscosity",), oil(pressure_law=ehd.BarusPressure(coefficient=1e-8))),

@@ -85,6 +85,15 @@ def test_shear_thins_the_oil(compare):
     assert abs(on.friction_torque[-1]) < 0.9 * abs(off.friction_torque[-1])
 
 
+@pytest.mark.parametrize("law", [ehd.NgPan(), ehd.Hirs()], ids=["Ng-Pan", "Hirs"])
+def test_turbulence_lifts_and_drags(compare, law):
+    size = {"journal_radius": 0.1, "length": 0.1, "radial_clearance": 2e-4}
+    water = size | {"lubricant": ehd.Lubricant(viscosity=1e-3, density=998.0)}
+    on, off = compare(bearing(**water, turbulence=law), bearing(**water), LOAD, 300.0)
+    assert on.minimum_gap[-1] > 1.1 * off.minimum_gap[-1]
+    assert abs(on.friction_torque[-1]) > 2.0 * abs(off.friction_torque[-1])
+
+
 @pytest.mark.parametrize(
     "thermal",
     [ehd.LumpedThermal(supply_temperature=323.15), ehd.FilmEnergy(supply_temperature=323.15)],

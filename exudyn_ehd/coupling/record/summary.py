@@ -114,6 +114,8 @@ def worth_an_audit(bearing: JournalBearing, history: JointHistory) -> list[str]:
         "heating": b.thermal is None and TYPICAL_TEMPERATURE_COEFFICIENT * rise > LIMITS["heating"].value,
         "shear thinning": b.lubricant.shear_law is None
         and speed > LIMITS["shear thinning"].value * TYPICAL_SHEAR_ONSET * thinnest,
+        "turbulence": b.turbulence is None
+        and speed * b.radial_clearance > LIMITS["turbulence"].value * b.lubricant.viscosity / b.lubricant.density,
         "roughness": not rough and thinnest < LIMITS["roughness"].value * TYPICAL_ROUGHNESS,
     }
     return [name for name, matters in found.items() if matters]

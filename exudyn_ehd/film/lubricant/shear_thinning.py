@@ -21,7 +21,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Protocol
 
 import numpy as np
 from numba import njit
@@ -37,7 +36,7 @@ from exudyn_ehd.film.lubricant.shear_profile import (
     thin_links,
     thin_shear,
 )
-from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.film.reynolds.links import Fluidity, FluxEffect, LinkFlux
 from exudyn_ehd.status import InputError, require_number
 
 
@@ -99,14 +98,6 @@ class CarreauShear:
     def bound(self, radius: float, clearance: float) -> ShearThinning:
         """The law as flux effect and shear factor of a bearing of this radius and clearance, m."""
         return ShearThinning(self, radius, clearance)
-
-
-class Fluidity(Protocol):
-    """A viscosity that varies over the film: its ratio at the vertices, and 1 over it on the links (n, m)."""
-
-    ratio: np.ndarray
-    inverse_x: np.ndarray
-    inverse_z: np.ndarray
 
 
 class ShearThinning(FluxEffect):

@@ -7,4 +7,5 @@ links             conductance, carrier, right-hand side; effects on them
 balance           mass balance with fill and density, and its derivatives
 link_derivatives  derivatives of the flow through a link, and their sums with adjoint solutions
 stepped_gap       gaps with steps
+turbulence        NgPan, Hirs
 """

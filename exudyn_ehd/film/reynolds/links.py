@@ -109,6 +109,15 @@ class LinkFlux(NamedTuple):
             self.gx_v[:] = self.gz_v[:] = 0.0
 
 
+class Fluidity(Protocol):
+    """A viscosity that varies with the temperature: its ratio at the vertices, and 1 over it on the links, (n, m) or
+    (1, 1)."""
+
+    ratio: np.ndarray
+    inverse_x: np.ndarray
+    inverse_z: np.ndarray
+
+
 class FluxEffect(Protocol):
     """An effect that changes `LinkFlux` in place.
 

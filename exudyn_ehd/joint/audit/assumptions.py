@@ -1,4 +1,4 @@
-"""Indicators of what no option switches: laminar flow without inertia, grid, time step, and its ringing."""
+"""Indicators of the flow and of numbers: vortices, turbulence, inertia, grid, time step, and its ringing."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from exudyn_ehd.film.models import FiniteLength, LongBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole
 from exudyn_ehd.joint.audit.changes import MATTERS
-from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding
+from exudyn_ehd.joint.audit.findings import LIMITS, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.ringing import WINDOW, watched
-from exudyn_ehd.joint.audit.switches import refined
+from exudyn_ehd.joint.audit.switches import laminar, refined, turbulent
 from exudyn_ehd.joint.step_error import enough_steps
 
 # Grids this many times finer than needed cost time for nothing.
@@ -37,19 +37,24 @@ def vortices(case: Case) -> Finding:
         "Taylor vortices",
         "Re sqrt(c / R)",
         value,
-        None,
-        mattering="beyond the laminar film: friction and load are too low here.",
+        None if case.bearing.turbulence is None else True,
+        mattering="beyond the laminar film: friction is too low here; see the row on turbulence.",
     )
 
 
 def turbulence(case: Case) -> Finding:
     """Reynolds number of the Couette flow."""
-    return finding(
+    on = case.bearing.turbulence is not None
+    return judged(
+        case,
         "turbulence",
         "Re = rho U c / mu",
         _reynolds(case),
-        None,
-        mattering="beyond the laminar film: friction and load are too low here.",
+        on,
+        laminar if on else turbulent,
+        mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan(), which goes without "
+        "pressure_law, density_law, shear_law and roughness.",
+        needless="the film is laminar: turbulence=None.",
     )
 
 

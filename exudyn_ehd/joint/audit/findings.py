@@ -65,6 +65,7 @@ PLAINLY_NOTHING = {
     "contact": 6.0,
     "contact share": 1e-6,
     "mass conservation": 1e-3,
+    "turbulence": 200.0,
 }
 # From here on effects plainly matter, heating if it is on; the search for the film without them is long. Oil that has
 # warmed by so much is half as viscous.

@@ -118,7 +118,7 @@ INDICATORS = (
     Indicator(rupture),
     Indicator(mass_conservation, swift_stieber),
     Indicator(assumptions.vortices),
-    Indicator(assumptions.turbulence),
+    Indicator(assumptions.turbulence, partial(replace, turbulence=None)),
     Indicator(assumptions.inertia),
     Indicator(assumptions.grid_columns),
     Indicator(assumptions.grid_rows),

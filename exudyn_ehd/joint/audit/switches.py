@@ -15,6 +15,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature
 from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.reynolds.turbulence import NgPan
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.joint.balance.film import is_fed
@@ -152,6 +153,17 @@ def untouching(bearing: JournalBearing) -> JournalBearing:
 def unworn(bearing: JournalBearing) -> JournalBearing:
     """Without wear."""
     return replace(bearing, wear=None)
+
+
+def turbulent(bearing: JournalBearing) -> JournalBearing:
+    """With `NgPan`, and without what it does not go with."""
+    bearing = _oil(bearing, pressure_law=None, density_law=None, shear_law=None)
+    return replace(bearing, roughness=None, turbulence=NgPan())
+
+
+def laminar(bearing: JournalBearing) -> JournalBearing:
+    """Without turbulence."""
+    return replace(bearing, turbulence=None)
 
 
 def cavity_pressure(bearing: JournalBearing) -> float:

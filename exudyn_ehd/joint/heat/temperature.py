@@ -71,6 +71,11 @@ class LumpedTemperature(_Temperature):
     ----------
     spec : LumpedThermal
     bearing : JournalBearing
+
+    Attributes
+    ----------
+    field : ViscosityField or None
+        Takes the viscosity to an effect that asks for it, as (1, 1) arrays.
     """
 
     def __init__(self, spec: LumpedThermal, bearing: JournalBearing) -> None:
@@ -80,6 +85,7 @@ class LumpedTemperature(_Temperature):
         volume = 2.0 * math.pi * bearing.journal_radius * bearing.length * bearing.radial_clearance
         self.capacity = self.flow_capacity * volume + spec.capacity
         self._last = math.nan, 1.0
+        self.field: ViscosityField | None = None
 
     def initial_temperature(self, shape: tuple[int, int]) -> float:
         """K, at the start of a motion."""
@@ -90,6 +96,8 @@ class LumpedTemperature(_Temperature):
         if self._last[0] != temperature:
             ratio = float(self.viscosity_ratio(float(temperature)))
             self._last = float(temperature), ratio
+            if self.field is not None:
+                self.field.set(np.full((1, 1), ratio))
         return self._last[1]
 
     def _rates(self, film: SolvedFilm) -> tuple[float, float]:

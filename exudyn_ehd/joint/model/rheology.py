@@ -29,6 +29,11 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     if oil.shear_law is not None:
         thinning = oil.shear_law.bound(bearing.journal_radius, bearing.radial_clearance)
         effects = replace(effects, flux=(thinning,), shear_factor=thinning)
+    turbulent = None
+    if bearing.turbulence is not None:
+        R, c = bearing.journal_radius, bearing.radial_clearance
+        turbulent = bearing.turbulence.bound(R, c, oil.density, oil.viscosity)
+        effects = replace(effects, flux=(turbulent,), shear_factor=turbulent)
     if thermal is None:
         return effects
     if oil.temperature_law is None:
@@ -37,8 +42,13 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
             'temperature, got Lubricant.temperature_law=None; name a law or take a named oil, oil("ISO VG 46").'
         )
     if isinstance(thermal, LumpedThermal):
-        return replace(effects, thermal=LumpedTemperature(thermal, bearing))
+        lumped = LumpedTemperature(thermal, bearing)
+        if turbulent is not None:
+            turbulent.field = lumped.field = ViscosityField()
+        return replace(effects, thermal=lumped)
     field = ViscosityField()
+    if turbulent is not None:
+        turbulent.field = field
     if thinning is not None:
         thinning.field = field
     return replace(

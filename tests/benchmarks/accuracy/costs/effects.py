@@ -30,6 +30,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure, Roelands
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength, LongBearing, ShortBearing
+from exudyn_ehd.film.reynolds.turbulence import NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove, CircumferentialGroove, Hole, Pocket
@@ -104,6 +105,7 @@ EFFECTS: dict[str, Case] = {
     "`PatirCheng`, unequally rough": Case(
         options={"roughness": PatirCheng(composite_roughness=ROUGH, journal_share=0.9)}
     ),
+    "`NgPan`": Case(options={"turbulence": NgPan(onset=1.0, full=2.0)}),
     "`GreenwoodTripp`": Case(options=_ASPERITY),
     "`PatirCheng`, `GreenwoodTripp`": Case(options=_ROUGHNESS | _ASPERITY),
     "`GreenwoodTripp`, `ArchardWear`": Case(options=_ASPERITY | {"wear": ArchardWear(wear_rate=1e-15)}),
