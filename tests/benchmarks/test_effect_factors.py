@@ -25,7 +25,7 @@ pytestmark = pytest.mark.benchmark
 EVALUATION_LIMITS = {
     "`VogelTemperature`": 1.05,
     "`PatirCheng`": 1.1,
-    "`NgPan`": 1.5,
+    "`NgPan`": 1.45,
     "`GreenwoodTripp`": 1.15,
     "`PatirCheng`, `GreenwoodTripp`": 1.2,
     "`Crown`": 1.1,
