@@ -28,6 +28,8 @@ OPTIONS = {
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=1e-6)},
     "rough journal": {"roughness": ehd.PatirCheng(composite_roughness=3e-6, pattern=1 / 3, journal_share=1.0)},
     "wall": {"contact": ehd.RegularisedWall(onset=12e-6, pressure=2e7)},
+    # Reynolds numbers of 6 to 48 in the film
+    "turbulent": {"turbulence": ehd.Hirs(onset=8.0, full=24.0, coefficient=2.0)},
 }
 C = 30e-6
 

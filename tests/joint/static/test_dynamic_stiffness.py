@@ -58,6 +58,7 @@ SCENES = {
     "density": {"oil": {"density_law": ehd.DowsonHigginson()}},
     "barus": {"oil": {"pressure_law": ehd.BarusPressure(coefficient=2e-8)}},
     "rough": {"roughness": ehd.PatirCheng(composite_roughness=2e-6)},
+    "turbulent": {"turbulence": ehd.Hirs(onset=8.0, full=24.0, coefficient=2.0)},
     "groove": {
         "cavitation": ehd.ElrodAdams(),
         "supply": (ehd.AxialGroove(angle=2.0, width_angle=0.5, length=0.02, pressure=1e5),),
