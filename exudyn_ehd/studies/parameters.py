@@ -1,6 +1,6 @@
-"""Studies over parameters: in this process, in several, under MPI, on hosts; finished rows can be kept on disk.
+"""Studies over parameters: in this process, in several, under MPI, on hosts, by executors; rows kept on disk.
 
-The same call serves all four; what differs is how the script is started:
+The same call serves all of them; what differs is how the script is started:
 
 =============  ==========================================  =============================================================
 where          call                                        start
@@ -12,6 +12,9 @@ MPI            ``..., mpi=True``                           ``mpiexec -n 5 python
                                                            ``if __name__ == "__main__":``
 hosts          ``..., hosts=("10.0.0.2", "10.0.0.3")``     ``python study.py``, with ``dispynode.py`` of the package
                                                            dispy running on every host and this package installed there
+executor       ``..., executor=pool``                      ``python study.py``: any executor of processes that follows
+                                                           `concurrent.futures`, as those of loky, ipyparallel,
+                                                           mpi4py.futures, and ``Client(...).get_executor()`` of dask
 =============  ==========================================  =============================================================
 
 Set the environment variable ``OMP_NUM_THREADS=1`` for more than one process: every worker has its own linear algebra.
@@ -25,6 +28,8 @@ import math
 import numbers
 import pathlib
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import Executor
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -269,6 +274,7 @@ def parameter_study(
     processes: int = 1,
     mpi: bool = False,
     hosts: Sequence[str] = (),
+    executor: Executor | None = None,
     file: str | pathlib.Path | None = None,
     units: Mapping[str, str] | None = None,
     show_progress: bool | None = None,
@@ -288,7 +294,10 @@ def parameter_study(
     mpi : bool
         Compute on the ranks of an MPI run.
     hosts : sequence of str
-        Names or addresses of hosts that run dispy's node server.
+        Names or addresses of hosts that run dispy's node server, which executes what anyone on its network sends: for
+        trusted networks only.
+    executor : Executor, optional
+        Of `concurrent.futures`, or one that follows it; it stays open. More than 512 rows go to it in parts.
     file : path, optional
         Keeps finished rows, each as soon as it is there. A second call reads them and computes the rest: what was
         interrupted, what failed, what was added to the lists. A change of the function itself, or of the bearing and
@@ -308,7 +317,7 @@ def parameter_study(
     ------
     InputError
         For parameters that are no lists of numbers, functions that can't be sent to other processes, several places at
-        once, missing packages, MPI without mpiexec, files of another function.
+        once, executors of threads, missing packages, MPI without mpiexec, files of another function.
     EHDError
         If every row failed, or no host answers.
 
@@ -322,7 +331,7 @@ def parameter_study(
     """
     lists = _checked_parameters(parameters)
     told = is_shown() if show_progress is None else show_progress
-    where = _checked_place(processes, mpi, hosts)
+    where = _checked_place(processes, mpi, hosts, executor)
     points = [dict(zip(lists, values, strict=True)) for values in itertools.product(*lists.values())]
     kept = None if file is None else RowFile(file, function)
     stored = [None if kept is None else kept.find(point) for point in points]
@@ -336,6 +345,8 @@ def parameter_study(
         "mpi": lambda: places.on_ranks(function, left),
         "hosts": lambda: places.on_hosts(function, left, hosts),
     }
+    if executor is not None:
+        runs["executor"] = partial(places.on_executor, function, left, executor)
     for index, row in runs[where]() if left else ():
         rows[index] = row
         if kept is not None:
@@ -362,15 +373,19 @@ def _checked_parameters(parameters: Mapping[str, Sequence[float]]) -> dict[str, 
     return lists
 
 
-def _checked_place(processes: int, mpi: bool, hosts: Sequence[str]) -> str:
+def _checked_place(processes: int, mpi: bool, hosts: Sequence[str], executor: Executor | None) -> str:
     require_integer(f"{_WHERE}: processes", processes, at_least=1)
-    given = {"processes": processes > 1, "mpi": mpi, "hosts": len(hosts) > 0}
+    given = {"processes": processes > 1, "mpi": mpi, "hosts": len(hosts) > 0, "executor": executor is not None}
     asked = [name for name, wanted in given.items() if wanted]
     if len(asked) > 1:
-        raise InputError(f"{_WHERE}: only one of processes, mpi and hosts can be given, got {' and '.join(asked)}.")
+        raise InputError(
+            f"{_WHERE}: only one of processes, mpi, hosts and executor can be given, got {' and '.join(asked)}."
+        )
     for place, package in (("mpi", "mpi4py"), ("hosts", "dispy")):
         if place in asked:
             places.require_package(place, package)
+    if executor is not None:
+        places.require_executor(executor)
     return asked[0] if asked else "here"
 
 

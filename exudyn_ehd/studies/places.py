@@ -1,4 +1,4 @@
-"""Where the rows of a study are computed: in this process, in several, on the ranks of an MPI run, on hosts.
+"""Where the rows of a study are computed: in this process, in several, on MPI ranks, on hosts, by an executor.
 
 Every place is an iterator over ``(index, row)`` as they are finished. What ends a worker ends its row alone, except
 under MPI, which ends a run whose rank has died: there, the file of a study keeps what was finished.
@@ -9,13 +9,14 @@ from __future__ import annotations
 import importlib.util
 import inspect
 import json
+import math
 import multiprocessing
 import pickle
 import signal
 import textwrap
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import as_completed
+from concurrent.futures import CancelledError, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, as_completed
 from multiprocessing.connection import Connection, wait
 from typing import Any
 
@@ -26,6 +27,8 @@ Rows = Iterator[tuple[int, Row]]
 _WHERE = "parameter_study"
 # s, until a host must have taken a row, between signs of life of a host, and between looks at them
 _HOSTS_ANSWER, _PULSE, _LOOK = 60.0, 5.0, 0.05
+# Parts that the rows of a study go to an executor in: one of them is what its slowest worker ends late by.
+_MOST_PARTS = 512
 
 
 def here(function: Function, points: Mapping[int, Point]) -> Rows:
@@ -107,10 +110,61 @@ def on_ranks(function: Function, points: Mapping[int, Point]) -> Rows:
     if getattr(_core, "SharedPool", True) is None:
         raise InputError(f"{how}; this one lacks '-m mpi4py.futures'.")
     with MPIPoolExecutor() as pool:
-        futures = {pool.submit(evaluated, function, point): index for index, point in points.items()}
-        for future in as_completed(futures):
-            lost = future.exception()
-            yield futures[future], Row({}, f"{type(lost).__name__}: {lost}") if lost else future.result()
+        yield from on_executor(function, points, pool)
+
+
+def on_executor(function: Function, points: Mapping[int, Point], executor: Executor) -> Rows:
+    """By an executor of the caller's, which stays open; what it has not begun is cancelled if the study ends.
+
+    Many rows go in parts, so that sending them takes no share of the time.
+    """
+    if isinstance(executor, ProcessPoolExecutor):
+        require_picklable(function)
+    order, size = list(points), math.ceil(len(points) / _MOST_PARTS)
+    parts: dict[Future[list[Row]], list[int]] = {}
+    try:
+        for k in range(0, len(order), size):
+            part = order[k : k + size]
+            try:
+                future = executor.submit(_all_evaluated, function, [points[index] for index in part])
+            except RuntimeError as error:
+                # an executor that has broken, or was shut down, takes no more
+                yield from ((index, Row({}, _lost(error))) for index in part)
+                continue
+            if not isinstance(future, Future):
+                raise InputError(
+                    f"{_WHERE}: executor must hand out futures of concurrent.futures, got those of {executor!r}; of a "
+                    "dask Client give client.get_executor()."
+                )
+            parts[future] = part
+        for future in as_completed(parts):
+            lost: BaseException | None = CancelledError("by the executor") if future.cancelled() else future.exception()
+            rows = future.result() if lost is None else [Row({}, _lost(lost))] * len(parts[future])
+            yield from zip(parts[future], rows, strict=True)
+    finally:
+        for future in parts:
+            future.cancel()
+
+
+def _all_evaluated(function: Function, points: list[Point]) -> list[Row]:
+    return [evaluated(function, point) for point in points]
+
+
+def _lost(error: BaseException) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+def require_executor(executor: object) -> None:
+    """Refuse what is no executor, and threads."""
+    if not callable(getattr(executor, "submit", None)):
+        raise InputError(
+            f"{_WHERE}: executor must have a method submit like those of concurrent.futures, got {executor!r}."
+        )
+    if isinstance(executor, ThreadPoolExecutor):
+        raise InputError(
+            f"{_WHERE}: executor must compute in processes, got {type(executor).__name__}: threads of one process take "
+            "turns in Python and share its log; use concurrent.futures.ProcessPoolExecutor(...)."
+        )
 
 
 def on_hosts(function: Function, points: Mapping[int, Point], hosts: Sequence[str]) -> Rows:

@@ -1,5 +1,6 @@
 """Studies over parameters: the table holds what single calls give, wherever they ran; failures stay in their rows."""
 
+import contextlib
 import csv
 import dataclasses
 import importlib.machinery
@@ -12,8 +13,9 @@ import os
 import signal
 import sys
 import threading
+import time
 import types
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import exudyn as exu
@@ -164,14 +166,125 @@ def test_numbers_alone_become_a_column():
         ({"function": lambda p: 1.0, "processes": 2}, "can't be sent to other processes"),
         ({"function": lambda p: "three"}, "must return a number or a dict of numbers"),
         ({"function": lambda p: {"x": 1.0}}, "results named as parameters, got x"),
-        ({"processes": 2, "mpi": True}, "only one of processes, mpi and hosts.*got processes and mpi"),
+        ({"processes": 2, "mpi": True}, "only one of processes, mpi, hosts and executor.*got processes and mpi"),
         ({"processes": 0}, "processes must be an integer >= 1"),
+        ({"executor": 4}, "executor must have a method submit.*got 4"),
+        ({"executor": ThreadPoolExecutor(1)}, "executor must compute in processes, got ThreadPoolExecutor"),
+        ({"executor": ThreadPoolExecutor(1), "processes": 2}, "got processes and executor"),
+        ({"executor": ProcessPoolExecutor(1), "function": lambda p: 1.0}, "can't be sent to other processes"),
     ],
 )
 def test_input_is_checked(change, message):
     arguments = {"function": stubborn, "parameters": {"x": [1]}, "show_progress": False} | change
     with pytest.raises(EHDError, match=message):
         ehd.parameter_study(arguments.pop("function"), arguments.pop("parameters"), **arguments)
+
+
+class Deferred:
+    """What a dask Client hands out: futures of its own kind."""
+
+    def submit(self, function, *arguments):
+        return function, arguments
+
+
+def test_futures_of_another_kind_are_refused():
+    with pytest.raises(InputError, match=r"futures of concurrent.futures.*client.get_executor"):
+        ehd.parameter_study(stubborn, {"x": [1]}, executor=Deferred())
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")
+def test_an_executor_gives_the_same_table_and_stays_open(point, table):
+    with ProcessPoolExecutor(2) as pool:
+        for _ in range(2):
+            found = ehd.parameter_study(point, PARAMETERS, executor=pool, show_progress=False)
+            for name in table.columns:
+                if name != "seconds":
+                    np.testing.assert_array_equal(found[name], table[name])
+    with pytest.raises(EHDError, match=r"all 6 rows failed.*cannot schedule new futures after shutdown"):
+        ehd.parameter_study(point, PARAMETERS, executor=pool, show_progress=False)
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")
+def test_a_broken_executor_leaves_what_it_has_finished(tmp_path):
+    """The pool breaks with its process: the row says so, the file keeps the rest, and the next executor goes on."""
+    file, x = tmp_path / "rows.jsonl", [1, 4, 5, 2]
+    with ProcessPoolExecutor(1) as pool:
+        table = ehd.parameter_study(deadly, {"x": x}, executor=pool, file=file, show_progress=False)
+        np.testing.assert_array_equal(table["value"], [1.0, 16.0, 25.0, np.nan])
+        assert table.errors[3].startswith("BrokenProcessPool: ")
+        again = ehd.parameter_study(deadly, {"x": [*x, 6]}, executor=pool, file=file, show_progress=False)
+        assert again.errors[4].startswith("BrokenProcessPool: ")
+    with ProcessPoolExecutor(1) as pool:
+        more = ehd.parameter_study(deadly, {"x": [*x[:3], 6]}, executor=pool, file=file, show_progress=False)
+    np.testing.assert_array_equal(more["value"], [1.0, 16.0, 25.0, 36.0])
+
+
+class Watched(ProcessPoolExecutor):
+    """Knows the futures that it has handed out."""
+
+    def submit(self, function, *arguments):
+        self.futures = [*getattr(self, "futures", ()), super().submit(function, *arguments)]
+        return self.futures[-1]
+
+
+def slow(parameters):
+    time.sleep(0.05)
+    return parameters["x"]
+
+
+def test_many_rows_go_in_parts_and_come_back_in_order():
+    class Here(ProcessPoolExecutor):
+        parts = 0
+
+        def submit(self, function, *arguments):
+            self.parts += 1
+            future = Future()
+            future.set_result(function(*arguments))
+            return future
+
+    pool, x = Here(1), list(range(1300))
+    table = ehd.parameter_study(cubed, {"x": x}, executor=pool, show_progress=False)
+    np.testing.assert_array_equal(table["value"], np.array(x) ** 3)
+    # rows of three, the last part shorter
+    assert pool.parts == 434
+
+
+def cubed(parameters):
+    return parameters["x"] ** 3
+
+
+@pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="needs processes that are forks")
+def test_an_interrupted_study_cancels_its_rows(tmp_path, monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("exudyn_ehd.studies.parameters.RowFile.add", stop)
+    with Watched(1) as pool:
+        with pytest.raises(KeyboardInterrupt):
+            ehd.parameter_study(
+                slow, {"x": list(range(40))}, executor=pool, file=tmp_path / "rows.jsonl", show_progress=False
+            )
+        assert sum(future.cancelled() for future in pool.futures) > 30
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["loky", "dask", "mpi4py.futures"])
+def test_executors_of_other_packages(kind, point, table):
+    """Of packages that are no extras of this one: where they are installed."""
+    with contextlib.ExitStack() as open_ones:
+        if kind == "loky":
+            pool = pytest.importorskip("loky").ProcessPoolExecutor(2)
+        elif kind == "dask":
+            distributed = pytest.importorskip("distributed")
+            client = distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None)
+            pool = open_ones.enter_context(client).get_executor()
+        else:
+            pool = pytest.importorskip("mpi4py.futures", exc_type=(ImportError, RuntimeError)).MPIPoolExecutor(2)
+        with pool:
+            found = ehd.parameter_study(point, PARAMETERS, executor=pool, show_progress=False)
+    for name in table.columns:
+        if name != "seconds":
+            np.testing.assert_array_equal(found[name], table[name])
 
 
 def test_missing_packages_are_named(monkeypatch):
