@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -103,6 +104,65 @@ def test_rows_lie_on_the_edges_of_any_areas():
         )
         assert outside.size >= 4
         assert weight @ np.cos(2.0 * rows) == pytest.approx(np.sin(2.0), rel=5e-3)
+
+
+SIZES = {
+    "journal_radius": RADIUS,
+    "length": LENGTH,
+    "radial_clearance": RADIUS / 1000.0,
+    "lubricant": ehd.Lubricant(viscosity=0.02),
+}
+
+
+def _random_areas(rng, half, symmetric):
+    """One to three areas; with a mirror image each, or about the mid-plane, if symmetric."""
+    areas = []
+    for _ in range(rng.integers(1, 4)):
+        z = rng.uniform(0.2, 0.7) * half
+        length = rng.uniform(0.02, 0.25) * half
+        middle = rng.random() < 0.4
+        at, size = (
+            (0.0, float(rng.choice([0.3, 0.5, 0.6, 0.7, rng.uniform(0.1, 0.8)])) * half) if middle else (z, length)
+        )
+        kind = rng.integers(3)
+        for side in (1.0, -1.0) if symmetric and not middle else (1.0,):
+            angle = rng.uniform(0.0, 6.0)
+            if kind == 0:
+                areas.append(ehd.Pocket(angle=angle, width_angle=0.5, z=side * at, length=2.0 * size))
+            elif kind == 1:
+                areas.append(ehd.CircumferentialGroove(z=side * at, width=0.2 * size))
+            else:
+                areas.append(ehd.Hole(angle=angle, z=side * at, diameter=0.3 * size))
+    return areas
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+def test_mirrored_areas_have_mirrored_rows(symmetric):
+    """A bearing that is symmetric about its mid-plane has rows that are; any other the mirrored rows of its image."""
+    rng, tried = np.random.default_rng(11), 0
+    while tried < 300:
+        areas = _random_areas(rng, 0.5 * LENGTH, symmetric)
+        image = [dataclasses.replace(area, z=-area.z) for area in areas]
+        n_z = int(rng.integers(6, 17))
+        try:
+            ehd.JournalBearing(**SIZES, supply=tuple(areas))
+        except ehd.InputError:
+            continue  # areas that overlap
+        tried += 1
+        made = [supply_rows(placed(tuple(a), LENGTH), RADIUS, LENGTH, n_z, 0.75) for a in (areas, image)]
+        rows, weight = made[0]
+        other, its_weight = made[0] if symmetric else made[1]
+        np.testing.assert_allclose(rows, -other[::-1], rtol=0.0, atol=1e-13)
+        np.testing.assert_allclose(weight, its_weight[::-1], rtol=1e-9, atol=1e-13)
+
+
+@pytest.mark.parametrize("share", [0.3, 0.5, 0.6, 0.7])
+def test_a_symmetric_groove_tilts_no_aligned_journal(share):
+    groove = ehd.AxialGroove(angle=1.07, width_angle=0.4, length=share * LENGTH, pressure=1e5)
+    for n_z in (6, 8, 10, 16):
+        bearing = ehd.JournalBearing(**SIZES, film=ehd.FiniteLength(n_z=n_z), supply=(groove,))
+        film = ehd.steady(bearing, speed=300.0, eccentricity_ratio=0.6)
+        assert np.abs(film.moment[:2]).max() < 1e-12 * np.abs(film.force).max() * LENGTH
 
 
 def test_small_holes_feed_as_the_well_model_of_a_square_grid():

@@ -19,8 +19,8 @@ from exudyn_ehd.film.supply.areas import CircumferentialGroove, Hole, SupplyArea
 LEAST = 4
 # What parts need more is taken from a land's longest part, down to so many.
 KEPT = 6
-# Edges closer than this share of the length are one.
-SAME = 1e-13
+# Edges closer than this share of the length are one; and layouts are mirrored to this share.
+SAME, MIRRORED = 1e-13, 1e-12
 
 
 def supply_rows(
@@ -41,8 +41,14 @@ def supply_rows(
         cuts = _edges_on(supply, low, high, length)
         edges += cuts[1:]
         counts += [max(LEAST, math.ceil(share - SAME))] if len(cuts) == 2 else _parts(supply, cuts, share, stretch)
+    # of a film parted by grooves alone, in a groove
+    alone = grooves and len(counts) == 2 * len(grooves) + 1
+    middle = 1 + 2 * int(np.argmin([abs(sum(span)) for span in grooves])) if alone else _largest(counts, edges)
+    if np.allclose(edges, -np.array(edges[::-1]), rtol=0.0, atol=MIRRORED * length):
+        # parts of one size may have been given different numbers: halves that are alike get rows that are
+        counts, middle = [max(pair) for pair in zip(counts, counts[::-1], strict=True)], len(counts) // 2
     # an even number can be halved for a coarser grid
-    counts[1 if grooves and len(counts) == 2 * len(grooves) + 1 else int(np.argmax(counts))] += sum(counts) % 2
+    counts[middle] += sum(counts) % 2
     return rows_between([z / radius for z in edges], counts, stretch)
 
 
@@ -85,8 +91,16 @@ def _parts(supply: Sequence[SupplyArea], edges: list[float], share: float, stret
         least = (2 if part > 0.3 else 1) if any(low < z < high for low, high in spans) else LEAST
         counts.append(max(least, math.ceil(part - 1e-9)))
     while sum(counts) > share + 2.0:
-        k = int(np.argmax(counts))
+        k = _largest(counts, edges)
         if counts[k] <= KEPT:
             break
         counts[k] -= 1
     return counts
+
+
+def _largest(counts: Sequence[int], edges: Sequence[float]) -> int:
+    """The part with most intervals; of several the one nearest to the mid-plane, of two the one on the side to which
+    all edges lean: a mirrored layout has the mirrored one."""
+    places = np.array(edges) / (edges[-1] - edges[0])
+    centres = np.round(0.5 * (places[1:] + places[:-1]), 9)
+    return int(np.lexsort((-centres * np.sign(np.round(places.sum(), 9)), np.abs(centres), -np.array(counts)))[0])
