@@ -87,6 +87,7 @@ __version__ = "0.1.0"
 _LAZY = {
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
+    "File": "coupling.record.on_disk",
     "Free": "coupling.api",
     "Held": "coupling.api",
     "JointHistory": "coupling.record.history",
@@ -95,7 +96,7 @@ _LAZY = {
     "ReplaceJoint": "coupling.replace",
     "ReplaceJoints": "coupling.replace",
     "Revolutions": "coupling.record.revolutions",
-    "load_history": "coupling.record.history",
+    "load_history": "coupling.record.load",
     "StepControl": "coupling.watch.step_control",
     "JointState": "coupling.run.joint_state",
     "LastCycle": "coupling.watch.periodic",
@@ -154,7 +155,9 @@ if TYPE_CHECKING:
         Support,
     )
     from exudyn_ehd.coupling.handle import LubricatedJoint
-    from exudyn_ehd.coupling.record.history import JointHistory, Quantity, load_history
+    from exudyn_ehd.coupling.record.history import JointHistory, Quantity
+    from exudyn_ehd.coupling.record.load import load_history
+    from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
@@ -216,6 +219,7 @@ __all__ = [
     "EquilibriumResult",
     "FEBore",
     "FactorReuse",
+    "File",
     "FilmEnergy",
     "FilmError",
     "FilmFields",

@@ -24,6 +24,7 @@ from exudyn_ehd.coupling.items.joint_frame import check_start, joint_points, joi
 from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
+from exudyn_ehd.coupling.record.on_disk import File
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
@@ -90,6 +91,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: Literal[False] = False,
+    record: File | None = None,
 ) -> LubricatedJoint: ...
 @overload
 def CreateLubricatedJoint(
@@ -112,6 +114,7 @@ def CreateLubricatedJoint(
     bodyNumbers: Sequence[Index | None] | None = None,
     *,
     returnDict: Literal[True],
+    record: File | None = None,
 ) -> dict[str, object]: ...
 def CreateLubricatedJoint(
     mbs: exu.MainSystem,
@@ -132,6 +135,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: bool = False,
+    record: File | None = None,
 ) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
 
@@ -191,6 +195,8 @@ def CreateLubricatedJoint(
         The name that ``itemNumbers`` had in older calls of Exudyn; a DeprecationWarning says so.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
+    record : File or None
+        Where the accepted steps of `LubricatedJoint.history` are kept: in a file, of long runs; None: in memory.
 
     Returns
     -------
@@ -220,6 +226,7 @@ def CreateLubricatedJoint(
     for argument, motion in (("axial", axial), ("tilt", tilt)):
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
+    require_type(f"{_WHERE}.record", record, File, type(None))
     _require_new(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
@@ -248,11 +255,18 @@ def CreateLubricatedJoint(
         color=color,
         gravity=gravity,
     )
-    if stepControl is not None:
-        joint.element.steps.control = GapWatch(stepControl, bearing)
+    _equip(joint, stepControl, record)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}
     return joint
+
+
+def _equip(joint: LubricatedJoint, control: StepControl | None, record: File | None) -> None:
+    steps = joint.element.steps
+    if control is not None:
+        steps.control = GapWatch(control, joint.bearing)
+    if record is not None:
+        steps.record.keep_on_disk(record.of(joint.name).absolute(), joint.name)
 
 
 def _model_of(bearing: JournalBearing, *items: Item) -> JointModel:

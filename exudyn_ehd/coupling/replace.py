@@ -56,8 +56,8 @@ def ReplaceJoint(
     journal : int
         Which of the joint's markers is on the journal, 0 or 1; the other is on the housing.
     options
-        Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show. A short film that
-        takes the place of a joint which alone carried a tilting moment wants ``tilt=Held()``.
+        Further arguments of `CreateLubricatedJoint`: axial, tilt, stepControl, bushGravity, show, record. A short film
+        that takes the place of a joint which alone carried a tilting moment wants ``tilt=Held()``.
 
     Returns
     -------

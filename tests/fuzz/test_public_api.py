@@ -54,6 +54,7 @@ GOOD = [
     ehd.ModalBush(mesh=MESH, material=STEEL),
     ehd.ANCFBush(mesh=MESH, material=STEEL),
     ehd.FEBore(fem=types.SimpleNamespace(elements=[])),
+    ehd.File(path="main.rows"),
 ]
 _OTHERS = [c for c in specs() if c.__name__ not in OF_A_MESH | {type(good).__name__ for good in GOOD}]
 GOOD += [good for good in map(by_itself, _OTHERS) if good is not None]

@@ -355,7 +355,8 @@ class AcceptedSteps:
         self._resumed = (time, memory, begin)
 
     def tell(self, mbs: exu.MainSystem) -> None:
-        """Log the line of the run that has ended, once."""
+        """Log the line of the run that has ended, once; bring its record to its file, if it has one."""
+        self.record.write()
         if self._told or not summary.is_on():
             return
         self._told = True

@@ -4,6 +4,8 @@ Module map
 ----------
 element      what records ask of a joint's film element
 history      quantities over accepted steps
+on_disk      a history in a file, for long runs
+load         histories back from their files
 films        films over accepted steps
 results      what a joint's handle offers
 summary      a run in one line

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import enum
 import math
 import pathlib
-import zipfile
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.record.on_disk import RowsOnDisk
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.step_error import BLOCKS, step_errors
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, RunError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
 
@@ -50,7 +51,10 @@ _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-_FORMAT = "exudyn_ehd JointHistory 4"
+FORMAT = "exudyn_ehd JointHistory 4"
+DIMENSIONS = ("radial_clearance", "journal_radius", "length")
+# Rows in memory from which on they go to a file, if there is one.
+ON_DISK = 256
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
     "force": ("force_x", "force_y", "force_z"),
@@ -223,7 +227,7 @@ class JointHistory(History, HistoryPictures):
         require_path("JointHistory.save (to_csv writes text)", path, ".npz")
         fields = {field.name: getattr(self, field.name) for field in dataclasses.fields(self)}
         with replacing(path, binary=True) as file:
-            np.savez_compressed(file, format=_FORMAT, **fields)
+            np.savez_compressed(file, format=FORMAT, **fields)
 
     def to_csv(self, path: str | pathlib.Path) -> None:
         """Write all columns as text, names and SI units in the first line; vectors by their components.
@@ -280,47 +284,6 @@ class JointHistory(History, HistoryPictures):
         return revolutions({name: getattr(self, name) for name in _COLUMNS}, period)
 
 
-def load_history(path: str | pathlib.Path) -> JointHistory:
-    """Read what `JointHistory.save` has written.
-
-    Parameters
-    ----------
-    path : path
-
-    Returns
-    -------
-    JointHistory
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    InputError
-        If it holds something else.
-
-    Examples
-    --------
-    After the example of `JointHistory`:
-
-    >>> again = ehd.load_history("main.npz")
-    >>> bool((again.force == history.force).all())
-    True
-    """
-    require_path("load_history", path)
-    try:
-        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
-            known = "format" in data.files and str(data["format"]) == _FORMAT
-            values = {name: data[name] for name in data.files if name != "format"} if known else {}
-    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
-        known = False
-    if not known:
-        raise InputError(
-            f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
-        )
-    fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
-    return JointHistory(**fields)
-
-
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
     """Eccentricity ratio in the mid-plane and the largest along the length (which is at an end: it is convex)."""
     x, y, bx, by = motion[:4].tolist()
@@ -356,24 +319,31 @@ def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
 
 
 class Record:
-    """Rows of accepted steps of a bearing in a growing array."""
+    """Rows of accepted steps of a bearing in a growing array, or the last ones with the others on disk."""
 
     def __init__(self, bearing: JournalBearing) -> None:
-        self._dimensions: dict[str, Any] = {
-            name: float(getattr(bearing, name)) for name in ("radial_clearance", "journal_radius", "length")
-        }
+        self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
         self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
         self._rows = np.empty((64, _WIDTH))
         self._count = 0
+        self._disk: RowsOnDisk | None = None
+        self._thinnest = math.nan
+
+    def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
+        """Let all rows but the last ones go to a file of this joint."""
+        head = {"width": _WIDTH, "names": FORMAT, "lags": self._lags, **self._dimensions}
+        self._disk = RowsOnDisk(path, joint, head)
 
     def append(self, row: np.ndarray) -> None:
         """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
         if self._count:
             last = self._rows[self._count - 1, _TIME]
             if row[_TIME] < last:
-                self._count = 0
+                self.clear()
             elif row[_TIME] == last:
                 self._count -= 1
+        if self._disk is not None and self._count >= ON_DISK:
+            self.write()
         if self._count == self._rows.shape[0]:
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
         self._rows[self._count] = row
@@ -381,11 +351,24 @@ class Record:
 
     def clear(self) -> None:
         """Begin a new record."""
-        self._count = 0
+        self._count, self._thinnest = 0, math.nan
+        if self._disk is not None:
+            self._disk.clear()
+
+    def write(self, final: np.ndarray | None = None) -> None:
+        """Bring the rows to the file, if there is one, with ``final`` behind them; the last one stays in memory too."""
+        if self._disk is None or not self._count:
+            return
+        rows, done = self._rows[: self._count], self._count - 1
+        self._disk.add(rows if final is None else np.concatenate([rows, final[None]]), done)
+        self._thinnest = self.thinnest
+        self._rows[0], self._count = self._rows[done].copy(), 1
 
     def rows(self, final: np.ndarray | None) -> np.ndarray:
         """Copy of all rows (n, k), with ``final`` behind them if given and later."""
         rows = self._rows[: self._count].copy()
+        if self._disk is not None:
+            rows = np.concatenate([self._disk.read(), rows])
         if final is not None and final[_TIME] > self.last_time:
             rows = np.concatenate([rows, final[None]])
         return rows
@@ -394,13 +377,14 @@ class Record:
         """Begin with these rows (n, k)."""
         if rows.ndim != 2 or rows.shape[1] != _WIDTH:
             raise InputError(f"LubricatedJoint.restore_state: rows must be (n, {_WIDTH}), got {rows.shape}.")
+        self.clear()
         self._rows, self._count = np.concatenate([rows, np.empty((64, _WIDTH))]), len(rows)
 
     @property
     def thinnest(self) -> float:
         """The minimum film thickness of all rows, m; nan where no film has one."""
         gaps = self._rows[: self._count, MINIMUM_GAP]
-        return float(np.fmin.reduce(gaps, initial=np.nan))
+        return float(np.fmin.reduce(gaps, initial=self._thinnest))
 
     @property
     def last_time(self) -> float:
@@ -409,22 +393,28 @@ class Record:
 
     def snapshot(self, final: np.ndarray | None) -> JointHistory:
         """Copy of the record, with ``final`` as its last row if given."""
-        rows = self._rows[: self._count].copy()
+        # where the file can't be written any more, the rows are still known
+        with contextlib.suppress(RunError):
+            self.write(final)
+        rows = self.rows(None)
         if final is not None:
             rows = np.concatenate([rows, final[None]])
-        columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
-        return JointHistory(**columns, step_error=self._step_errors(rows, columns), **self._dimensions)
+        return history_of(rows, self._dimensions, self._lags)
 
-    def _step_errors(self, rows: np.ndarray, columns: dict[str, np.ndarray]) -> np.ndarray:
-        peak, deflection = columns["peak_angle"], None
-        if self._lags:
-            deflection = columns["bore_displacement"][:, None] * np.stack((np.cos(peak), np.sin(peak)), axis=1)
-        return step_errors(
-            columns["time"],
-            columns["motion"],
-            rows[:, _FIRST_BLOCK:].reshape(-1, *BLOCKS.shape),
-            columns["minimum_gap"],
-            self._dimensions["radial_clearance"],
-            self._dimensions["length"],
-            deflection,
-        )
+
+def history_of(rows: np.ndarray, dimensions: dict[str, Any], lags: bool) -> JointHistory:
+    """Rows (n, k) as columns, with the errors of their steps; ``lags``: on a liner."""
+    columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
+    peak, deflection = columns["peak_angle"], None
+    if lags:
+        deflection = columns["bore_displacement"][:, None] * np.stack((np.cos(peak), np.sin(peak)), axis=1)
+    errors = step_errors(
+        columns["time"],
+        columns["motion"],
+        rows[:, _FIRST_BLOCK:].reshape(-1, *BLOCKS.shape),
+        columns["minimum_gap"],
+        dimensions["radial_clearance"],
+        dimensions["length"],
+        deflection,
+    )
+    return JointHistory(**columns, step_error=errors, **dimensions)

@@ -1,0 +1,59 @@
+"""Histories back from their files."""
+
+from __future__ import annotations
+
+import pathlib
+import zipfile
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.coupling.record.history import DIMENSIONS, FORMAT, JointHistory, history_of
+from exudyn_ehd.coupling.record.on_disk import read_head, read_rows
+from exudyn_ehd.status import InputError
+from exudyn_ehd.storage import require_path
+
+
+def load_history(path: str | pathlib.Path) -> JointHistory:
+    """Read what `JointHistory.save` has written, or the `File` of a record, as far as it has come.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    JointHistory
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it holds something else.
+
+    Examples
+    --------
+    After the example of `JointHistory`:
+
+    >>> again = ehd.load_history("main.npz")
+    >>> bool((again.force == history.force).all())
+    True
+    """
+    require_path("load_history", path)
+    head = read_head(path)
+    if head is not None and head["names"] == FORMAT:
+        rows = read_rows(path, head["width"])
+        return history_of(rows, {name: head[name] for name in DIMENSIONS}, head["lags"])
+    try:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
+            known = "format" in data.files and str(data["format"]) == FORMAT
+            values = {name: data[name] for name in data.files if name != "format"} if known else {}
+    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
+        known = False
+    if not known:
+        raise InputError(
+            f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
+        )
+    fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
+    return JointHistory(**fields)

@@ -1,0 +1,153 @@
+"""Rows of a record on disk, for runs whose records are too long for memory.
+
+A file begins with a line of JSON that says what it is, padded to `HEAD` bytes; rows of doubles follow, each written
+whole and in order. What is there can be read at any time, also after the program was killed: a row that was cut off
+does not count.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import pathlib
+import secrets
+from collections.abc import Mapping
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from exudyn_ehd.status import InputError, RunError
+from exudyn_ehd.storage import require_path
+
+HEAD = 512
+FORMAT = "exudyn_ehd rows 1"
+NAME = "{name}"
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class File:
+    """``record`` of `CreateLubricatedJoint`: accepted steps go to a file, and memory holds the last ones only.
+
+    A step takes 0.4 KB on disk. `load_history` reads the file, during a run and after a kill as well; `joint.history`
+    reads it when it is asked for. A new record of the joint replaces the file.
+
+    Parameters
+    ----------
+    path : path
+        Of a file of its own for each joint; "{name}" in it stands for the joint's name.
+
+    Examples
+    --------
+    >>> record = ehd.File(path="results/{name}.rows")
+    >>> record.of("main").as_posix()
+    'results/main.rows'
+    """
+
+    path: str | pathlib.Path
+
+    def __post_init__(self) -> None:
+        require_path("File", self.path)
+
+    def of(self, name: str) -> pathlib.Path:
+        """The path of a joint.
+
+        Parameters
+        ----------
+        name : str
+            Of the joint; characters that part folders become ``_``.
+
+        Returns
+        -------
+        pathlib.Path
+        """
+        plain = "".join("_" if letter in "/\\:" else letter for letter in name)
+        return pathlib.Path(str(self.path).replace(NAME, plain))
+
+
+class RowsOnDisk:
+    """The earlier rows of a record.
+
+    Parameters
+    ----------
+    path : path
+    joint : str
+        Its name.
+    head : dict
+        What a reader has to know.
+    """
+
+    def __init__(self, path: pathlib.Path, joint: str, head: Mapping[str, Any]) -> None:
+        self.path, self.joint, self.count = path, joint, 0
+        if path.exists() and (not path.is_file() or (path.stat().st_size and read_head(path) is None)):
+            raise InputError(
+                f"CreateLubricatedJoint.record: '{path}' holds something else than a record and is not replaced; name "
+                "another path in File(...)."
+            )
+        self._known, self._width = dict(head), int(head["width"])
+        self._head = b""
+
+    def add(self, rows: np.ndarray, settled: int) -> None:
+        """Write rows (n, k) behind the others; those after the ``settled`` first ones may be replaced by the next call.
+
+        Raises
+        ------
+        RunError
+            If they can't be written, or the file is another joint's by now.
+        """
+        try:
+            if not self._head:
+                self._begin()
+            with open(self.path, "r+b") as file:
+                self._require_own(file)
+                file.seek(HEAD + 8 * self._width * self.count)
+                file.write(np.ascontiguousarray(rows).tobytes())
+        except OSError as error:
+            raise RunError(
+                f"LubricatedJoint '{self.joint}': its record can't be written to '{self.path}' ({error.strerror}); "
+                "make room there, or name another path in File(...)."
+            ) from error
+        self.count += settled
+
+    def _begin(self) -> None:
+        """A new file: who still reads the old one keeps it."""
+        head = {"format": FORMAT, "record": secrets.token_hex(8), **self._known}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        self.path.unlink(missing_ok=True)
+        self._head = (json.dumps(head).ljust(HEAD - 1) + "\n").encode()
+        self.path.write_bytes(self._head)
+
+    def read(self) -> np.ndarray:
+        """All rows (n, k)."""
+        if not self.count:
+            return np.empty((0, self._width))
+        with open(self.path, "rb") as file:
+            self._require_own(file)
+            return np.fromfile(file, count=self.count * self._width).reshape(-1, self._width)
+
+    def clear(self) -> None:
+        """Begin anew at the next rows."""
+        self.count, self._head = 0, b""
+
+    def _require_own(self, file: BinaryIO) -> None:
+        if file.read(HEAD) != self._head:
+            raise RunError(
+                f"LubricatedJoint '{self.joint}': another record has replaced the one in '{self.path}'; give every "
+                f"joint a File(...) with a path of its own, or '{NAME}' in it."
+            )
+
+
+def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
+    """Head of a file of `RowsOnDisk` of this version; None if it is something else."""
+    with open(path, "rb") as file:
+        try:
+            head = json.loads(file.read(HEAD))
+        except ValueError:
+            return None
+    return head if isinstance(head, dict) and head.get("format") == FORMAT else None
+
+
+def read_rows(path: str | pathlib.Path, width: int) -> np.ndarray:
+    """The whole rows (n, width) of a file of `RowsOnDisk`."""
+    whole = (os.path.getsize(path) - HEAD) // (8 * width)
+    return np.fromfile(path, offset=HEAD, count=whole * width).reshape(-1, width)
