@@ -321,10 +321,12 @@ def _check_turbulence(bearing: JournalBearing) -> None:
     oil, laws = bearing.lubricant, ("pressure_law", "density_law", "shear_law")
     others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
     others += [] if bearing.roughness is None else ["JournalBearing.roughness"]
+    others += [] if getattr(bearing.thermal, "conductivity", None) is None else ["FilmEnergy.conductivity"]
     if bearing.turbulence is not None and others:
         raise InputError(
             f"JournalBearing.turbulence={type(bearing.turbulence).__name__}() does not go with {', '.join(others)}: "
-            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth; leave one out."
+            "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth, and its eddies "
+            "carry heat across the film; leave one out."
         )
 
 

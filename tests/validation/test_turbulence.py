@@ -218,6 +218,15 @@ def test_wrong_transitions_are_refused(kind, law):
         ),
         ({"lubricant": ehd.Lubricant(viscosity=1e-3, density_law=ehd.DowsonHigginson())}, "density_law"),
         ({"roughness": ehd.PatirCheng(composite_roughness=1e-6)}, "roughness"),
+        (
+            {
+                "thermal": ehd.FilmEnergy(supply_temperature=320.0, bush_coefficient=1e4, conductivity=0.6),
+                "lubricant": ehd.Lubricant(
+                    temperature_law=ehd.ReynoldsTemperature(point=(320.0, 1e-3), coefficient=0.02), temperature=320.0
+                ),
+            },
+            "conductivity",
+        ),
         ({"film": ehd.ImpedanceMap()}, "turbulence"),
         ({"film": ehd.ClassicSOR(), "cavitation": ehd.Gumbel()}, "turbulence"),
     ],
