@@ -47,6 +47,7 @@ HANDED_ON = {
 }
 # Numbers, but no sizes of a scene: times and angles of a picture or of what has been computed; what is handed on.
 READING = {
+    "load_history.start", "load_history.end",
     "LubricatedJoint.plot_bearing.camera", "LubricatedJoint.plot_traces.quantities",
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",

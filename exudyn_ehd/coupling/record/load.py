@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import pathlib
 import zipfile
 from typing import Any
@@ -14,12 +15,15 @@ from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import require_path
 
 
-def load_history(path: str | pathlib.Path) -> JointHistory:
+def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: float = math.inf) -> JointHistory:
     """Read what `JointHistory.save` has written, or the `File` of a record, as far as it has come.
 
     Parameters
     ----------
     path : path
+    start, end : float
+        s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read but a
+        thousand before them, from which the errors of the steps are summed up.
 
     Returns
     -------
@@ -30,7 +34,7 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
     FileNotFoundError
         If there is no such file.
     InputError
-        If it holds something else.
+        If it holds something else, or the start lies after the end.
 
     Examples
     --------
@@ -43,8 +47,9 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
     require_path("load_history", path)
     head = read_head(path)
     if head is not None and head["names"] == FORMAT:
-        rows = read_rows(path, head["width"])
-        return history_of(rows, {name: head[name] for name in DIMENSIONS}, head["lags"])
+        rows = read_rows(path, head["width"], start, end)
+        whole = history_of(rows, {name: head[name] for name in DIMENSIONS}, head["lags"])
+        return whole.between(start, end)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
             known = "format" in data.files and str(data["format"]) == FORMAT
@@ -56,4 +61,4 @@ def load_history(path: str | pathlib.Path) -> JointHistory:
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )
     fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
-    return JointHistory(**fields)
+    return JointHistory(**fields).between(start, end)

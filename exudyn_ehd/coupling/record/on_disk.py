@@ -7,6 +7,7 @@ does not count.
 
 from __future__ import annotations
 
+import bisect
 import dataclasses
 import json
 import os
@@ -21,6 +22,8 @@ from exudyn_ehd.status import InputError, RunError
 from exudyn_ehd.storage import require_path
 
 HEAD = 512
+# Rows read before those that are asked for.
+LEAD = 1000
 FORMAT = "exudyn_ehd rows 1"
 NAME = "{name}"
 
@@ -148,7 +151,12 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def read_rows(path: str | pathlib.Path, width: int) -> np.ndarray:
-    """The whole rows (n, width) of a file of `RowsOnDisk`."""
+def read_rows(path: str | pathlib.Path, width: int, start: float, end: float) -> np.ndarray:
+    """The whole rows (n, width) of a file of `RowsOnDisk` from `LEAD` rows before ``start`` to ``end``, s."""
     whole = (os.path.getsize(path) - HEAD) // (8 * width)
-    return np.fromfile(path, offset=HEAD, count=whole * width).reshape(-1, width)
+    if not whole:
+        return np.empty((0, width))
+    rows = np.memmap(path, dtype=float, mode="r", offset=HEAD, shape=(whole, width))
+    first, last = bisect.bisect_left(rows[:, 0], start), bisect.bisect_right(rows[:, 0], end)
+    # one more on either side, for times that are meant to be the limits
+    return np.array(rows[max(0, first - LEAD) : last + 1])

@@ -59,6 +59,30 @@ def test_any_course_gives_the_record_in_memory(tmp_path):
         same(kept.snapshot(None), stored.snapshot(None))
 
 
+def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
+    """Bit for bit but for the errors of the steps, which begin a thousand rows before; no more rows are touched."""
+    path, record = tmp_path / "long.rows", Record(Bearing)
+    record.keep_on_disk(path, "main")
+    rng, time = np.random.default_rng(4), 0.0
+    for _ in range(4000):
+        time += rng.uniform(0.5, 1.5) * 1e-4
+        row = random_row(rng, time)
+        # a film that keeps nine tenths of its errors from step to step
+        blocks = np.tile(np.eye(2).ravel(), 4) * np.repeat([-1000.0, -1.0, -1000.0, -1.0], 4)
+        row[rows_of._FIRST_BLOCK :] = blocks
+        record.append(row)
+    whole = record.snapshot(None)
+    for start, end in ((0.3, 0.301), (whole.time[2000], whole.time[2100]), (0.399, 9.0), (-1.0, 0.02), (7.0, 8.0)):
+        part, expected = ehd.load_history(path, start=start, end=end), whole.between(start, end)
+        for name in rows_of._NAMES:
+            np.testing.assert_allclose(getattr(part, name), getattr(expected, name), rtol=1e-12, err_msg=name)
+    assert ehd.load_history(path, start=0.2, end=0.3).time.size > 900
+    with pytest.raises(ehd.InputError, match="start must not lie after end"):
+        ehd.load_history(path, start=0.3, end=0.2)
+    whole.save(tmp_path / "whole.npz")
+    same(ehd.load_history(tmp_path / "whole.npz", start=0.1, end=0.2), whole.between(0.1, 0.2))
+
+
 def test_memory_does_not_grow(tmp_path):
     """Less than 50 bytes a step for what would take 416: 500 MB for ten joints and a million steps."""
     record, rng = Record(Bearing), np.random.default_rng(1)
