@@ -198,8 +198,40 @@ def test_equilibrium_tangent_and_audit():
     assert row.change.power_loss == pytest.approx(rest[1].film.power_loss / rest[0].film.power_loss - 1.0, rel=0.01)
     followed = rest[1].film.audit()
     assert followed["turbulence"].on and followed["turbulence"].matters and not followed["Taylor vortices"].advice
+    assert rest[0].film.audit().improved(laminar).turbulence == ehd.NgPan()
     oily = ehd.steady(bearing(0.05, turbulence=ehd.NgPan()), speed=SPEED, eccentricity_ratio=0.6).audit()
     assert oily["turbulence"].unneeded
+
+
+def test_advice_on_what_does_not_go_together_can_be_followed():
+    """A law of the oil does not pass for turbulence, nor is offered where the film is turbulent."""
+    law = ehd.RoelandsPressure(coefficient=2e-8)
+    # Re = 400: laminar, and the law matters
+    thick = ehd.JournalBearing(
+        journal_radius=R,
+        length=L,
+        radial_clearance=5e-5,
+        lubricant=ehd.Lubricant(viscosity=5e-3, density=DENSITY, pressure_law=law),
+    )
+    audit = ehd.steady(thick, speed=SPEED, eccentricity_ratio=0.8).audit()
+    assert audit["piezoviscosity"].matters and not audit["turbulence"].matters
+    # Re = 20000 there: both matter, neither is switched on beside the other
+    thin = dataclasses.replace(thick.lubricant, viscosity=1e-4)
+    for bearing_, row in (
+        (dataclasses.replace(thick, lubricant=thin), "turbulence"),
+        (
+            dataclasses.replace(
+                thick,
+                lubricant=dataclasses.replace(thick.lubricant, pressure_law=None),
+                turbulence=ehd.NgPan(onset=50.0),
+            ),
+            "piezoviscosity",
+        ),
+    ):
+        audit = ehd.steady(bearing_, speed=SPEED, eccentricity_ratio=0.8).audit()
+        assert audit[row].matters and "does not go with Lubricant.pressure_law" in audit[row].advice
+        assert audit[row].remedy is None
+        audit.improved(bearing_)
 
 
 @pytest.mark.parametrize("law", [{"onset": -1.0}, {"full": 0.0}, {"onset": 900.0, "full": 800.0}, {"onset": math.nan}])

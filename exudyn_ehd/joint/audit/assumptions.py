@@ -52,8 +52,7 @@ def turbulence(case: Case) -> Finding:
         _reynolds(case),
         on,
         laminar if on else turbulent,
-        mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan(), which goes without "
-        "pressure_law, density_law, shear_law and roughness.",
+        mattering="beyond the laminar film, friction and load are too low here: turbulence=NgPan().",
         needless="the film is laminar: turbulence=None.",
     )
 

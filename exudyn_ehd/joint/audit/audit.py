@@ -17,11 +17,11 @@ from exudyn_ehd.joint.audit.changes import Comparison
 from exudyn_ehd.joint.audit.findings import Case, Finding
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
-from exudyn_ehd.joint.audit.switches import two_dimensional
+from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.status import FilmError, Status, require_type
+from exudyn_ehd.status import FilmError, InputError, Status, require_type
 from exudyn_ehd.tables import html_table
 
 __all__ = ["Audit", "Finding", "audit_record", "audit_states"]
@@ -125,8 +125,13 @@ class Audit:
         remedies = [finding.remedy for finding in self.findings if finding.remedy is not None]
         if remedies and isinstance(bearing.film, ImpedanceMap):
             bearing = two_dimensional(bearing)
-        for remedy in remedies:
-            bearing = remedy(bearing)
+        # turbulence leaves out laws of laminar films: where both are missing, the next audit says so
+        for remedy in sorted(remedies, key=lambda remedy: remedy is not turbulent):
+            try:
+                bearing = remedy(bearing)
+            except InputError:
+                if bearing.turbulence is None:
+                    raise
         return bearing
 
 

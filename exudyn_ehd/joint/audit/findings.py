@@ -11,8 +11,9 @@ from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.joint.audit.changes import MATTERS, NOTHING, Change, Comparison
 from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
-from exudyn_ehd.joint.audit.switches import Switch
+from exudyn_ehd.joint.audit.switches import Switch, turbulent
 from exudyn_ehd.joint.balance.hot_oil import HOT
+from exudyn_ehd.status import InputError
 
 
 class Limit(NamedTuple):
@@ -200,6 +201,17 @@ def finding(
     )
 
 
+def _refusal(switch: Switch, bearing: JournalBearing) -> str:
+    """Why a bearing can't be switched: what turbulent films do not go with. Its own message names both."""
+    if bearing.turbulence is None and switch is not turbulent:
+        return ""
+    try:
+        switch(bearing)
+    except InputError as error:
+        return str(error)
+    return ""
+
+
 def judged(
     case: Case,
     effect: str,
@@ -218,6 +230,8 @@ def judged(
     nothing = PLAINLY_NOTHING.get(effect, 0.0)
     plain = value > nothing if limit.below else value < nothing
     plain = plain or value > (PLAINLY_MUCH_ON if on else PLAINLY_MUCH).get(effect, math.inf)
+    if not on and not plain and (refusal := _refusal(switch, case.bearing)):
+        return finding(effect, indicator, value, on, limit=limit, mattering=f"{mattering} {refusal}")
     return finding(
         effect,
         indicator,

@@ -156,9 +156,8 @@ def unworn(bearing: JournalBearing) -> JournalBearing:
 
 
 def turbulent(bearing: JournalBearing) -> JournalBearing:
-    """With `NgPan`, and without what it does not go with."""
-    bearing = _oil(bearing, pressure_law=None, density_law=None, shear_law=None)
-    return replace(bearing, roughness=None, turbulence=NgPan())
+    """With `NgPan`."""
+    return replace(bearing, turbulence=NgPan())
 
 
 def laminar(bearing: JournalBearing) -> JournalBearing:
