@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
-from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film
+from exudyn_ehd.film.models import Film, FiniteLength, LongBearing, ShortBearing, check_film, check_line, goes_in_cells
 from exudyn_ehd.film.reynolds.turbulence import Hirs, NgPan
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.solvers.sor import ClassicSOR
@@ -174,7 +174,7 @@ class JournalBearing:
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
-        _check_line(self)
+        check_line(self.film, self.cavitation, self.bush, self.lubricant)
         _check_turbulence(self)
         self._check_supply()
         self._check_pressures()
@@ -273,6 +273,11 @@ class JournalBearing:
         """psi = c/R."""
         return self.radial_clearance / self.journal_radius
 
+    @property
+    def closure(self) -> Cavitation:
+        """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
+        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.bush, self.lubricant))
+
     def reference_force(self, speed: float) -> float:
         """L D mu |omega| / psi^2, the unit of the Sommerfeld number.
 
@@ -288,32 +293,6 @@ class JournalBearing:
         """
         area = 2.0 * self.journal_radius * self.length
         return area * self.lubricant.viscosity * abs(speed) / self.clearance_ratio**2
-
-
-def _check_line(bearing: JournalBearing) -> None:
-    """Refuse a rupture line inside the cells with what does not know it yet."""
-    if not bearing.cavitation.line_in_cells:
-        return
-    film, closure, oil = type(bearing.film).__name__, type(bearing.cavitation).__name__, bearing.lubricant
-    clips, oil_counts = bearing.cavitation.clips, bearing.cavitation.conserves_mass
-    rigid = clips or oil_counts
-    kinds: tuple[type, ...] = (FiniteLength, LongBearing)
-    if not oil_counts:
-        kinds += (ShortBearing if clips else ImpedanceMap,)
-    others = {
-        f"film={film}(...)": not isinstance(bearing.film, kinds),
-        "a bush": rigid and bearing.bush is not None,
-        "Lubricant.density_law": rigid and oil.density_law is not None,
-        "Lubricant.shear_law": rigid and oil.shear_law is not None,
-    }
-    swift_short = isinstance(bearing.film, ShortBearing) and not rigid
-    same = "; with Gumbel(line_in_cells=True) the film is the same while the journal is aligned" if swift_short else ""
-    for other, there in others.items():
-        if there:
-            raise InputError(
-                f"{closure}.line_in_cells=True does not go with {other} yet; use {closure}(), with its line on "
-                f"the grid, or leave the other out{same}."
-            )
 
 
 def _check_turbulence(bearing: JournalBearing) -> None:

@@ -293,7 +293,7 @@ def require_type(
         raise InputError(f"{where} must be {names}, got {value!r}; {hint}")
 
 
-def require_bool(where: str, value: bool) -> bool:
+def require_bool(where: str, value: object) -> bool:
     """Return ``value`` as a bool; 0 and 1 count as such."""
     if not isinstance(value, (bool, np.bool_, int, np.integer)) or value not in (0, 1):
         raise InputError(f"{where} must be True or False, got {value!r}.")

@@ -20,7 +20,8 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing, MaximumGap
+from exudyn_ehd.bearing import Cavitation, JournalBearing, MaximumGap
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.models import Film, FiniteLength, ShortBearing
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.bush import ANCFBush
@@ -60,7 +61,7 @@ class Recommendation:
         For ``JournalBearing(film=...)``.
     options : dict
         All fields of `JournalBearing` that the setting replaces: ``film``, and ``cavitation`` where the rupture line is
-        to lie inside the cells.
+        to lie elsewhere, inside the cells or on the vertices.
     error : float
         Bound of the quantity's error, relative.
     seconds : float
@@ -171,14 +172,14 @@ def recommend(
         if errors is None or max(errors) > error:
             least = min(least, math.inf if errors is None else max(errors))
             continue
-        flat = [motion for block in motions for motion in block]
+        flat, chosen = [motion for block in motions for motion in block], dataclasses.replace(bearing, **options)
         return Recommendation(
             found=True,
             film=film,
             options=options,
             error=max(errors),
-            seconds=time_of_sweep(build_model(dataclasses.replace(bearing, **options)), flat),
-            reason=f"{_words(options)} for {place}: the {quantity} within {error:g}",
+            seconds=time_of_sweep(build_model(chosen), flat),
+            reason=f"{_words(chosen)} for {place}: the {quantity} within {error:g}",
             evidence=tuple(
                 f"eps {e:.3g}: {100.0 * bound:.2g} %, of it {100.0 * MARGIN * own:.2g} % the reference's own"
                 for e, bound, (_, own) in zip(ratios, errors, truth, strict=True)
@@ -265,29 +266,44 @@ def _settings(bearing: JournalBearing) -> Iterator[tuple[Film, Options]]:
     """Films of the ladder and what they replace, the cheapest first."""
     given: Film = bearing.film
     own = given if isinstance(given, FiniteLength) else FiniteLength()
-    lined = _with_line(bearing)
     found: list[tuple[float, Film, Options]] = []
     for n, m in LADDER:
         film = FiniteLength(n_theta=n, n_z=m, stretch=own.stretch)
-        for options, cost in (({}, 1.0), (lined, LINE_COST)):
-            if options is not None and (options or not bearing.cavitation.line_in_cells):
-                found.append((cost * n * m, film, {"film": film, **options}))
+        found += [(cost * n * m, film, {"film": film, **options}) for options, cost in _closures(bearing)]
     short = ShortBearing(n_theta=64)
     found.append((0.5 * 64 * 8, short, {"film": short}))
     yield from (entry[1:] for entry in sorted(found, key=lambda entry: entry[0]))
 
 
+def _closures(bearing: JournalBearing) -> list[tuple[Options, float]]:
+    """The bearing's own closure, and where it may the same with its rupture line elsewhere; what a film costs each."""
+    placed = dataclasses.replace(bearing, film=FiniteLength()).closure.line_in_cells
+    found: list[tuple[Options, float]] = [({}, LINE_COST if placed else 1.0)]
+    lined = _with_line(bearing)
+    if lined is not None and not placed:
+        found.append((lined, LINE_COST))
+    elif bearing.cavitation.line_in_cells is None:
+        found.append(({"cavitation": _placed(bearing.cavitation, False)}, 1.0))
+    return found
+
+
 def _with_line(bearing: JournalBearing) -> Options | None:
     """The closure with its rupture line inside the cells; None where it does not go there."""
-    closure = bearing.cavitation
-    if "line_in_cells" not in {f.name for f in dataclasses.fields(closure)}:
+    lined = _placed(bearing.cavitation, True)
+    if not lined.line_in_cells:
         return None
-    lined: Any = dataclasses.replace(closure, **{"line_in_cells": True})  # type: ignore[arg-type]
     try:
         dataclasses.replace(bearing, film=FiniteLength(), cavitation=lined)
     except InputError:
         return None
     return {"cavitation": lined}
+
+
+def _placed(closure: Cavitation, in_cells: bool) -> Cavitation:
+    """A closure with its rupture line inside the cells or on the vertices; one that has none itself."""
+    if isinstance(closure, FullSommerfeld):
+        return closure
+    return dataclasses.replace(closure, line_in_cells=in_cells)
 
 
 def _reference(bearing: JournalBearing, quantity: str, motions: list[np.ndarray]) -> tuple[np.ndarray, float]:
@@ -336,10 +352,10 @@ def _errors(
     ]
 
 
-def _words(options: Options) -> str:
-    """A setting in words."""
-    film = options["film"]
+def _words(bearing: JournalBearing) -> str:
+    """The setting of a bearing in words."""
+    film = bearing.film
     grid = f"{film.n_theta} x {film.n_z}"
     if isinstance(film, ShortBearing):
         return f"short bearing {grid}"
-    return f"2D {grid}, line in cells" if "cavitation" in options else f"2D {grid}"
+    return f"2D {grid}, line {'in cells' if bearing.closure.line_in_cells else 'on vertices'}"

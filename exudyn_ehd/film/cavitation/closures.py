@@ -16,7 +16,8 @@ Each closure is a small frozen object, which a scene names: what a film needs of
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
@@ -36,11 +37,13 @@ from exudyn_ehd.status import PlausibilityWarning, Status, require_bool, require
 # Gauge pressure of the absolute vacuum, Pa, where the air presses most.
 VACUUM = -1.1e5
 
+Placed = TypeVar("Placed")
+
 
 class SymmetricClosure:
     """Closures whose last solution has a symmetric factor."""
 
-    line_in_cells = False
+    line_in_cells: bool | None = False
 
     def adjoint(self, system: FilmSystem, work: Workspace, rhs: np.ndarray) -> None:
         """Solve the transposed system for every row of rhs (k, count), in place."""
@@ -162,7 +165,7 @@ class SwiftStieber(SymmetricClosure):
 
     cavity_pressure: float = 0.0
     cavity_shear: float = 1.0
-    line_in_cells: bool = False
+    line_in_cells: bool | None = None
 
     conserves_mass = False
     clips = False
@@ -235,8 +238,15 @@ def check_cavity_pressure(name: str, pressure: float) -> None:
         )
 
 
+def place_line(closure: Placed, in_cells: bool) -> Placed:
+    """A closure whose rupture line has a place: ``in_cells`` where it leaves that open."""
+    is_open = isinstance(closure, SwiftStieber) and closure.line_in_cells is None
+    return replace(closure, line_in_cells=in_cells) if is_open else closure  # type: ignore[type-var]
+
+
 def _check_closure(closure: Gumbel | SwiftStieber) -> None:
     name = type(closure).__name__
     check_cavity_pressure(name, closure.cavity_pressure)
     require_number(f"{name}.cavity_shear", closure.cavity_shear, at_least=0.0, at_most=1.0, hint="it is a share.")
-    object.__setattr__(closure, "line_in_cells", require_bool(f"{name}.line_in_cells", closure.line_in_cells))
+    if closure.line_in_cells is not None or isinstance(closure, Gumbel):
+        object.__setattr__(closure, "line_in_cells", require_bool(f"{name}.line_in_cells", closure.line_in_cells))

@@ -342,7 +342,7 @@ def impedance_table(film: ImpedanceMap, closure: Closure, length_to_radius: floa
         scalars = t.step_s, t.step_alpha, t.largest_eccentricity_ratio, t.worst_error, t.median_error, t.samples
         return {"nodes": t.nodes, "scalars": np.array(scalars, dtype=float)}
 
-    condition = type(closure).__name__ + closure.line_in_cells * " in cells"
+    condition = type(closure).__name__ + " in cells" * bool(closure.line_in_cells)
     key = repr((FORMAT, film, condition, float(length_to_radius), SAMPLES))
     shapes: Shapes = {"nodes": (film.n_eccentricity, film.n_direction, 8), "scalars": (6,)}
     data = cached_arrays("impedance_maps", key.encode(), shapes, compute)

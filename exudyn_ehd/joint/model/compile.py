@@ -52,11 +52,9 @@ def _groups(bearing: JournalBearing) -> tuple[str, ...]:
     oil = bearing.lubricant
     plain = oil.pressure_law is None and oil.shear_law is None and oil.density_law is None
     plain = plain and all(getattr(bearing, f.name) == f.default for f in fields(bearing) if f.name not in _BESIDE)
-    if not plain or not isinstance(bearing.film, FiniteLength) or bearing.cavitation.line_in_cells:
-        return ()
-    if isinstance(bearing.cavitation, SwiftStieber):
-        return "film", "swift"
-    return ("film", "elrod") if isinstance(bearing.cavitation, ElrodAdams) else ()
+    kinds, closure = ((SwiftStieber, True, "swift"), (ElrodAdams, False, "elrod")), bearing.closure
+    own = [name for kind, line, name in kinds if isinstance(closure, kind) and closure.line_in_cells is line]
+    return ("film", *own) if plain and own and isinstance(bearing.film, FiniteLength) else ()
 
 
 def compile_kernels(model: BearingModel) -> None:

@@ -86,7 +86,7 @@ class ImpedanceModel:
         assert isinstance(bearing.film, ImpedanceMap)
         self.bearing = bearing
         ratio = bearing.length / bearing.journal_radius
-        self.table: ImpedanceTable = impedance_table(bearing.film, bearing.cavitation, ratio)
+        self.table: ImpedanceTable = impedance_table(bearing.film, bearing.closure, ratio)
         R, c, mu = bearing.journal_radius, bearing.radial_clearance, bearing.lubricant.viscosity
         t = self.table
         self.parameters = np.array(

@@ -32,7 +32,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     if effects.liner is not None:
         liner = NonlinearFilmSolver(
             grid,
-            bearing.cavitation,
+            bearing.closure,
             squeeze=bearing.squeeze,
             contact=next(iter(effects.contacts), None),
             limiter=effects.limiter,
@@ -43,7 +43,7 @@ def film_parts(bearing: JournalBearing, effects: Effects, start_angle: float) ->
     solver = liner or film_solver(
         bearing.film,
         grid,
-        bearing.cavitation,
+        bearing.closure,
         squeeze=bearing.squeeze,
         flux_effects=effects.flux,
         density=effects.density,

@@ -304,7 +304,7 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
     in 99 % of films over L/D 0.25 to 2, eccentricity ratios from 0.3 on and 16 directions of the load.
     """
     columns = getattr(bearing.film, "n_theta", None)
-    if columns is None or isinstance(bearing.cavitation, FullSommerfeld):
+    if columns is None or isinstance(bearing.closure, FullSommerfeld):
         return 0.0
     (kxx, kxy), (kyx, kyy) = stiffness
     (cxx, cxy), (cyx, cyy) = damping
@@ -315,7 +315,7 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
     if a == b:
         return math.inf
     grid = 96.0 / columns
-    on_grid = (CLIPPED if bearing.cavitation.clips else ON_GRID) * grid
-    share = IN_CELLS * grid**2 if bearing.cavitation.line_in_cells else on_grid
+    on_grid = (CLIPPED if bearing.closure.clips else ON_GRID) * grid
+    share = IN_CELLS * grid**2 if bearing.closure.line_in_cells else on_grid
     error = share * ((abs(a) + abs(b)) / (a - b)) ** 2
     return error if error < 1.0 else math.inf

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.closures import SwiftStieber
+from exudyn_ehd.film.cavitation.closures import SwiftStieber, place_line
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
@@ -131,7 +131,7 @@ def solve_film(
     4421
     """
     gap = np.asarray(gap, dtype=float)
-    closure = SwiftStieber() if cavitation is None else cavitation
+    closure = place_line(SwiftStieber() if cavitation is None else cavitation, lubricant.density_law is None)
     _check_film(grid, gap, gap_rate, closure, boundary, history, step)
     if lubricant.shear_law is not None:
         raise InputError(
