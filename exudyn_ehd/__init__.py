@@ -81,7 +81,7 @@ from exudyn_ehd.status import (
     ThinFilmWarning,
 )
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 # Imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid.
 _LAZY = {

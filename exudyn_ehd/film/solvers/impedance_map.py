@@ -56,9 +56,8 @@ class ImpedanceMap:
     Parameters
     ----------
     n_theta, n_z, stretch
-        Grid of the film behind the map, as for `FiniteLength`. The force's ripple with the snapping of the rupture line
-        is the map's largest error, so that n_theta is large; with ``SwiftStieber(line_in_cells=True)`` a quarter of it
-        is left (0.11 % instead of 0.44 % at L/D 1).
+        Grid of the film behind the map, as for `FiniteLength`. With the rupture line on its vertices the force's ripple
+        is the map's largest error (0.44 % instead of 0.11 % at L/D 1), so that n_theta is large.
     largest_eccentricity_ratio : float
         End of the table, 0.5 to 0.995.
     n_eccentricity, n_direction : int

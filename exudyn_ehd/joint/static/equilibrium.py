@@ -55,8 +55,8 @@ class EquilibriumResult:
     critical_mass_error : float
         Estimate of its relative error by the place of the rupture line on the grid (`critical_mass_error`); inf where
         the grid does not tell whether the bearing is stable at any mass. Of all results the critical mass feels the
-        grid most: on the default film some 15 % at an eccentricity ratio of 0.7, several times from 0.76 on, with
-        ``SwiftStieber(line_in_cells=True)`` 1 to 5 % and 3 to 20 %.
+        grid most: on the default film 1 to 5 % at an eccentricity ratio of 0.7, 3 to 20 % from 0.76 on, with its
+        rupture line on the vertices some 15 % and several times.
     residual : float
         Largest component of film force + load, divided by the load.
     iterations : int

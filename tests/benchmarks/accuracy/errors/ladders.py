@@ -28,7 +28,7 @@ REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((192, 16), (384, 32), (768, 64))
 EFFECT_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
 QUICK_REFERENCE_GRIDS: tuple[Grid, Grid, Grid] = ((64, 6), (128, 12), (256, 24))
 SWIFT, GUMBEL, SHORT, LONG = "Swift-Stieber", "Gümbel", "short bearing", "long bearing"
-IN_CELLS = SwiftStieber(line_in_cells=True)
+ON_VERTICES = SwiftStieber(line_in_cells=False)
 # The paper prints its tolerance, not its film grid; this one has a point at every node that its bush has on the bore.
 PAPER_GRID, PAPER_TOLERANCE = (80, 8), 1e-5
 CLASSIC = ((PAPER_GRID, (1e-3, PAPER_TOLERANCE, 1e-7)), ((96, 24), (1e-3, 1e-5, 1e-7)), ((192, 48), (1e-5, 1e-7)))
@@ -60,7 +60,7 @@ def film_ladder(
     reduced: bool = True,
     classic: Iterable[tuple[Grid, tuple[float, ...]]] = CLASSIC,
 ) -> tuple[Setting, ...]:
-    """Film models: two-dimensional with two closures and with the rupture line in the cells, short, long, impedance
+    """Film models: two-dimensional with two closures and with the rupture line on vertices, short, long, impedance
     map, and the paper's scheme.
 
     Parameters
@@ -81,10 +81,10 @@ def film_ladder(
     ]
     out += [
         Setting(
-            label=f"line in cells {grid_label(g)}",
-            family="2D, Swift-Stieber, line in cells",
+            label=f"line on vertices {grid_label(g)}",
+            family="2D, Swift-Stieber, line on vertices",
             model=SWIFT,
-            options={"film": _film(g), "cavitation": IN_CELLS},
+            options={"film": _film(g), "cavitation": ON_VERTICES},
         )
         for g in grids
     ]
@@ -135,7 +135,7 @@ def film_references(*, short: bool = True, grids: tuple[Grid, Grid, Grid] = REFE
         )
         return a, b, c
 
-    out = [Reference(model=SWIFT, levels=levels(SWIFT, cavitation=IN_CELLS), ratio=2.0)]
+    out = [Reference(model=SWIFT, levels=levels(SWIFT), ratio=2.0)]
     out.append(Reference(model=GUMBEL, levels=levels(GUMBEL, cavitation=Gumbel()), ratio=2.0))
     if short:
         a, b, c = (

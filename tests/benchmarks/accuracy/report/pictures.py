@@ -27,7 +27,7 @@ LEVELS = (0.1, 0.01, 0.001)
 FLOOR = 1e-12
 FILM_FAMILIES = (
     "2D, Swift-Stieber",
-    "2D, Swift-Stieber, line in cells",
+    "2D, Swift-Stieber, line on vertices",
     "2D, Gümbel",
     "impedance map",
     "short bearing",
@@ -139,7 +139,7 @@ def _ylabel(row: Row) -> str:
 def short_label(row: Row) -> str:
     """Label of a point: what its colour does not tell."""
     text = re.sub(
-        r"^(2D|Gümbel|Swift-Stieber|full Sommerfeld|mass conserving|short|modal|nodal|Newton|SOR|line in cells) (?=\d)",
+        r"^(2D|Gümbel|Swift-Stieber|full Sommerfeld|mass conserving|short|modal|nodal|Newton|SOR|line on vertices) (?=\d)",
         "",
         row.setting,
     )

@@ -1,0 +1,147 @@
+"""The default film against a fine grid: any direction of the journal, L/D 0.25 to 2, eccentricity ratio 0.1 to 0.9.
+
+Entries of K and C are relative, those below W/c in units of W/c. Aligned films repeat after one column, so that
+sixteen directions within one column stand for all.
+"""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.static.equilibrium import whirl_threshold
+
+SPEED = 100.0
+FINE = {0.25: (384, 48), 0.5: (384, 32), 1.0: (384, 32), 2.0: (384, 32)}
+# Largest M c omega^2 / W of a rotor that is told to be stable or not.
+HEAVIEST = 30.0
+ECCENTRICITIES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
+
+# L/D: K and C up to eps 0.8, K and C up to 0.9, whirl ratio, critical mass, load, peak pressure
+LIMITS = {
+    0.25: (0.013, 0.02, 0.016, 0.033, 0.033, 0.06, 0.0025, 0.0055),
+    0.5: (0.01, 0.0105, 0.01, 0.0155, 0.014, 0.027, 0.002, 0.005),
+    1.0: (0.005, 0.006, 0.0105, 0.014, 0.006, 0.01, 0.0015, 0.003),
+    2.0: (0.005, 0.005, 0.009, 0.012, 0.005, 0.006, 0.001, 0.003),
+}
+NAMES = ("K up to 0.8", "C up to 0.8", "K up to 0.9", "C up to 0.9", "whirl ratio", "critical mass", "load", "peak")
+
+
+def film_at(model, eps, direction, tilt=0.0):
+    """Load, peak pressure, K and C in the frame of the load, whirl ratio and critical mass in c omega^2 / W."""
+    c = model.bearing.radial_clearance
+    x, y = math.cos(direction), math.sin(direction)
+    t = tilt * (1.0 - eps) * c / (0.5 * model.bearing.length)
+    evaluation = model.evaluate(np.array([eps * c * x, eps * c * y, t * x, t * y, 0.0, 0.0, 0.0, 0.0, SPEED, 0.0]))
+    force, tangent = evaluation.wrench[:2], evaluation.tangent()
+    load = float(np.hypot(*force))
+    turn = np.array([[-force[0], -force[1]], [force[1], -force[0]]]) / load
+    stiffness, damping = turn @ -tangent[:2, :2] @ turn.T, turn @ -tangent[:2, 4:6] @ turn.T
+    whirl, mass = whirl_threshold(stiffness, damping, SPEED)
+    return SimpleNamespace(
+        load=load,
+        peak=evaluation.quantities()["peak_pressure"],
+        k=stiffness * c / load,
+        c=damping * SPEED * c / load,
+        whirl=whirl,
+        mass=mass * c * SPEED**2 / load,
+    )
+
+
+def _mean(films):
+    return SimpleNamespace(**{key: np.mean([vars(film)[key] for film in films], axis=0) for key in vars(films[0])})
+
+
+def _model(make_bearing, ratio, **options):
+    return build_study_model(make_bearing(ratio, **options), 0.0)
+
+
+def _in_units(found, true):
+    """Largest error of entries, in W/c where they are smaller."""
+    return float(np.max(np.abs(found - true) / np.maximum(1.0, np.abs(true))))
+
+
+def worst_errors(model, fine, eccentricities=ECCENTRICITIES):
+    """Largest errors over directions, in the order of ``NAMES``."""
+    worst = dict.fromkeys(NAMES, 0.0)
+
+    def note(name, error):
+        worst[name] = max(worst[name], float(error))
+
+    width, fine_width = (2.0 * math.pi / m.bearing.film.n_theta for m in (model, fine))
+    for eps in eccentricities:
+        true = _mean([film_at(fine, eps, 0.1 + fine_width * k / 4) for k in range(4)])
+        for k in range(16):
+            found = film_at(model, eps, 0.1 + width * k / 16)
+            reach = "0.8" if eps <= 0.8 else "0.9"
+            note(f"K up to {reach}", _in_units(found.k, true.k))
+            note(f"C up to {reach}", _in_units(found.c, true.c))
+            note("load", abs(found.load / true.load - 1.0))
+            note("peak", abs(found.peak / true.peak - 1.0))
+            if true.mass < HEAVIEST:
+                note("whirl ratio", abs(found.whirl / true.whirl - 1.0))
+                note("critical mass", abs(found.mass / true.mass - 1.0))
+    return worst
+
+
+@pytest.mark.parametrize("ratio", list(LIMITS))
+def test_figures_in_any_direction(make_bearing, measured, ratio):
+    n_theta, n_z = FINE[ratio]
+    fine = _model(make_bearing, ratio, film=ehd.FiniteLength(n_theta=n_theta, n_z=n_z))
+    found = worst_errors(_model(make_bearing, ratio), fine)
+    for name, limit in zip(NAMES, LIMITS[ratio], strict=True):
+        measured(f"L/D {ratio}: {name}", found[name], limit)
+
+
+def test_a_finer_film_for_narrow_bearings(make_bearing, measured):
+    """What `FiniteLength` says of L/D 0.25."""
+    fine = _model(make_bearing, 0.25, film=ehd.FiniteLength(n_theta=384, n_z=48))
+    found = worst_errors(_model(make_bearing, 0.25, film=ehd.FiniteLength(n_theta=128, n_z=8)), fine)
+    for name, limit in zip(NAMES[:4], (0.01, 0.01, 0.015, 0.015), strict=True):
+        measured(name, found[name], limit)
+
+
+@pytest.mark.parametrize("eps", [0.5, 0.8])
+def test_a_path_over_columns_is_smooth(make_bearing, measured, eps):
+    """K and C while the line passes twenty columns, thirty states to each, against a fit without columns."""
+    model = _model(make_bearing, 0.5)
+    places = np.linspace(0.0, 20.0 * 2.0 * math.pi / 96, 601)
+    films = [film_at(model, eps + 0.02 * place / places[-1], place) for place in places]
+    for name in ("k", "c"):
+        values = np.array([vars(film)[name].ravel() for film in films])
+        fit = np.polynomial.chebyshev.Chebyshev
+        smooth = np.array([fit.fit(places, column, 4)(places) for column in values.T]).T
+        measured(name, float(np.max(np.abs(values - smooth) / np.maximum(1.0, np.abs(smooth)))), 0.01)
+
+
+def test_on_vertices_the_place_of_a_column_shows(make_bearing):
+    """What the line inside the cells is for: on the vertices K is off by several per cent in some directions."""
+    fine = _model(make_bearing, 1.0, film=ehd.FiniteLength(n_theta=384, n_z=32))
+    plain = _model(make_bearing, 1.0, cavitation=ehd.SwiftStieber(line_in_cells=False))
+    found = worst_errors(plain, fine, (0.6, 0.8))
+    assert 0.02 < found["K up to 0.8"] < 0.08
+    assert 0.03 < found["C up to 0.8"] < 0.1
+
+
+# Largest error over eps 0.5 to 0.95 in units of the largest entry: load, K, C; by the tilt over what closes the gap
+TILTED = {0.5: (0.003, 0.012, 0.012), 0.9: (0.01, 0.025, 0.025)}
+
+
+@pytest.mark.parametrize("tilt", list(TILTED))
+def test_tilted_journals(make_bearing, measured, tilt):
+    for ratio in (0.5, 1.0):
+        fine = _model(make_bearing, ratio, film=ehd.FiniteLength(n_theta=384, n_z=48))
+        model = _model(make_bearing, ratio)
+        for eps in (0.5, 0.8):
+            true = film_at(fine, eps, 0.1, tilt)
+            for k in range(8):
+                found = film_at(model, eps, 0.1 + 2.0 * math.pi / 96 * k / 8, tilt)
+                errors = [abs(found.load / true.load - 1.0)]
+                errors += [np.max(np.abs(a - b)) / np.max(np.abs(b)) for a, b in ((found.k, true.k), (found.c, true.c))]
+                for name, error, limit in zip(("load", "K", "C"), errors, TILTED[tilt], strict=True):
+                    measured(f"{name} at L/D {ratio}, eps {eps}", float(error), limit)
