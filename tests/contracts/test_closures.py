@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -86,14 +87,25 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
 @every_closure
 @both_films
 def test_warm_start_changes_no_bit(make_bearing, closure, film):
-    bearing = make_bearing(0.8, cavitation=closure(), film=film)
+    """Nor the film by more than rounding where the rupture line lies in the cells."""
+    if closure is ehd.SwiftStieber:
+        compare_warm_with_cold(make_bearing(0.8, film=film), 1e-12)
+        closure = functools.partial(closure, line_in_cells=False)
+    compare_warm_with_cold(make_bearing(0.8, cavitation=closure(), film=film), 0.0)
+
+
+def compare_warm_with_cold(bearing, error):
     rng, warm = np.random.default_rng(5), build_model(bearing)
     for _ in range(60):
         motion = _random_motion(rng, bearing)
         a, b = warm.evaluate(motion), build_model(bearing).evaluate(motion)
-        np.testing.assert_array_equal(a.wrench, b.wrench)
-        np.testing.assert_array_equal(a.tangent(), b.tangent())
-        assert a.quantities() == b.quantities()
+        q, r = (np.array(list(e.quantities().values())) for e in (a, b))
+        for found, expected, left in (
+            (a.wrench, b.wrench, error * np.abs(b.wrench).max()),
+            (a.tangent(), b.tangent(), 1e4 * error * np.abs(b.tangent()).max()),
+            (q, r, 1e3 * error * np.abs(r)),
+        ):
+            assert np.all(np.abs(found - expected) <= left)
 
 
 @every_closure

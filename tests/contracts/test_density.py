@@ -14,7 +14,12 @@ from exudyn_ehd.joint.model.build import build_model
 from tests.sampling import sample
 
 C, STEP = 25e-6, 1e-4
-CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+CLOSURES = [
+    ehd.FullSommerfeld(),
+    ehd.Gumbel(),
+    ehd.SwiftStieber(line_in_cells=False),
+    ehd.ElrodAdams(cavity_pressure=-1e5),
+]
 PRESSURE = [None, ehd.BarusPressure(coefficient=1e-8), ehd.RoelandsPressure(coefficient=2e-8)]
 CARREAU = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6, residual=0.2)
 # with thinning the kernels take longer to compile than these tests to run

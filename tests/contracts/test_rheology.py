@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
+from exudyn_ehd.film.cavitation.closures import place_line
 from exudyn_ehd.film.loads import couette_integral_ratio
 from exudyn_ehd.film.lubricant import pressure_viscosity as viscosity
 from exudyn_ehd.film.reynolds import links
@@ -146,6 +147,7 @@ def test_absent_laws_change_no_bit_and_call_nothing(cavitation, monkeypatch):
 
     A temperature law alone changes nothing either: without a thermal effect the film has the lubricant's temperature.
     """
+    cavitation = place_line(cavitation, False)
     expected = make(cavitation=cavitation, lubricant=ehd.Lubricant(viscosity=0.02))
     bare = type(expected)(expected.bearing, effects=Effects())
 

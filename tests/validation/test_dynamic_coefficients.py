@@ -1,8 +1,8 @@
 """Stiffness, damping and whirl threshold of the plain bearing, L/D = 0.5, against an independent solver (2 %).
 
 Periodic film, Swift-Stieber. x along the load, y 90 degrees ahead in the sense of rotation,
-``K = k c / W``, ``B = b c omega / W``. The rupture line snaps to cells, which perturbs derivatives
-far more than forces: 192 x 16 holds 1 %, the default grid 96 x 10 up to 4 % (and 2 % up to eps 0.6).
+``K = k c / W``, ``B = b c omega / W``. The default grid 96 x 10 holds 2 %, in any direction by
+`test_default_film`.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def test_plain_bearing(table, make_bearing, measured):
             assert math.isinf(mass)
 
 
-@pytest.mark.parametrize(("limit", "largest"), [(0.02, 0.6), (0.05, 0.9)])
+@pytest.mark.parametrize(("limit", "largest"), [(0.01, 0.6), (0.02, 0.9)])
 def test_default_grid(table, make_bearing, measured, limit, largest):
     bearing = make_bearing(0.5)
     for row in (r for r in table("own_dynamic_coefficients") if r["geometry"] == "plain360_periodicLCP"):
@@ -53,9 +53,10 @@ def test_default_grid(table, make_bearing, measured, limit, largest):
 
 # of load, stiffness and damping: up to eps 0.8, up to 0.95, at nine tenths of the tilt that closes the gap
 GRIDS = {
-    (96, 10): ((0.0025, 0.035, 0.07), (0.0075, 0.035, 0.13), (0.035, 0.2, 0.165)),
-    (192, 16): ((0.0005, 0.015, 0.03), (0.0015, 0.015, 0.05), (0.012, 0.08, 0.06)),
+    (96, 10): ((0.002, 0.008, 0.005), (0.004, 0.008, 0.016), (0.029, 0.17, 0.1)),
+    (192, 16): ((0.0005, 0.0025, 0.005), (0.0015, 0.0025, 0.011), (0.011, 0.055, 0.03)),
 }
+NARROW = {(96, 10): ((0.002, 0.015, 0.028), (0.007, 0.015, 0.065), (0.032, 0.17, 0.1))}
 
 
 def _entries(model, clearance, eps, tilt, direction):
@@ -82,7 +83,7 @@ def test_table_of_the_grids(make_bearing, measured, ratio):
     for eps, tilt in ((0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.5, 0.9), (0.8, 0.9), (0.95, 0.9)):
         true = [_entries(fine, c, eps, tilt, 0.1 + 2.0 * math.pi / 960 * k / 4) for k in range(4)]
         mean = [np.mean(values, axis=0) for values in zip(*true, strict=True)]
-        for grid, limits in GRIDS.items():
+        for grid, limits in (GRIDS | (NARROW if ratio < 0.5 else {})).items():
             for k in range(12):
                 found = _entries(models[grid], c, eps, tilt, 0.1 + 2.0 * math.pi / grid[0] * k / 12)
                 limit = limits[2 if tilt else int(eps > 0.8)]
@@ -96,7 +97,7 @@ def test_table_of_the_grids(make_bearing, measured, ratio):
 )
 def test_critical_mass_in_any_direction_of_the_load(make_bearing, measured, sommerfeld, on_the_grid, in_the_cells):
     """The rupture line on the grid's columns moves the threshold as the load turns over one of them."""
-    plain = make_bearing(0.5)
+    plain = make_bearing(0.5, cavitation=ehd.SwiftStieber(line_in_cells=False))
     load = sommerfeld * plain.reference_force(SPEED)
 
     def masses(bearing):
@@ -104,8 +105,7 @@ def test_critical_mass_in_any_direction_of_the_load(make_bearing, measured, somm
         loads = [(load * math.cos(a), load * math.sin(a)) for a in turns]
         return np.array([ehd.equilibrium(bearing, speed=SPEED, load=force).critical_mass for force in loads])
 
-    line = ehd.SwiftStieber(line_in_cells=True)
-    true = masses(make_bearing(0.5, cavitation=line, film=ehd.FiniteLength(n_theta=384, n_z=24))).mean()
-    measured("line in cells", np.abs(masses(make_bearing(0.5, cavitation=line)) / true - 1.0).max(), in_the_cells)
+    true = masses(make_bearing(0.5, film=ehd.FiniteLength(n_theta=384, n_z=24))).mean()
+    measured("line in cells", np.abs(masses(make_bearing(0.5)) / true - 1.0).max(), in_the_cells)
     if on_the_grid is not None:
         measured("line on the grid", np.abs(masses(plain) / true - 1.0).max(), on_the_grid)

@@ -195,8 +195,8 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
     forth = 1 if y.fx[-1, y.fx.shape[1] // 2] >= 0.0 else -1
     factor = work.order, work.old_order, work.number, work.band, work.inv_diag
     line_terms(y.kx, y.b, y.fixed, line.fields)
-    # pressures that are left over in a film at rest lead nowhere
-    was_known = work.warm and work.known and bool(y.b.any())
+    # without a place for a line the film is linear, and in one at rest pressures that are left over lead nowhere
+    was_known = work.warm and work.known and bool(line.f.any())
     if not was_known:
         # the film without its line, and who would leave it
         line.s[:] = 1.0

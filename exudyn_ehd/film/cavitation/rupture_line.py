@@ -102,10 +102,6 @@ class RuptureLine:
         self.own_links = self.exact = False
         self.peak = 0.0
 
-    def found(self) -> np.ndarray:
-        """N (n, m) of the last solution: the oil that appears where the line crosses a cell, a scaled flow."""
-        return np.where(self.s < 1.0, 0.5 * self.f * (1.0 - self.s) ** 2, 0.0)
-
     def gradients(
         self,
         work: Workspace,

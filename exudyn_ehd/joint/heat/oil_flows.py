@@ -91,16 +91,16 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
         heat = sliding power + sum (p - pc) (S - A dm/dt),
 
     which holds none of the powers that store and give back: where nothing changes in time it is `power_loss` plus the
-    work on the oil, to rounding. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows
-    and content are masses. The flow that leaves is that of `Exchange`.
+    work on the oil, to rounding. Oil that cavities find or lose has their pressure and does no work, also where a
+    rupture line crosses a cell. Of a compressible film p is the flow work ``integral of dp / (rho / rho_0)``, flows and
+    content are masses. The flow that leaves is that of `Exchange`.
     """
     s, oil = film.solver, film.parts.compressible
     cavity = film.scales.cavity if math.isfinite(film.scales.cavity) else 0.0
     if oil is not None:
         flows = Exchange(film)
         pressure = oil.flow_work(film.oil.P) - oil.flow_work(np.asarray(cavity))
-        entering = flows.outside if s.line is None else flows.outside + s.line.found()
-        work, leaving = float(np.sum(pressure * (entering - s.area * flows.rate))), flows.leaving
+        work, leaving = float(np.sum(pressure * (flows.outside - s.area * flows.rate))), flows.leaving
     else:
         y, conserves = s.system, s.closure.conserves_mass
         stepped = conserves and y.inverse_step > 0.0 and not s.instant
@@ -117,8 +117,6 @@ def heat_and_leakage(film: SolvedFilm) -> tuple[float, float]:
             y.coefficients,
             cavity,
         )
-        if s.line is not None:
-            work += float(np.sum((film.oil.P - cavity) * s.line.found()))
     power = film.scales.pressure * film.parts.flow_scale
     return sliding_power(film) + power * (work + _end_work(film)), leaving
 

@@ -26,7 +26,12 @@ OIL = ehd.Lubricant(
     density=870.0,
     specific_heat=2000.0,
 )
-CLOSURES = [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+CLOSURES = [
+    ehd.FullSommerfeld(),
+    ehd.Gumbel(),
+    ehd.SwiftStieber(line_in_cells=False),
+    ehd.ElrodAdams(cavity_pressure=-1e5),
+]
 LUMPED = ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01)
 FIELD = ehd.FilmEnergy(supply_temperature=SUPPLY, bush_coefficient=2e3, bush_temperature=310.0)
 THERMAL = pytest.mark.parametrize("thermal", [LUMPED, FIELD], ids=["lumped", "field"])

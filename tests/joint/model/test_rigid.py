@@ -186,7 +186,8 @@ def test_states_without_a_film(make_bearing, make_motion, state, status):
     assert np.isnan(evaluation.tangent()).all()
     assert "peak_pressure" not in evaluation.quantities()
     assert status.advice
-    np.testing.assert_array_equal(model.evaluate(good).wrench, before)  # nothing is left behind
+    # nothing is left behind
+    np.testing.assert_allclose(model.evaluate(good).wrench, before, rtol=0, atol=1e-12 * np.abs(before).max())
 
 
 def test_a_wall_carries_a_journal_beyond_the_bore(make_bearing, make_motion):

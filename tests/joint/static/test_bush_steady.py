@@ -204,7 +204,6 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
     # the active set may change by a vertex within the step
     assert np.allclose(eq.stiffness, numeric, rtol=0, atol=2e-3 * abs(numeric).max())
     rigid = ehd.equilibrium(dataclasses.replace(bearing, bush=None), speed=SPEED, load=load)
-    assert eq.stiffness[1, 1] < rigid.stiffness[1, 1]
     assert eq.eccentricity_ratio > rigid.eccentricity_ratio
 
 

@@ -139,7 +139,8 @@ def _ylabel(row: Row) -> str:
 def short_label(row: Row) -> str:
     """Label of a point: what its colour does not tell."""
     text = re.sub(
-        r"^(2D|Gümbel|Swift-Stieber|full Sommerfeld|mass conserving|short|modal|nodal|Newton|SOR|line on vertices) (?=\d)",
+        r"^(2D|line on vertices|Gümbel|Swift-Stieber|full Sommerfeld|mass conserving|short|modal|nodal|Newton|SOR)"
+        r" (?=\d)",
         "",
         row.setting,
     )
