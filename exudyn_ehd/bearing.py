@@ -55,7 +55,7 @@ class Periodic:
     >>> bearing = ehd.JournalBearing(**b, inlet=ehd.Periodic())
     >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
     >>> round(np.hypot(*film.force[:2]))  # N
-    13599
+    13617
     """
 
 
@@ -72,7 +72,7 @@ class MaximumGap:
     >>> bearing = ehd.JournalBearing(**b, inlet=ehd.MaximumGap())
     >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
     >>> round(np.hypot(*film.force[:2]))  # N
-    13611
+    13629
     """
 
 

@@ -201,7 +201,7 @@ class EquilibriumPoint:
 
     >>> point = ehd.EquilibriumPoint(bearing=bearing, speed=314.0, load=(0.0, -2000.0))
     >>> round(1e6 * point({"radial_clearance": 30e-6})["minimum_gap"], 2)  # um
-    13.91
+    13.92
     """
 
     bearing: JournalBearing
@@ -327,7 +327,7 @@ def parameter_study(
 
     >>> table = ehd.parameter_study(point, {"length": [0.02, 0.03], "speed": [200.0, 400.0]}, show_progress=False)
     >>> (1e6 * table["minimum_gap"]).round(2)
-    array([ 8.29, 11.6 , 13.88, 17.91])
+    array([ 8.3 , 11.6 , 13.88, 17.91])
     """
     lists = _checked_parameters(parameters)
     told = is_shown() if show_progress is None else show_progress

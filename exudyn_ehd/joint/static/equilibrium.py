@@ -195,7 +195,7 @@ def equilibrium(
 
     >>> rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -2000.0))
     >>> round(rest.eccentricity_ratio, 3), round(float(np.degrees(rest.attitude_angle)), 1)
-    (0.454, 58.6)
+    (0.454, 58.5)
     >>> (1e-6 * rest.stiffness).round()  # N/um
     array([[ 175.,   99.],
            [-295.,  181.]])
