@@ -81,7 +81,7 @@ def test_many_random_states_of_swift_stieber(make_bearing, film):
         cold = fresh.evaluate(motion)
         assert warm.status is cold.status is ehd.Status.CONVERGED
         assert max(warm.iterations, cold.iterations) <= 40
-        np.testing.assert_array_equal(warm.wrench, cold.wrench)
+        assert np.abs(warm.wrench - cold.wrench).max() <= 1e-12 * np.abs(cold.wrench).max()
 
 
 @every_closure

