@@ -29,6 +29,7 @@ from exudyn_ehd.film.cavitation.line_steps import (
 )
 from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 
+# Steps of a film, or one for each column if these are more: without a coarser grid a line may have as far to go.
 MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
 # factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
@@ -133,7 +134,8 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
     if approach_film(links, line, active, factor, last, x, lack, p):
         return True, 0, last[0], last[1], lift(order, last[0], p)
     count, width, changes, once_more = FIRST_ROW, np.int64(1), 1, False
-    for step in range(1, MOST_STEPS + 1):
+    most = max(MOST_STEPS, p.shape[0])
+    for step in range(1, most + 1):
         changes += join_film(links, line, active, lack, p)
         first = count
         if changes > 0:
@@ -174,7 +176,7 @@ def solve_line(links, line, fixed, active, factor, last, x, forth, p):
                 once_more = True
             if changes > 0 or stale > REUSABLE:
                 break
-    return False, MOST_STEPS, count, width, 0.0
+    return False, most, count, width, 0.0
 
 
 @njit(cache=True)
@@ -203,6 +205,7 @@ def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> t
     if not was_known:
         # the film without its line, and who would leave it
         line.s[:] = 1.0
+        np.copyto(y.pressure, pc, where=~(work.active | y.fixed))
         solve_on_active(
             y.kx, y.kz, y.b, work.active, work.order, work.old_order, 0, 0, work.number, work.band, work.inv_diag,
             work.unknowns, y.pressure,

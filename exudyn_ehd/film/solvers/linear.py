@@ -101,7 +101,7 @@ class FilmSolver:
                 coarse, closure, circumferential_pressure_flow=circumferential_pressure_flow, squeeze=squeeze
             )
             # of which the sets alone are asked for
-            self.coarse.line = self.coarse.system.line = self.coarse.oil_line = self.coarse.system.oil_line = None
+            self.coarse.oil_line = self.coarse.system.oil_line = None
 
     @property
     def pressure(self) -> np.ndarray:

@@ -210,6 +210,30 @@ def test_what_does_not_know_the_line_is_refused(make_bearing):
     make_bearing(1.0, film=ehd.ShortBearing())
 
 
+@pytest.mark.parametrize("cavity_pressure", [0.0, -5e4])
+def test_a_film_that_forgets_is_found_as_a_first_one_is(make_bearing, cavity_pressure):
+    """As fast, whatever film was there before: its pressures must not stand where the new one has its cavity."""
+    bearing = make_bearing(4.0, cavitation=SwiftStieber(cavity_pressure=cavity_pressure))
+    rng, model, c = np.random.default_rng(8), build_model(bearing), bearing.radial_clearance
+    for _ in range(12):
+        e, a = rng.uniform(0.3, 0.95), rng.uniform(0.0, 2.0 * np.pi)
+        motion = np.array([e * c * np.cos(a), e * c * np.sin(a), 0, 0, 0, 0, 0, 0, rng.choice([-100.0, 100.0]), 0])
+        model.forget()
+        found, first = model.evaluate(motion), build_model(bearing).evaluate(motion)
+        assert found.status is first.status is Status.CONVERGED
+        assert found.iterations == first.iterations <= 25
+
+
+def test_a_fine_film_without_a_coarser_one(make_bearing):
+    """An odd number of intervals has none: the line moves by a column a step, and has 240 to go."""
+    bearing = make_bearing(4.0, film=ehd.FiniteLength(n_theta=480, n_z=9))
+    c = bearing.radial_clearance
+    motion = np.array([0.56 * c, 0.28 * c, 0, 0, 0, 0, 0, 0, 100.0, 0])
+    found = build_model(bearing).evaluate(motion)
+    assert found.status is Status.CONVERGED
+    assert found.iterations > 100
+
+
 CARREAU = ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7)
 PLACES = {
     "plain": ({}, True),
