@@ -53,10 +53,10 @@ def test_default_grid(table, make_bearing, measured, limit, largest):
 
 # of load, stiffness and damping: up to eps 0.8, up to 0.95, at nine tenths of the tilt that closes the gap
 GRIDS = {
-    (96, 10): ((0.002, 0.008, 0.005), (0.004, 0.008, 0.016), (0.029, 0.17, 0.1)),
+    (96, 10): ((0.002, 0.008, 0.005), (0.004, 0.008, 0.016), (0.029, 0.17, 0.11)),
     (192, 16): ((0.0005, 0.0025, 0.005), (0.0015, 0.0025, 0.011), (0.011, 0.055, 0.03)),
 }
-NARROW = {(96, 10): ((0.002, 0.015, 0.028), (0.007, 0.015, 0.065), (0.032, 0.17, 0.1))}
+NARROW = {(96, 10): ((0.002, 0.015, 0.028), (0.007, 0.015, 0.065), (0.032, 0.17, 0.11))}
 
 
 def _entries(model, clearance, eps, tilt, direction):
