@@ -22,7 +22,8 @@ FINE = {0.25: (384, 48), 0.5: (384, 32), 1.0: (384, 32), 2.0: (384, 32)}
 HEAVIEST = 30.0
 ECCENTRICITIES = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9)
 
-# L/D: K and C up to eps 0.8, K and C up to 0.9, whirl ratio, critical mass, load, peak pressure
+# L/D: K and C up to eps 0.8, K and C up to 0.9, whirl ratio, critical mass, load, peak pressure. Measured, plus a tenth
+# or so; second order, so that twice the columns have a quarter.
 LIMITS = {
     0.25: (0.013, 0.02, 0.016, 0.033, 0.033, 0.06, 0.0025, 0.0055),
     0.5: (0.01, 0.0105, 0.01, 0.0165, 0.014, 0.027, 0.002, 0.005),

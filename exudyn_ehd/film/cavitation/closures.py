@@ -139,9 +139,9 @@ class SwiftStieber(SymmetricClosure):
     The standard closure for steadily loaded bearings, and cheaper than `Gumbel` here because only the unbroken film is
     factored.
 
-    Inside the cells of the grid the line lies where it is, and stiffness and damping are of second order, within 1.5 %
+    Inside the cells of the grid the line lies where it is, and stiffness and damping are of second order, within 1.6 %
     in any direction (default grid, eccentricity ratio up to 0.9, L/D from 0.5; 3.5 % at 0.25). On the vertices of the
-    grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
+    grid they are up to 13 % off, in three fifths of the time. Loads differ by 0.1 %.
 
     ``line_in_cells=None`` is inside the cells, but for `ShortBearing`, whose film has no line in theta (see `Gumbel`),
     and for `ElasticLiner` and density laws, with which a few films in a thousand would not converge. There True takes

@@ -161,28 +161,35 @@ def test_parts_of_contact_and_film_add_up():
     assert q["contact_power_loss"] == pytest.approx(-q["contact_torque"] * SPEED, rel=1e-12)
 
 
+@pytest.mark.parametrize("in_cells", [False, True], ids=["on vertices", "in cells"])
 @pytest.mark.parametrize(
     "options", [{"asperity": ASPERITY}, {"contact": ehd.RegularisedWall(onset=1e-6)}], ids=["asperity", "wall"]
 )
-def test_surfaces_that_part_and_meet_again(options):
+def test_surfaces_that_part_and_meet_again(options, in_cells):
     """Nothing of an earlier contact stays behind.
 
-    Every state has the bits of a fresh model, far films those of smooth surfaces; with the rupture line on the
-    vertices, since a film with its line in the cells knows its start by rounding.
+    Every state is that of a fresh model, far films those of smooth surfaces: bit for bit with the rupture line on the
+    vertices, to Newton's rounding with it in the cells (the tangent's factor counts as exact at 1e-9).
     """
-    options = {"cavitation": ehd.SwiftStieber(line_in_cells=False), **options}
+    options = {"cavitation": ehd.SwiftStieber(line_in_cells=in_cells), **options}
+    error = 1e-12 if in_cells else 0.0
+
+    def require_same(a, b):
+        assert np.abs(a.wrench - b.wrench).max() <= error * np.abs(b.wrench).max()
+        assert np.abs(a.tangent() - b.tangent()).max() <= 1e4 * error * np.abs(b.tangent()).max()
+
     touching, apart = at(0.99, tilt=(1e-5, 0.0)), at(0.5, 2.0)
     model = build_model(bearing(**options))
     for motion in (touching, apart, touching, apart):
         fresh = build_model(bearing(**options)).evaluate(motion)
         evaluation = model.evaluate(motion)
-        assert np.array_equal(evaluation.wrench, fresh.wrench)
-        assert np.array_equal(evaluation.tangent(), fresh.tangent())
-        assert evaluation.quantities() == fresh.quantities()
+        require_same(evaluation, fresh)
+        for found, expected in zip(evaluation.quantities().values(), fresh.quantities().values(), strict=True):
+            # small ones are differences of large ones
+            assert found == pytest.approx(expected, rel=1e3 * error, abs=0.0)
         assert (evaluation.quantities()["contact_load"] > 0.0) == (motion is touching)
     assert not model.parts.contacts.P[0].any()
-    smooth = build_model(bearing(cavitation=options["cavitation"])).evaluate(apart)
-    assert np.array_equal(evaluation.wrench, smooth.wrench) and np.array_equal(evaluation.tangent(), smooth.tangent())
+    require_same(evaluation, build_model(bearing(cavitation=options["cavitation"])).evaluate(apart))
 
 
 def test_coulomb_friction_above_the_transition_speed():

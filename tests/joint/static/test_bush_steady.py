@@ -204,6 +204,8 @@ def test_equilibrium_carries_the_load_with_the_condensed_stiffness(make):
     # the active set may change by a vertex within the step
     assert np.allclose(eq.stiffness, numeric, rtol=0, atol=2e-3 * abs(numeric).max())
     rigid = ehd.equilibrium(dataclasses.replace(bearing, bush=None), speed=SPEED, load=load)
+    # by 0.7 and 0.8 % on 192 x 20, with the rupture line inside the cells and on the vertices
+    assert 1.004 < eq.stiffness[1, 1] / rigid.stiffness[1, 1] < 1.012
     assert eq.eccentricity_ratio > rigid.eccentricity_ratio
 
 

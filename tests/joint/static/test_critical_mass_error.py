@@ -54,7 +54,8 @@ def test_the_estimate_is_a_bound_and_not_a_loose_one(closure, place):
 
 
 def test_what_a_result_says(make_bearing):
-    """Nothing where it is sure, a share where it is not, and a word where the grid can't tell."""
+    """Nothing where it is sure, a share where it is not, and a word where the grid can't tell: with the rupture line on
+    the vertices; the default film tells much more."""
     bearing = make_bearing(film=ehd.FiniteLength(), cavitation=ehd.SwiftStieber(line_in_cells=False))
     force = {e: -ehd.steady(bearing, speed=SPEED, eccentricity_ratio=e).force[:2] for e in (0.4, 0.72, 0.77)}
     sure, rough, open_ = (ehd.equilibrium(bearing, speed=SPEED, load=load) for load in force.values())
@@ -64,6 +65,8 @@ def test_what_a_result_says(make_bearing):
     assert f"(within {100.0 * rough.critical_mass_error:.0f} %)" in repr(rough)
     assert math.isinf(open_.critical_mass_error)
     assert "(uncertain)" in repr(open_)
+    default = ehd.equilibrium(make_bearing(film=ehd.FiniteLength()), speed=SPEED, load=force[0.72])
+    assert default.critical_mass_error < 0.5 * rough.critical_mass_error
 
 
 def test_films_without_a_rupture_line_have_none(make_bearing):
