@@ -282,8 +282,8 @@ def check_line(film: Film, closure: Closure, bush: object, oil: Lubricant) -> No
 def goes_in_cells(film: Film, closure: Closure, bush: object, oil: Lubricant) -> bool:
     """Whether the rupture line lies inside the cells where a closure leaves it open.
 
-    On liners and with density laws it does not: of random films 1 in 2400 and 17 in 3200 were not found with it, none on
-    the vertices.
+    On liners and with density laws it does not: of random films 1 in 2400 and 17 in 3200 were not found with it, none
+    on the vertices.
     """
     rarely_fails = isinstance(bush, ElasticLiner) or oil.density_law is not None
     return not rarely_fails and not no_line_with(film, closure, bush, oil)
