@@ -142,6 +142,13 @@ def _axial_metric(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return width, 1.0 / dz
 
 
+def _mirrored(values: np.ndarray, sign: float) -> np.ndarray:
+    """Values (m,) along z that are their own mirror image but for rounding, as ones that are it to the last bit."""
+    image = sign * values[::-1]
+    same = np.allclose(values, image, rtol=0.0, atol=1e-14 * float(np.abs(values).max()))
+    return 0.5 * (values + image) if same else values
+
+
 def _tensor_grid(
     x: np.ndarray,
     z: np.ndarray,
@@ -152,9 +159,10 @@ def _tensor_grid(
     weight_x: np.ndarray | None = None,
     weight_z: np.ndarray | None = None,
 ) -> FilmGrid:
+    z = _mirrored(z, -1.0)
     width_z, link_z = _axial_metric(z)
     weight_x = width_x if weight_x is None else weight_x
-    weight_z = width_z if weight_z is None else weight_z
+    weight_z = width_z if weight_z is None else _mirrored(weight_z, 1.0)
     return FilmGrid(
         x=np.ascontiguousarray(x),
         z=np.ascontiguousarray(z),

@@ -123,6 +123,11 @@ class Workspace:
         self.count = 0
         self.width = 1
 
+    @cached_property
+    def factor(self) -> tuple[np.ndarray, ...]:
+        """Order of the unknowns and of those before, their numbers, and the symmetric factor, for kernels."""
+        return self.order, self.old_order, self.number, self.band, self.inv_diag
+
     def _new_band(self) -> np.ndarray:
         n, m = self.shape
         return np.zeros((n * m, 2 * m + 2 + PAD))

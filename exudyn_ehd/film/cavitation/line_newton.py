@@ -97,8 +97,13 @@ def approach_film(links, line, active, factor, last, x, lack, p):
     join_film(links, line, active, lack, p)
     line_rows(lack, line, number, order, count, active, x)
     size = _size(x, count)
+    old = np.empty(known.size), np.empty(s.size), np.empty_like(free), np.empty_like(places)
     for _ in range(MOST_APPROACHES if count > 0 else 0):
-        old = known.copy(), s.copy(), free.copy(), places.copy()
+        for c in range(s.size):
+            old[0][c], old[1][c], old[2][c] = known[c], s[c], free[c]
+        for q in range(places[-1]):
+            old[3][q] = places[q]
+        old[3][-1] = places[-1]
         solve_ldl_one(band, inv_diag, count, width, x)
         in_line, in_film, _, changes = move_film(line, number, order, count, x, np.int64(1), active, p)
         lacks(links, p, lack)
@@ -108,7 +113,9 @@ def approach_film(links, line, active, factor, last, x, lack, p):
         rate = size / before if before > 0.0 else 0.0
         if not rate < USEFUL:
             for c in range(s.size):
-                known[c], s[c], free[c], places[c] = old[0][c], old[1][c], old[2][c], old[3][c]
+                known[c], s[c], free[c] = old[0][c], old[1][c], old[2][c]
+            for q in range(old[3][-1]):
+                places[q] = old[3][q]
             places[-1] = old[3][-1]
             lacks(links, p, lack)
             break
@@ -190,55 +197,81 @@ def lift(order, count, p):
     return peak
 
 
+@njit(cache=True)
+def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, P):
+    """The film from ``active``, if it ``is_known`` also from its pressures P; returns as `solve_line`.
+
+    ``pc``: the cavity's pressure, of which P is no difference.
+    """
+    kx, kz, b = links
+    order, old_order, number, band, inv_diag = factor
+    f, s, known, free, pressures = line[0], line[2], fixed.reshape(-1), active.reshape(-1), P.reshape(-1)
+    line_terms(kx, b, fixed, line)
+    if not f.any():
+        # in a film at rest pressures that are left over lead nowhere
+        is_known = False
+        for c in range(f.size):
+            free[c] = not known[c]
+    taken = 0
+    while True:
+        if not is_known:
+            # the film without its line, and who would leave it
+            for c in range(f.size):
+                s[c] = 1.0
+                if not (free[c] | known[c]):
+                    pressures[c] = pc
+            solve_on_active(kx, kz, b, active, order, old_order, 0, 0, number, band, inv_diag, x, P)
+            update_active_set(kx, kz, b, fixed, pc, active, P)
+            taken, last = taken + 1, (_NONE, _NONE + 1)
+        p = P - pc
+        ok, steps, count, width, peak = solve_line(links, line, fixed, active, factor, last, x, forth, p)
+        taken += steps
+        if ok or not is_known:
+            break
+        # a start from another state can mislead where the film itself is benign
+        is_known = False
+        for c in range(f.size):
+            free[c] = not known[c]
+    above = p.reshape(-1)
+    for c in range(f.size):
+        if not known[c]:
+            pressures[c] = above[c] + pc
+    return ok, taken, count, width, peak, steps > 0
+
+
 def solve_with_line(system: FilmSystem, line: RuptureLine, work: Workspace) -> tuple[bool, int]:
     """Solve from ``work.active``, and from the last film's pressures if ``work.known``; returns (ok, steps)."""
-    y, pc, steps = system, system.cavity_pressure, 0
+    y, is_known = system, work.warm and work.known
     # the line lies where the flow leads
     forth = 1 if y.fx[-1, y.fx.shape[1] // 2] >= 0.0 else -1
-    factor = work.order, work.old_order, work.number, work.band, work.inv_diag
-    line_terms(y.kx, y.b, y.fixed, line.fields)
-    has_places = bool(line.f.any())
-    was_known = work.warm and work.known and has_places
-    if not has_places:
-        # in a film at rest pressures that are left over lead nowhere
-        np.logical_not(y.fixed, out=work.active)
-    if not was_known:
-        # the film without its line, and who would leave it
-        line.s[:] = 1.0
-        np.copyto(y.pressure, pc, where=~(work.active | y.fixed))
-        solve_on_active(
-            y.kx, y.kz, y.b, work.active, work.order, work.old_order, 0, 0, work.number, work.band, work.inv_diag,
-            work.unknowns, y.pressure,
-        )  # fmt: skip
-        update_active_set(y.kx, y.kz, y.b, y.fixed, pc, work.active, y.pressure)
-        steps = 1
-    p = y.pressure if pc == 0.0 else y.pressure - pc
-    last = (work.count, work.width) if was_known else (0, 1)
-    work.known, count, work.count, work.width, line.peak = solve_line(
-        (y.kx, y.kz, y.b), line.fields, y.fixed, work.active, factor, last, work.unknowns, forth, p
+    last = (work.count, work.width) if is_known else (0, 1)
+    work.known, steps, work.count, work.width, line.peak, line.own_links = find_line(
+        (y.kx, y.kz, y.b),
+        y.fixed,
+        y.cavity_pressure,
+        forth,
+        is_known,
+        line.fields,
+        work.active,
+        work.factor,
+        last,
+        work.unknowns,
+        y.pressure,
     )
-    line.exact, line.own_links = False, count > 0
-    if was_known and not work.known:
-        # a start from another state can mislead where the film itself is benign
-        np.logical_not(y.fixed, out=work.active)
-        ok, more = solve_with_line(system, line, work)
-        return ok, count + more
-    if pc != 0.0:
-        np.copyto(y.pressure, p + pc, where=~y.fixed)
-    return work.known, steps + count
+    line.exact = False
+    return work.known, steps
 
 
 def refine_factor(system: FilmSystem, line: RuptureLine, work: Workspace, least: float) -> None:
     """The factor of the last solution itself, where it is that of a film close by; ``least`` as for `factor_line`.
 
-    What it still lacks of the diagonals is left in ``line.fields.share``, with ``line.exact`` False.
+    What it still lacks of the diagonals is left in ``line.share``, with ``line.exact`` False.
     """
     if line.exact:
         return
-    factor = work.order, work.old_order, work.number, work.band, work.inv_diag
     first = work.count if line.own_links else FIRST_ROW
     links = system.kx, system.kz, system.b
-    line.exact = refine_line(links, line.fields, factor, work.count, work.width, first, line.peak, least)
+    line.exact = refine_line(links, line.fields, work.factor, work.count, work.width, first, line.peak, least)
     line.own_links = True
 
 
@@ -248,7 +281,7 @@ def solve_transposed_with_line(system: FilmSystem, line: RuptureLine, work: Work
     if line.exact:
         solve_ldl(work.band, work.inv_diag, work.count, work.width, rhs)
     else:
-        solve_corrected(work.band, work.inv_diag, work.count, work.width, line.fields.share, rhs)
+        solve_corrected(work.band, work.inv_diag, work.count, work.width, line.share, rhs)
 
 
 @njit(cache=True)

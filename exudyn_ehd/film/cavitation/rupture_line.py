@@ -84,9 +84,10 @@ class RuptureLine:
 
     Attributes
     ----------
-    fields : Line
-    f, k, s : (n, m) arrays
-        Of ``fields``.
+    fields : tuple
+        The arrays of a `Line`.
+    f, k, s, whole, places, share : arrays
+        Of ``fields``, the first three (n, m).
     peak : float
         Largest pressure of the last solution above the cavity's.
     own_links, exact : bool
@@ -96,8 +97,11 @@ class RuptureLine:
     def __init__(self, shape: tuple[int, int]) -> None:
         size = shape[0] * shape[1]
         f, k, s, whole, limit, shift, share = np.zeros((7, size))
-        self.fields = Line(f, k, s, whole, limit, np.zeros(size + 1, dtype=np.int64), shift, share)
+        places = np.zeros(size + 1, dtype=np.int64)
+        # kernels are handed plain tuples, see `exudyn_ehd.film.grid.Mesh`
+        self.fields: tuple[np.ndarray, ...] = tuple(Line(f, k, s, whole, limit, places, shift, share))
         self.f, self.k, self.s = (field.reshape(shape) for field in (f, k, s))
+        self.whole, self.places, self.share = whole, places, share
         s[:] = 1.0
         self.own_links = self.exact = False
         self.peak = 0.0
@@ -113,7 +117,7 @@ class RuptureLine:
         mesh: tuple[np.ndarray, ...],
     ) -> LineGradients:
         """`LineGradients` of the last solution, to the film's ``gaps`` at vertices and links."""
-        places = self.fields.places[: self.fields.places[-1]].copy()
+        places = self.places[: self.places[-1]].copy()
         rows, by = work.number.reshape(-1)[places], np.zeros((8, places.size))
         slopes, by_speed = (None, None) if flux is None else (flux.slopes, flux.by_speed)
         weights = self.weights(places)

@@ -340,7 +340,7 @@ class NonlinearFilmSolver(NewtonFilmSolver):
         gap_columns(w.order, w.count, e.by, e.flows_by_speed(), e.slope_fields, by_rate, by_gap, at, out)
         line = self.line_gradients()
         if line is not None:
-            add_line_columns(line, at, out)
+            add_line_columns(tuple(line), at, out)
 
     def sensitivities(self, lam: np.ndarray) -> Sensitivities:
         """Gradients of the adjoint functionals lam (k, n, m) to the undeformed gaps and rate, and to the speeds."""

@@ -113,7 +113,7 @@ class Balances:
         )
         self.line = true_line(film)
         if self.line is not None:
-            add_line_columns(self.line, p.grid.directions, self.motion)
+            add_line_columns(tuple(self.line), p.grid.directions, self.motion)
 
     def gradient(self, lam: np.ndarray) -> np.ndarray:
         """Minus the gradients (tiles, 10, TILE) of adjoint functionals ``lam`` in tiles to the motion."""

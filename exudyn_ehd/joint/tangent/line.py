@@ -29,7 +29,7 @@ def by_fills(
     out, places = np.zeros((MOTION_SIZE, count)), fills.places
     at = np.zeros_like(places) if rows is None else rows[places]
     weighed = fills._replace(rows=at, by=fills.by * weights.reshape(-1)[places])
-    add_line_columns(weighed, film.grid.directions, out)
+    add_line_columns(tuple(weighed), film.grid.directions, out)
     return out
 
 

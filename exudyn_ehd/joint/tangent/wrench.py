@@ -137,7 +137,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
         line = true_line(film)
         if line is not None:
-            add_line_columns(line, at, out)
+            add_line_columns(tuple(line), at, out)
     return out
 
 

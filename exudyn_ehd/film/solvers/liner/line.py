@@ -65,7 +65,7 @@ class FilmLine(RuptureLine):
 
     def yield_to(self, beta: float, vx: float, width: np.ndarray) -> None:
         """f and k on a liner of scaled compliance ``beta``; ``width`` (m,) of the vertices."""
-        f, k, whole = self.f, self.k, self.fields.whole.reshape(self.f.shape)
+        f, k, whole = self.f, self.k, self.whole.reshape(self.f.shape)
         k += 0.5 * beta * abs(vx) * width
         there = f > 0.0
         k_there, gap = np.where(there, k, 1.0), 0.5 * (self.gaps[1] + np.roll(self.gaps[1], 1, axis=0))
@@ -80,7 +80,7 @@ class FilmLine(RuptureLine):
     def settle(self, active: np.ndarray) -> None:
         """The line of the film that is solved, among its ``active`` vertices (n, m)."""
         self.s[~active] = 1.0
-        places, s = self.fields.places, self.fields.s
+        places, s = self.places, self.s.reshape(-1)
         found = np.flatnonzero(s < 1.0)
         places[: found.size], places[-1] = found, found.size
 
@@ -116,7 +116,7 @@ class FilmLine(RuptureLine):
         line = super().gradients(work, (self.gaps[0], self.gaps[1]), self.flux, speeds, flow_x, squeeze, mesh)
         if self.yields is not None:
             _, _, by_gap, by_speed = self.yields.reshape(4, -1)[:, line.places]
-            line.by[:2] -= 0.25 * (1.0 - self.fields.s[line.places]) * by_gap
+            line.by[:2] -= 0.25 * (1.0 - self.s.reshape(-1)[line.places]) * by_gap
             line.by[6] += self.weights(line.places)[1] * by_speed
         return line if self.chain is None else undeformed(line, self.chain)
 
