@@ -7,7 +7,8 @@ prescribed pressure is therefore required: the line of maximum gap or an axial g
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +30,8 @@ from exudyn_ehd.film.supply.rows import column_of_hole, supply_rows
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
 from exudyn_ehd.status import InputError, Status, require_integer, require_number
 
+# Columns of a film that leaves them to the bearing.
+FEWEST_COLUMNS, MOST_COLUMNS = 96, 176
 # Bytes of a film's banded matrix.
 LARGEST_MATRIX = 4e9
 
@@ -62,14 +65,15 @@ class FiniteLength:
     192 x 16  from 0.125  0.25 %     0.5 %         1.1 %         1.1 %, 6 %, 3.5 %
     ========  ==========  =========  ============  ============  ======================
 
-    Of every single entry that is larger than W/c the error is below 1.6 % on 96 x 10 from L/D 0.5 on, up to eps 0.9;
-    at L/D 0.25 it takes 128 x 8. On vertices (`SwiftStieber(line_in_cells=False)`) stiffness is up to 8 % off and
-    damping 13 %, by where the rupture line lies between two columns.
+    On the default grid, of an aligned journal in any direction, L/D 0.25 to 2 and eps 0.1 to 0.9: entries of K and C
+    within 1 % up to eps 0.8 and 1.5 % at 0.9 (of W/c, where they are smaller), critical mass 2 %, whirl ratio 1 %, load
+    0.2 %, peak pressure 0.5 %. On vertices (`SwiftStieber(line_in_cells=False)`) stiffness is up to 8 % off and damping
+    13 %, by where the rupture line lies between two columns.
 
     Parameters
     ----------
-    n_theta : int
-        Vertices around the circumference, at least 16.
+    n_theta : int or None
+        Vertices around the circumference, at least 16. None: `columns_for` the bearing's L/D.
     n_z : int
         Intervals along the bearing, at least 4.
     stretch : float
@@ -78,13 +82,15 @@ class FiniteLength:
     Examples
     --------
     >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.Lubricant(viscosity=0.02))
+    >>> ehd.JournalBearing(**b).sized_film
+    FiniteLength(n_theta=112, n_z=10, stretch=0.75)
     >>> bearing = ehd.JournalBearing(**b, film=ehd.FiniteLength(n_theta=48, n_z=6))
     >>> film = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8)
     >>> round(np.hypot(*film.force[:2]))  # N
     13626
     """
 
-    n_theta: int = 96
+    n_theta: int | None = None
     n_z: int = 10
     stretch: float = 0.75
 
@@ -92,6 +98,27 @@ class FiniteLength:
 
     def __post_init__(self) -> None:
         _check_grid(self)
+
+
+def columns_for(ratio: float) -> int:
+    """Vertices around the circumference for a bearing of this L/D.
+
+    96 from 0.65 on, ``8 ceil(9 (D/L)^0.62)`` below, up to 176: 112 at 0.5, 176 from 0.25 down. At the rupture line
+    pressure changes within a part of the bearing's length, which takes more columns the narrower it is. The fewest
+    that hold what `FiniteLength` says, of the multiples of 8 at L/D 0.25, 0.35, 0.5 and 0.7, lie up to a sixth below.
+    """
+    return min(max(FEWEST_COLUMNS, 8 * math.ceil(9.0 * ratio**-0.62)), MOST_COLUMNS)
+
+
+def sized(film: Film, ratio: float) -> Film:
+    """A film model with its columns, where it leaves them to the bearing's L/D."""
+    is_open = isinstance(film, FiniteLength) and film.n_theta is None
+    return replace(film, n_theta=columns_for(ratio)) if is_open else film
+
+
+def columns_of(film: Film, ratio: float) -> int:
+    """Vertices around the circumference of a film on a bearing of this L/D."""
+    return columns_for(ratio) if film.n_theta is None else film.n_theta
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -126,14 +153,16 @@ class ShortBearing:
 
 
 def _check_grid(film: FiniteLength | ShortBearing) -> None:
-    name = type(film).__name__
-    require_integer(f"{name}.n_theta", film.n_theta, at_least=16, hint="96 is a good start.")
+    name, columns = type(film).__name__, MOST_COLUMNS
+    if film.n_theta is not None:
+        columns = film.n_theta
+        require_integer(f"{name}.n_theta", columns, at_least=16, hint="96 is a good start.")
     require_integer(f"{name}.n_z", film.n_z, at_least=4, hint="10 is a good start.")
     coupled = film.n_z if film.circumferential_pressure_flow else 1
     # Python's integers: neither numpy's nor floats hold any product
-    if 16 * int(film.n_theta) * int(film.n_z) * int(coupled) > LARGEST_MATRIX:
+    if 16 * int(columns) * int(film.n_z) * int(coupled) > LARGEST_MATRIX:
         raise InputError(
-            f"{name}: a grid of {film.n_theta} x {film.n_z} takes more than {LARGEST_MATRIX:g} bytes for one matrix; "
+            f"{name}: a grid of {columns} x {film.n_z} takes more than {LARGEST_MATRIX:g} bytes for one matrix; "
             "192 x 16 is fine."
         )
     require_number(f"{name}.stretch", film.stretch, at_least=0.0, at_most=0.95, hint="0.75 suits most bearings.")
@@ -304,13 +333,14 @@ def film_grid(
     """
     if isinstance(film, LongBearing):
         return long_bearing_grid(radius, length, film.n_theta, film.n_z, start_angle=start_angle, open_ring=open_ring)
+    columns = columns_of(film, 0.5 * length / radius)
     return bearing_grid(
         radius,
         length,
-        film.n_theta,
+        columns,
         film.n_z,
         stretch=film.stretch,
-        start_angle=start_angle + column_of_hole(supply, film.n_theta),
+        start_angle=start_angle + column_of_hole(supply, columns),
         open_ring=open_ring,
         rows=supply_rows(placed(supply, length), radius, length, film.n_z, film.stretch),
     )

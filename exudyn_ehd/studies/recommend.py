@@ -354,7 +354,7 @@ def _errors(
 
 def _words(bearing: JournalBearing) -> str:
     """The setting of a bearing in words."""
-    film = bearing.film
+    film = bearing.sized_film
     grid = f"{film.n_theta} x {film.n_z}"
     if isinstance(film, ShortBearing):
         return f"short bearing {grid}"

@@ -69,13 +69,14 @@ def inertia(case: Case) -> Finding:
 
 
 def _grid(case: Case, name: str, field: str, effect: str, narrows: bool = False) -> Finding | None:
-    film = case.bearing.film
+    film = case.bearing.sized_film
     if isinstance(film, ImpedanceMap):
         return None
     value, size = case.smallest(field), getattr(film, name)
     sizes = {"n_theta": film.n_theta, "n_z": film.n_z}
+    default = replace(case.bearing, film=FiniteLength()).sized_film
     needed = LIMITS[effect].value
-    plain = not narrows and value > SURELY_FINE * needed and size >= getattr(FiniteLength(), name, 0)
+    plain = not narrows and value > SURELY_FINE * needed and size >= getattr(default, name)
     change = None if plain else case.films.change(refined(**sizes | {name: 2 * size}))
     indicator = f"intervals across the peak at half its height, {name} = {size}"
     found = replace(finding(effect, indicator, value, None), change=change)
@@ -118,11 +119,11 @@ def supply_resolution(case: Case) -> Finding | None:
     if not areas or not isinstance(film, FiniteLength):
         return None
     widths = [a.diameter / b.journal_radius if isinstance(a, Hole) else a.width_angle for a in areas]
-    n_theta, n_z = 2 * film.n_theta, 2 * film.n_z
+    n_theta, n_z = 2 * b.columns, 2 * film.n_z
     return finding(
         "supply resolution",
         "intervals around on the narrowest area of supply",
-        min(widths) * film.n_theta / (2.0 * math.pi),
+        min(widths) * b.columns / (2.0 * math.pi),
         None,
         mattering=f"the areas of supply are coarse on this grid: n_theta={n_theta}, n_z={n_z}.",
         change=case.films.change(refined(n_theta, n_z)),

@@ -50,7 +50,7 @@ class FilmFields(JointFilm, FilmPictures):
 
     >>> film = joint.film()
     >>> film.pressure.shape, film.time
-    ((96, 11), 0.002)
+    ((112, 11), 0.002)
     >>> round(float(1e-6 * film.pressure.max()), 2)  # MPa
     0.77
     """

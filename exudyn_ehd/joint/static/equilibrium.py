@@ -195,7 +195,7 @@ def equilibrium(
 
     >>> rest = ehd.equilibrium(bearing, speed=314.0, load=(0.0, -2000.0))
     >>> round(rest.eccentricity_ratio, 3), round(float(np.degrees(rest.attitude_angle)), 1)
-    (0.454, 58.5)
+    (0.454, 58.6)
     >>> (1e-6 * rest.stiffness).round()  # N/um
     array([[ 175.,   99.],
            [-295.,  181.]])
@@ -303,7 +303,7 @@ def critical_mass_error(bearing: JournalBearing, stiffness: np.ndarray, damping:
 
     in 99 % of films over L/D 0.25 to 2, eccentricity ratios from 0.3 on and 16 directions of the load.
     """
-    columns = getattr(bearing.film, "n_theta", None)
+    columns = getattr(bearing.sized_film, "n_theta", None)
     if columns is None or isinstance(bearing.closure, FullSommerfeld):
         return 0.0
     (kxx, kxy), (kyx, kyy) = stiffness

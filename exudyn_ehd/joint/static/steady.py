@@ -83,7 +83,7 @@ class SteadyResult(Film, FilmPictures):
     >>> print(film)
     <SteadyResult: load 13.6 kN, minimum film thickness 4.96 µm, peak pressure 39.8 MPa, power loss 346 W>
     >>> film.pressure.shape, round(1e-6 * film.peak_pressure, 1)  # [theta, z], MPa
-    ((96, 11), 39.8)
+    ((112, 11), 39.8)
     >>> figure = film.plot_pressure()
     """
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.rupture_line import LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
 
@@ -49,7 +49,7 @@ class FilmLine(RuptureLine):
 
     def __init__(self, shape: tuple[int, int]) -> None:
         super().__init__(shape)
-        a = self.fields
+        a = Line(*self.fields)
         self.state = a.f, a.k, a.s, a.whole, a.shift, a.share
         self.gaps = np.ones((2, *shape))
         self.flux: LinkFlux | None = None
