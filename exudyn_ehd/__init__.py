@@ -87,6 +87,9 @@ __version__ = "0.2.0"
 _LAZY = {
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
+    "SphericalBearing": "joint.spherical.bearing",
+    "SphericalResult": "joint.spherical.steady",
+    "steady_spherical": "joint.spherical.steady",
     "File": "coupling.record.on_disk",
     "Free": "coupling.api",
     "Held": "coupling.api",
@@ -167,6 +170,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
     from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
+    from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+    from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
@@ -282,6 +287,8 @@ __all__ = [
     "SolveDynamic",
     "SolveDynamicSparse",
     "SolveStatic",
+    "SphericalBearing",
+    "SphericalResult",
     "StarvationWarning",
     "Status",
     "SteadyResult",
@@ -314,6 +321,7 @@ __all__ = [
     "slider_grid",
     "solve_film",
     "steady",
+    "steady_spherical",
     "stribeck",
     "varied",
 ]

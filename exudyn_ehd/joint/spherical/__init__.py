@@ -1,0 +1,9 @@
+"""A ball in its socket as a pure function of its motion.
+
+Module map
+----------
+bearing  `SphericalBearing`, what a scene writes
+patch    the film grid of a patch of a sphere
+model    loads on the ball and their exact tangent
+steady   prescribed position
+"""

@@ -1,0 +1,119 @@
+"""`SphericalBearing`: the description of a ball in an oil-filled socket, and its checks."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
+from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_type, require_vector
+
+# Least width of a patch, and least colatitude of its open end from either pole, rad.
+LEAST_ANGLE = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class SphericalBearing:
+    """A ball in a socket with oil between them, for `CreateLubricatedSphericalJoint` and `steady_spherical`.
+
+    The socket is the patch of a sphere between two circles about its axis, the joint's z. It starts at z: an angle of 0
+    to pi/2 is a hemispherical cup that carries along z; beyond pi/2 it holds the ball both ways. Its edges are open to
+    the ambient pressure. Equations and assumptions: `exudyn_ehd.joint.spherical.model`.
+
+    Parameters
+    ----------
+    ball_radius : float
+        R, m.
+    radial_clearance : float
+        c: radius of the socket less that of the ball, m.
+    lubricant : Lubricant
+        Of constant viscosity: a temperature law gives it at the lubricant's temperature, other laws are refused.
+    socket_angles : (float, float)
+        Colatitudes from the socket's axis at which the patch begins and ends, rad; 0 for a patch that is closed there.
+    n_phi : int
+        Vertices around the axis, at least 16.
+    n_chi : int
+        Intervals from edge to edge (of a closed patch from the pole to the edge), at least 4.
+    cavitation : SwiftStieber, Gumbel or FullSommerfeld
+        Without a line inside the cells. Its ``cavity_pressure`` must not be above the ambient pressure.
+    contact : RegularisedWall or None
+        Takes over before the gap vanishes.
+
+    Raises
+    ------
+    InputError
+        For values that can't be meant, laws of the oil and closures that this film does not carry.
+
+    Examples
+    --------
+    >>> ball = ehd.SphericalBearing(
+    ...     ball_radius=0.015,
+    ...     radial_clearance=30e-6,
+    ...     lubricant=ehd.Lubricant(viscosity=0.1),
+    ...     socket_angles=(0.0, 2.0),
+    ...     contact=ehd.RegularisedWall(onset=2e-6),
+    ... )
+    """
+
+    ball_radius: float
+    radial_clearance: float
+    lubricant: Lubricant
+    socket_angles: tuple[float, float] = (0.0, 0.5 * math.pi)
+    n_phi: int = 48
+    n_chi: int = 16
+    cavitation: SwiftStieber | Gumbel | FullSommerfeld = SwiftStieber()
+    contact: RegularisedWall | None = None
+
+    # what a joint's watches ask of every bearing
+    bush = thermal = asperity = roughness = wear = None
+    profiles = supply = ()
+
+    def __post_init__(self) -> None:
+        name = "SphericalBearing"
+        require_numbers(self, above=0.0, ball_radius="m", radial_clearance="m")
+        if not self.radial_clearance <= 0.05 * self.ball_radius:
+            raise InputError(
+                f"{name}.radial_clearance must be at most a twentieth of the ball's radius {self.ball_radius:g} m, for "
+                f"which thin films are, got {self.radial_clearance!r}; if yours is diametral, halve it."
+            )
+        require_type(f"{name}.lubricant", self.lubricant, Lubricant)
+        for law in ("pressure_law", "shear_law", "density_law"):
+            if getattr(self.lubricant, law) is not None:
+                raise InputError(
+                    f"{name}.lubricant: a spherical film has no {law}, got {type(getattr(self.lubricant, law)).__name__}"
+                    f"; give a Lubricant without it, with the viscosity at the film's state."
+                )
+        first, last = require_vector(f"{name}.socket_angles", self.socket_angles, 2, "rad").tolist()
+        end = math.pi - LEAST_ANGLE
+        if not (first == 0.0 or LEAST_ANGLE <= first) or not first + LEAST_ANGLE <= last <= end:
+            raise InputError(
+                f"{name}.socket_angles must be (begin, end) in rad with begin = 0 or >= {LEAST_ANGLE}, end >= begin + "
+                f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
+            )
+        object.__setattr__(self, "socket_angles", (first, last))
+        require_integer(f"{name}.n_phi", self.n_phi, at_least=16)
+        require_integer(f"{name}.n_chi", self.n_chi, at_least=4)
+        require_type(f"{name}.cavitation", self.cavitation, SwiftStieber, Gumbel, FullSommerfeld)
+        if self.cavitation.line_in_cells or self.cavitation.cavity_pressure > 0.0:
+            raise InputError(
+                f"{name}.cavitation must have line_in_cells=False (its line lies on vertices) and a cavity_pressure "
+                f"<= 0 Pa, that of the open edges, got {self.cavitation!r}."
+            )
+        object.__setattr__(self, "cavitation", place_line(self.cavitation, False))
+        require_type(f"{name}.contact", self.contact, RegularisedWall, type(None))
+        if self.contact is not None:
+            require_number(
+                f"{name}.contact: RegularisedWall.onset", self.contact.onset, "m", below=self.radial_clearance
+            )
+
+    @property
+    def journal_radius(self) -> float:
+        """The ball's radius, by the name that it has in cylindrical bearings, m."""
+        return self.ball_radius
+
+    @property
+    def length(self) -> float:
+        """Length of a journal of the same radius and projected area, pi R / 2, m."""
+        return 0.5 * math.pi * self.ball_radius

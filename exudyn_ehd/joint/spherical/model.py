@@ -1,0 +1,309 @@
+"""One ball in its socket as a pure function of their relative motion.
+
+Frame: the socket's, origin O in its centre, z its axis; n is the direction from O to a point of the socket. With the
+ball's centre at e, its velocity v and its angular velocity w, both as seen from the socket, the gap is
+
+    h = c - e n,        dh/dt = -v n,
+
+and the mean velocity of the surfaces w x R n / 2, which has no divergence on the sphere. Reynolds' equation then is
+
+    div(h^3 / (12 mu) grad p) = w x R n / 2 grad h + dh/dt = -n u,        u = v + e x w / 2 :
+
+in a frame that turns with half the relative angular velocity there is squeeze alone. The edges have p = 0. Only what is
+relative counts: a motion of ball and socket together changes none of it. Left out, as in every Reynolds film, is what
+is c / R of what is there: the ball's translation along the film in the flow, and the pressure's shear forces.
+
+Loads on the ball, N and A the integrals of n and of 1 over the control volumes, f = 12 mu R^4 / c^2, P = p c^2 / (12 mu
+R^2), H = h / c:
+
+    pressure    F_p = -f sum P N, through the ball's centre
+    Couette     F_c = -mu R^2 / c (K v + R w x a),  T_c = -mu R^2 / c (R a x v + R^2 K w),
+                a = sum n / H dA,  K = sum (1 - n n) / H dA : a symmetric, dissipative pair
+    Poiseuille  T_p = (f / 2) e x sum P N: of the shear -(h / 2) grad p by parts. The socket has the same torque about
+                its own centre, so that both halves of e x F_p are found and all moments cancel.
+
+The wrench is F = F_p + F_c and the moment about O, T_c + T_p + e x F; the socket gets minus that about O. With the same
+N in loads and sources, work and heat match link by link: -(F v + T w) = sum H^3 (dP)^2 + Couette's heat >= 0.
+
+Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg, as in Closed gaps of
+`exudyn_ehd.film.loads`; what the slopes leave of the pressure goes from solid to solid, without a torque.
+
+The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.patch`: with
+-N u / c for the storage of a control volume it needs no other input. Second order in both directions.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.joint.solved_film import History
+from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+from exudyn_ehd.joint.spherical.patch import PAIRS, sphere_patch
+from exudyn_ehd.status import Status
+
+PLACE, VELOCITY, SPIN = slice(0, 3), slice(4, 7), slice(8, 11)
+SIZE = 11
+"""Motion: place (m), 0, velocity (m/s), 0, angular velocity (rad/s); `exudyn_ehd.joint.step_rates` knows four places
+and four rates."""
+
+
+def skew(v: np.ndarray) -> np.ndarray:
+    """Matrix (3, 3) of the cross product with v (3,)."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BallFilm:
+    """A solved film; fields (n, m).
+
+    Attributes
+    ----------
+    pressure : Pa; gap of the film : m; unbroken : bool
+    wrench : (6,) array
+        On the ball, moment about O.
+    torque : (3,) array
+        On the ball about its centre, N m.
+    contact : (3,) array
+        Force of the wall in ``wrench``, N.
+    contact_pressure : largest, Pa
+    drag : (6, 6) array
+        Force and torque of the Couette shear by velocity and angular velocity.
+    stored_power : W, taken up by the wall
+    """
+
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    wrench: np.ndarray
+    torque: np.ndarray
+    contact: np.ndarray
+    contact_pressure: float
+    drag: np.ndarray
+    stored_power: float
+
+
+@dataclass(eq=False)
+class SphericalEvaluation:
+    """One film evaluation; as `exudyn_ehd.coupling.contract.Evaluation`.
+
+    Attributes
+    ----------
+    status : Status
+    motion : (11,) array
+    wrench : (6,) array
+        On the ball, moment about O; nan without a film.
+    minimum_gap : float
+        Of the rigid surfaces, exact, m.
+    film : BallFilm or None
+    """
+
+    status: Status
+    motion: np.ndarray
+    wrench: np.ndarray
+    minimum_gap: float
+    film: BallFilm | None = field(repr=False)
+    model: SphericalModel = field(repr=False)
+    serial: int = field(repr=False)
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 11), exact for the current active set; until the model's next evaluation."""
+        if self.film is None:
+            return np.full((6, SIZE), np.nan)
+        self._require_current()
+        return self.model.tangent(self.motion, self.film)
+
+    def quantities(self) -> dict[str, float]:
+        """Scalars of this state: m, Pa, N m, W, N."""
+        f = self.film
+        if f is None:
+            return {"minimum_gap": self.minimum_gap}
+        power = -float(f.wrench[:3] @ self.motion[VELOCITY] + f.torque @ self.motion[SPIN])
+        return {
+            "minimum_gap": self.minimum_gap,
+            "peak_pressure": float(f.pressure.max()),
+            "friction_torque": float(np.linalg.norm(f.torque)),
+            "power_loss": power - f.stored_power,
+            "contact_load": float(np.linalg.norm(f.contact)),
+            "stored_power": f.stored_power,
+        }
+
+    def history(self) -> History | None:
+        """None: the film remembers nothing."""
+        return None
+
+    def _require_current(self) -> None:
+        if self.serial != self.model.serial:
+            raise RuntimeError("Evaluation: the model has evaluated another state since; evaluate this state again.")
+
+
+class SphericalModel:
+    """Film between a rigid ball and a rigid socket.
+
+    Parameters
+    ----------
+    bearing : SphericalBearing
+    """
+
+    remembers = needs_spin = flexible = False
+
+    def __init__(self, bearing: SphericalBearing) -> None:
+        self.bearing = b = bearing
+        mu, R, c = b.lubricant.viscosity, b.ball_radius, b.radial_clearance
+        self.patch = p = sphere_patch(R, b.socket_angles, b.n_phi, b.n_chi)
+        self.grid: FilmGrid = p.grid
+        self.solver = FilmSolver(p.grid, b.cavitation)
+        self.limiter = None if b.contact is None else WallContact(b.contact, c)
+        self.pressure_scale = 12.0 * mu * R**2 / c**2
+        self.force_scale, self.shear_scale = self.pressure_scale * R**2, mu * R**2 / c
+        # over control volumes: normals, and storage of a velocity (m/s) per area of the grid
+        self._vector = p.vector.reshape(3, -1)
+        self._moments = np.concatenate([p.area[None], p.vector, p.tensor]).reshape(10, -1)
+        self._storage = -(p.vector / (c * p.grid.area)).reshape(3, -1)
+        self._gap_slope, self._link_slope = (-n.reshape(3, -1) / c for n in (p.normals, p.link_normals))
+        self._drag = -self.shear_scale * _drag_of_moments(R)
+        shape = p.grid.shape
+        self._slope, self._bend, self._face_slope = np.ones(shape), np.zeros(shape), np.ones(shape)
+        self._wall, self._wall_slope = np.zeros(shape), np.zeros(shape)
+        self._limits = False
+        self.serial = 0
+
+    def forget(self) -> None:
+        """Drop the warm start. It never changes a result, only the time it takes."""
+        self.solver.forget()
+
+    def initial_history(self, motion: np.ndarray) -> History | None:
+        """None: the film remembers nothing."""
+        return None
+
+    def smallest_gap(self, place: np.ndarray) -> float:
+        """Smallest gap (m) of the rigid surfaces for the ball's centre at ``place`` (3,), exact."""
+        x, y, z = place.tolist()
+        across = math.hypot(x, y)
+        first, last = self.bearing.socket_angles
+        nearest = min(max(math.atan2(across, z), first), last)
+        return self.bearing.radial_clearance - (across * math.sin(nearest) + z * math.cos(nearest))
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> SphericalEvaluation:
+        """Film at a motion (11,): place, 0, velocity, 0, angular velocity of the ball against the socket."""
+        motion = np.array(motion, dtype=float)
+        self.serial += 1
+        if not np.isfinite(motion.sum()):
+            return self._without(Status.NOT_FINITE, motion, math.nan)
+        gap = self.smallest_gap(motion[PLACE])
+        if not gap > 0.0 and self.limiter is None:
+            return self._without(Status.NO_FILM, motion, gap)
+        self._set_gap(motion)
+        s = self.solver
+        s.system.pressure[self.grid.fixed] = s.system.linear_pressure[self.grid.fixed] = 0.0
+        status, _ = s.solve(0.0, 0.0, self.bearing.cavitation.cavity_pressure / self.pressure_scale)
+        if status is not Status.CONVERGED or not np.isfinite(s.pressure.sum()):
+            return self._without(Status.NOT_CONVERGED, motion, gap)
+        film = self._loads(motion)
+        return SphericalEvaluation(status, motion, film.wrench, gap, film, self, self.serial)
+
+    def _without(self, status: Status, motion: np.ndarray, gap: float) -> SphericalEvaluation:
+        return SphericalEvaluation(status, motion, np.full(6, np.nan), gap, None, self, self.serial)
+
+    def _set_gap(self, motion: np.ndarray) -> None:
+        """Gap and storage of the film into the solver's buffers; wall pressures and the limiter's slopes."""
+        s, place = self.solver, motion[PLACE]
+        s.H[:] = 1.0 + (place @ self._gap_slope).reshape(s.H.shape)
+        s.HF[:] = 1.0 + (place @ self._link_slope).reshape(s.H.shape)
+        entrained = motion[VELOCITY] + 0.5 * skew(place) @ motion[SPIN]
+        s.H_t[:] = (entrained @ self._storage).reshape(s.H.shape)
+        wall = self.limiter
+        limits = wall is not None and bool(min(s.H.min(), s.HF.min()) < wall.limits_below)
+        if wall is not None and limits:
+            wall.pressure(s.H, self._wall, self._wall_slope)
+            ones = np.ones_like(s.H)
+            wall.limit(s.H, s.HF, ones, self._slope, self._bend, self._face_slope)
+            self._rate = s.H_t.copy()
+            s.H_t *= self._slope
+        elif self._limits:
+            self._wall[:] = self._wall_slope[:] = self._bend[:] = 0.0
+            self._slope[:] = self._face_slope[:] = 1.0
+        self._limits = limits
+
+    def _share(self) -> np.ndarray:
+        """Share (n m,) of a full film's Couette shear."""
+        s = self.solver
+        return np.where(s.work.active | self.grid.fixed, 1.0, self.bearing.cavitation.cavity_shear).ravel()
+
+    def _loads(self, motion: np.ndarray) -> BallFilm:
+        s, R2, cross = self.solver, self.bearing.ball_radius**2, skew(motion[PLACE])
+        velocity, P = motion[VELOCITY], s.pressure
+        normal = self._vector @ P.ravel()
+        pulled = normal if not self._limits else self._vector @ (P * self._slope).ravel()
+        contact = -R2 * (self._vector @ self._wall.ravel())
+        drag = (self._drag @ (self._moments @ (self._share() / s.H.ravel()))).reshape(6, 6)
+        loads = drag @ np.concatenate([velocity, motion[SPIN]])
+        force = loads[:3] - self.force_scale * normal + contact
+        torque = loads[3:] + 0.5 * self.force_scale * cross @ pulled
+        return BallFilm(
+            pressure=P * self.pressure_scale,
+            gap=s.H * self.bearing.radial_clearance,
+            unbroken=s.work.active | self.grid.fixed,
+            wrench=np.concatenate([force, torque + cross @ force]),
+            torque=torque,
+            contact=contact,
+            contact_pressure=float(self._wall.max()),
+            drag=drag,
+            stored_power=float((self.force_scale * (normal - pulled) - contact) @ velocity),
+        )
+
+    def tangent(self, motion: np.ndarray, film: BallFilm) -> np.ndarray:
+        """d wrench / d motion (6, 11) for the film that the solver holds."""
+        s, w = self.solver, self.solver.work
+        cross, velocity, spin = skew(motion[PLACE]), motion[VELOCITY], motion[SPIN]
+        force, R2 = self.force_scale, self.bearing.ball_radius**2
+        # derivatives of normal and pulled (3 rows each) by adjoint solves
+        rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * self._slope.ravel()])
+        at = w.order[: w.count]
+        sides = s.adjoint(np.ascontiguousarray(rows[:, at] * w.active.ravel()[at]))
+        found = s.sensitivities(sides)
+        k, by_rate = len(rows), found.rate * self._slope
+        by_gap = found.cell if not self._limits else found.cell * self._slope + found.rate * self._bend * self._rate
+        by_link = found.face * self._face_slope
+        by_velocity = by_rate.reshape(k, -1) @ self._storage.T
+        by_place = by_gap.reshape(k, -1) @ self._gap_slope.T + by_link.reshape(k, -1) @ self._link_slope.T
+        by_place -= 0.5 * by_velocity @ skew(spin)
+        pressed = np.concatenate([by_place, by_velocity, 0.5 * by_velocity @ cross], axis=1)
+        normal, pulled = pressed[:3], pressed[-3:].copy()
+        pulled[:, :3] += (s.pressure * self._bend).ravel() * self._vector @ self._gap_slope.T
+        thinner = -self._share() * self._slope.ravel() / s.H.ravel() ** 2
+        drag = self._drag @ (self._moments @ (thinner * self._gap_slope).T)
+        out = np.empty((6, 9))
+        out[:, :3] = np.tensordot(drag.reshape(6, 6, 3), np.concatenate([velocity, spin]), (1, 0))
+        out[:, 3:] = film.drag
+        out[:3] -= force * normal
+        out[:3, :3] -= R2 * (self._vector * self._wall_slope.ravel()) @ self._gap_slope.T
+        out[3:] += 0.5 * force * cross @ pulled
+        out[3:, :3] -= 0.5 * force * skew(self._vector @ (s.pressure * self._slope).ravel())
+        # from the ball's centre to O
+        out[3:] += cross @ out[:3]
+        out[3:, :3] -= skew(film.wrench[:3])
+        whole = np.zeros((6, SIZE))
+        whole[:, PLACE], whole[:, VELOCITY], whole[:, SPIN] = out[:, :3], out[:, 3:6], out[:, 6:]
+        return whole
+
+
+def _drag_of_moments(R: float) -> np.ndarray:
+    """From the moments over H (10,) to the shear (36, 10) per speed: [[K, -R a x], [R a x, R^2 K]]."""
+    out = np.zeros((6, 6, 10))
+    for k in range(3):
+        turn = R * skew(np.eye(3)[k])
+        out[:3, 3:, 1 + k], out[3:, :3, 1 + k] = -turn, turn
+    for shift, scale in ((0, 1.0), (3, R**2)):
+        for i, j in PAIRS:
+            out[shift + i, shift + i, 0] = scale
+            out[shift + i, shift + j, 4 + PAIRS.index((i, j))] = -scale
+            out[shift + j, shift + i, 4 + PAIRS.index((i, j))] = -scale
+    return out.reshape(36, 10)

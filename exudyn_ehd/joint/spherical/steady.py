@@ -1,0 +1,139 @@
+"""A prescribed position of the ball, without a multibody model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.joint.balance.advice import advice
+from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.status import FilmError, require_type, require_vector
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SphericalResult:
+    """One position of the ball; socket's frame, SI units, fields ``[phi, chi]``.
+
+    Attributes
+    ----------
+    phi, chi : (n,), (m,) arrays
+        Grid: angle about the socket's axis and colatitude from it, rad.
+    pressure, gap : (n, m) arrays
+        Pa (gauge), m.
+    unbroken : (n, m) bool array
+        Where the film is not cavitated.
+    force, torque : (3,) arrays
+        On the ball; torque about its centre, N and N m. The socket gets minus the force in the ball's centre and minus
+        the torque.
+    tangent : (6, 9) array
+        Derivative of the force and of the moment about the socket's centre to place, velocity and angular velocity.
+    minimum_gap, peak_pressure : float
+        m, Pa.
+    power_loss, contact_load : float
+        W that turn into heat, N of the wall in ``force``.
+    bearing : SphericalBearing
+
+    Examples
+    --------
+    After the example of `steady_spherical`:
+
+    >>> film
+    <SphericalResult: load 205 N, minimum film thickness 12 µm, peak pressure 812 kPa, power loss 17.6 mW>
+    """
+
+    phi: np.ndarray
+    chi: np.ndarray
+    pressure: np.ndarray
+    gap: np.ndarray
+    unbroken: np.ndarray
+    force: np.ndarray
+    torque: np.ndarray
+    tangent: np.ndarray
+    minimum_gap: float
+    peak_pressure: float
+    power_loss: float
+    contact_load: float
+    bearing: SphericalBearing = field(repr=False)
+
+    def __repr__(self) -> str:
+        load, gap = shown("force", float(np.linalg.norm(self.force))), shown("length", self.minimum_gap)
+        peak, loss = shown("pressure", self.peak_pressure), shown("power", self.power_loss)
+        return f"<SphericalResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
+
+
+def steady_spherical(
+    bearing: SphericalBearing,
+    *,
+    place: Sequence[float] | np.ndarray,
+    velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
+    angular_velocity: Sequence[float] | np.ndarray = (0.0, 0.0, 0.0),
+) -> SphericalResult:
+    """Film of a ball at a prescribed place and motion.
+
+    Parameters
+    ----------
+    bearing : SphericalBearing
+    place : (3,) [m]
+        The ball's centre in the socket's frame, whose z is the axis of the socket.
+    velocity : (3,) [m/s]
+        Of the ball's centre as seen from the socket.
+    angular_velocity : (3,) [rad/s]
+        Of the ball as seen from the socket.
+
+    Returns
+    -------
+    SphericalResult
+
+    Raises
+    ------
+    InputError
+        For values that are not numbers.
+    FilmError
+        If there is no film at this place, or the ball is through its contact by more than the clearance.
+
+    Examples
+    --------
+    After the example of `SphericalBearing`:
+
+    >>> film = ehd.steady_spherical(ball, place=(0.0, 0.0, 18e-6), velocity=(0.0, 0.0, 1e-4))
+    >>> film.force.round(1)  # N
+    array([   0. ,    0. , -205.3])
+    """
+    where = "steady_spherical"
+    require_type(f"{where}: bearing", bearing, SphericalBearing)
+    motion = np.zeros(SIZE)
+    motion[PLACE] = require_vector(f"{where}: place", place, 3, "m")
+    motion[VELOCITY] = require_vector(f"{where}: velocity", velocity, 3, "m/s")
+    motion[SPIN] = require_vector(f"{where}: angular_velocity", angular_velocity, 3, "rad/s")
+    model = SphericalModel(bearing)
+    found = model.evaluate(motion)
+    film = found.film
+    if film is None:
+        raise FilmError(
+            f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
+            f"{found.minimum_gap:.3g} m: {advice(found.status, bearing)}"
+        )
+    refuse_pressed_through(bearing, found.minimum_gap, where)
+    quantities = found.quantities()
+    force, peak = film.wrench[:3], quantities["peak_pressure"]
+    warn_of_overload(bearing, peak, float(np.linalg.norm(force)), where)
+    return SphericalResult(
+        phi=model.grid.x,
+        chi=model.patch.chi,
+        pressure=film.pressure,
+        gap=film.gap,
+        unbroken=film.unbroken,
+        force=force,
+        torque=film.torque,
+        tangent=np.delete(found.tangent(), (3, 7), axis=1),
+        minimum_gap=quantities["minimum_gap"],
+        peak_pressure=peak,
+        power_loss=quantities["power_loss"],
+        contact_load=quantities["contact_load"],
+        bearing=bearing,
+    )
