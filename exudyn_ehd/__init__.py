@@ -87,6 +87,9 @@ __version__ = "0.2.0"
 _LAZY = {
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
+    "CreateLubricatedSphericalJoint": "coupling.spherical",
+    "LubricatedSphericalJoint": "coupling.spherical",
+    "SphericalHistory": "coupling.record.spherical",
     "SphericalBearing": "joint.spherical.bearing",
     "SphericalResult": "joint.spherical.steady",
     "steady_spherical": "joint.spherical.steady",
@@ -162,12 +165,14 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.load import load_history
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
+    from exudyn_ehd.coupling.record.spherical import SphericalHistory
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
     from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
     from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
+    from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint, LubricatedSphericalJoint
     from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
     from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -213,6 +218,7 @@ __all__ = [
     "ConfigureSolver",
     "CreateFlexibleBush",
     "CreateLubricatedJoint",
+    "CreateLubricatedSphericalJoint",
     "Crown",
     "DeadPressure",
     "DowsonHigginson",
@@ -255,6 +261,7 @@ __all__ = [
     "LongBearing",
     "Lubricant",
     "LubricatedJoint",
+    "LubricatedSphericalJoint",
     "LumpedThermal",
     "MaximumGap",
     "MemoryWarning",
@@ -288,6 +295,7 @@ __all__ = [
     "SolveDynamicSparse",
     "SolveStatic",
     "SphericalBearing",
+    "SphericalHistory",
     "SphericalResult",
     "StarvationWarning",
     "Status",

@@ -58,7 +58,7 @@ class StepStart:
     time : float
         s.
     motion : (10 + 2 k,) array
-        Pose, velocities and bore.
+        Pose, velocities and bore; (11,) of a ball, see `exudyn_ehd.joint.spherical.model`.
     step : float
         Length of the step before, s; 0 if there was none.
     misses : (n, 4 + k) array
@@ -83,7 +83,8 @@ class StepStart:
         if known == 0 or step > LARGEST_GROWTH * self.step:
             return motion
         expected = step**2 * self._expected
-        if step * np.abs(expected[:2]).max() < SMALLEST_MISS * self.clearance:
+        # journals have two places and two slopes, balls, whose motion is odd, three places
+        if step * np.abs(expected[: 2 + motion.size % 2]).max() < SMALLEST_MISS * self.clearance:
             return motion
         out = motion.copy()
         out[_RATES] += expected[:4]

@@ -34,7 +34,11 @@ class Failures:
     ----------
     largest_force, largest_pressure : float
         Beyond which an accepted step ends the run, N and Pa; infinite and `HIGHEST_PEAK` unless told otherwise.
+    axes : int
+        In how many directions the film damps.
     """
+
+    axes = 2
 
     def __init__(self, name: str, bearing: JournalBearing) -> None:
         self.name, self.bearing = name, bearing
@@ -66,7 +70,7 @@ class Failures:
     def chatter(self, time: float, trial: Trial, *, step: float, miss: float) -> FilmError:
         """An explicit solver's ``step`` (s) beyond its stability limit; its rates miss its motion by ``miss`` (m)."""
         assert trial.evaluation is not None
-        damping = -trial.evaluation.tangent()[:2, 4:6]
+        damping = -trial.evaluation.tangent()[: self.axes, 4 : 4 + self.axes]
         largest = float(np.linalg.eigvalsh(0.5 * (damping + damping.T))[-1])
         return self._at(
             time,

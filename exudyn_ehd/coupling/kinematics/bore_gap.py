@@ -41,6 +41,11 @@ class BoreGap:
             ones = np.ones(ALONG)
             c, s = np.cos(theta)[:, None], np.sin(theta)[:, None]
             self.normals = np.stack((c * ones, s * ones, c * z, s * z), axis=-1)
+        # what is no cylinder knows its own
+        own = getattr(bearing, "gap_normals", None)
+        if own is not None:
+            self.normals = own()
+            self.depth = np.zeros(len(self.normals))
 
     def smallest(self, motion: np.ndarray) -> float:
         """Smallest gap [m] at a motion (10,) of the journal's axis; negative where the surfaces overlap."""

@@ -87,7 +87,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
             f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
             f"{enough_steps(time, h.motion[:, 8], h.step_error)}"
         )
-    doubts = worth_an_audit(bearing, history)
+    doubts = worth_an_audit(bearing, history) if isinstance(bearing, JournalBearing) else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")
 
 

@@ -143,7 +143,7 @@ def _check_memory(joint: Joint, state: JointState) -> None:
     """Refuse a memory or a start of a step that is none of this film's."""
     model, memory, begin = joint.element.model, state.memory, state.begin
     bore = model.bore.size if isinstance(model, ElasticBearingModel) else 0
-    size = MOTION_SIZE + 2 * bore
+    size = getattr(model, "motion_size", MOTION_SIZE + 2 * bore)
     parts: list[tuple[str, dict[str, tuple[int, ...]], dict[str, tuple[int, ...]]]] = []
     if memory is not None:
         own = model.initial_history(np.zeros(size))

@@ -55,6 +55,7 @@ class ChatterWatch:
     def __init__(self, bearing: JournalBearing) -> None:
         self.clearance = bearing.radial_clearance
         self.lever = 0.5 * bearing.length
+        self.levers = np.array(getattr(bearing, "levers", (1.0, 1.0, self.lever, self.lever)))
         self.begin_anew()
 
     def begin_anew(self) -> None:
@@ -74,9 +75,7 @@ class ChatterWatch:
         motion : (10,) array
             In the joint frame.
         """
-        place, rate = motion[:4].copy(), motion[4:8].copy()
-        place[2:] *= self.lever
-        rate[2:] *= self.lever
+        place, rate = self.levers * motion[:4], self.levers * motion[4:8]
         step, before, rate_before = time - self.time, self.place, self.rate
         self.time, self.place, self.rate = time, place, rate
         if not step > 0.0:

@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber, place_line
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
+from exudyn_ehd.joint.spherical.patch import sphere_patch
 from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_type, require_vector
 
 # Least width of a patch, and least colatitude of its open end from either pole, rad.
@@ -69,6 +72,7 @@ class SphericalBearing:
     # what a joint's watches ask of every bearing
     bush = thermal = asperity = roughness = wear = None
     profiles = supply = ()
+    levers = (1.0, 1.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
         name = "SphericalBearing"
@@ -80,14 +84,14 @@ class SphericalBearing:
             )
         require_type(f"{name}.lubricant", self.lubricant, Lubricant)
         for law in ("pressure_law", "shear_law", "density_law"):
-            if getattr(self.lubricant, law) is not None:
+            if (given := getattr(self.lubricant, law)) is not None:
                 raise InputError(
-                    f"{name}.lubricant: a spherical film has no {law}, got {type(getattr(self.lubricant, law)).__name__}"
-                    f"; give a Lubricant without it, with the viscosity at the film's state."
+                    f"{name}.lubricant: a spherical film has no {law}, got {type(given).__name__}; give a Lubricant "
+                    "without it, with the viscosity at the film's state."
                 )
         first, last = require_vector(f"{name}.socket_angles", self.socket_angles, 2, "rad").tolist()
         end = math.pi - LEAST_ANGLE
-        if not (first == 0.0 or LEAST_ANGLE <= first) or not first + LEAST_ANGLE <= last <= end:
+        if not (first == 0.0 or first >= LEAST_ANGLE) or not first + LEAST_ANGLE <= last <= end:
             raise InputError(
                 f"{name}.socket_angles must be (begin, end) in rad with begin = 0 or >= {LEAST_ANGLE}, end >= begin + "
                 f"{LEAST_ANGLE} and end <= {end:.5g}, got {self.socket_angles!r}; use math.radians for degrees."
@@ -107,6 +111,11 @@ class SphericalBearing:
             require_number(
                 f"{name}.contact: RegularisedWall.onset", self.contact.onset, "m", below=self.radial_clearance
             )
+
+    def gap_normals(self) -> np.ndarray:
+        """Directions (k, 4), the last column 0, from which to tell how near the ball is to the socket."""
+        normals = sphere_patch(1.0, self.socket_angles, self.n_phi, self.n_chi).normals.reshape(3, -1)
+        return np.vstack((normals, 0.0 * normals[:1])).T
 
     @property
     def journal_radius(self) -> float:

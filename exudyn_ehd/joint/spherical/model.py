@@ -151,6 +151,7 @@ class SphericalModel:
     """
 
     remembers = needs_spin = flexible = False
+    motion_size = SIZE
 
     def __init__(self, bearing: SphericalBearing) -> None:
         self.bearing = b = bearing

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import cast
 
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
@@ -118,10 +120,11 @@ def steady_spherical(
             f"{where}: {found.status.name} at place {motion[PLACE]} m, minimum film thickness "
             f"{found.minimum_gap:.3g} m: {advice(found.status, bearing)}"
         )
-    refuse_pressed_through(bearing, found.minimum_gap, where)
+    sizes = cast(JournalBearing, bearing)
+    refuse_pressed_through(sizes, found.minimum_gap, where)
     quantities = found.quantities()
     force, peak = film.wrench[:3], quantities["peak_pressure"]
-    warn_of_overload(bearing, peak, float(np.linalg.norm(force)), where)
+    warn_of_overload(sizes, peak, float(np.linalg.norm(force)), where)
     return SphericalResult(
         phi=model.grid.x,
         chi=model.patch.chi,

@@ -1,0 +1,282 @@
+"""`CreateLubricatedSphericalJoint`: the call that puts an oil-filled ball joint between two bodies."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from typing import cast
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+from numpy.typing import ArrayLike
+
+from exudyn_ehd.coupling.contract import Index, JointModel, Side, require_system
+from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.spherical import SphericalFilmElement
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
+from exudyn_ehd.coupling.kinematics.sides import MarkerSide
+from exudyn_ehd.coupling.kinematics.spherical import relative_motion
+from exudyn_ehd.coupling.record.history import Quantity
+from exudyn_ehd.coupling.record.sensors import OUTPUTS, add_sensor, reader
+from exudyn_ehd.coupling.record.spherical import SphericalDisplay, SphericalHistory, spherical_history
+from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner, digest
+from exudyn_ehd.coupling.run.solve import joints_of, register_joint
+from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
+from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
+from exudyn_ehd.joint.spherical.bearing import SphericalBearing
+from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
+
+_WHERE = "CreateLubricatedSphericalJoint"
+_QUANTITIES = ("eccentricity_ratio", "force", "minimum_gap", "peak_pressure", "power_loss", "contact_load")
+
+
+class LubricatedSphericalJoint:
+    """Handle of one lubricated ball joint.
+
+    Attributes
+    ----------
+    name : str
+    mbs : exudyn.MainSystem
+    bearing : SphericalBearing
+    objectNumber : exudyn.ObjectIndex
+        The film element.
+    element : SphericalFilmElement
+        The film between the two frames.
+
+    Examples
+    --------
+    After the example of `CreateLubricatedSphericalJoint`:
+
+    >>> joint
+    <LubricatedSphericalJoint 'ball': object 2, ball of 30 mm, clearance 30 µm>
+    """
+
+    def __init__(self, mbs: exu.MainSystem, name: str, element: SphericalFilmElement, number: Index) -> None:
+        self.mbs, self.name, self.element, self.objectNumber = mbs, name, element, number
+        self.bearing = cast(SphericalBearing, element.model.bearing)
+
+    def __repr__(self) -> str:
+        size, clearance = (
+            shown("length", 2.0 * self.bearing.ball_radius),
+            shown("length", self.bearing.radial_clearance),
+        )
+        return (
+            f"<LubricatedSphericalJoint '{self.name}': object {int(self.objectNumber)}, ball of {size}, "
+            f"clearance {clearance}>"
+        )
+
+    @property
+    def history(self) -> SphericalHistory:
+        """All accepted steps up to now; as `LubricatedJoint.history`."""
+        present = self.element.presence.found(self.mbs) is not None
+        return spherical_history(self.element.steps.history(self.mbs, complete=present))
+
+    def AddSensor(
+        self,
+        quantity: str | exu.OutputVariableType,
+        *,
+        fileName: str = "",
+        name: str = "",
+        writeToFile: bool | None = None,
+    ) -> Index:
+        """Add an Exudyn sensor of one quantity; it is stored, and written if it has a file's name.
+
+        Parameters
+        ----------
+        quantity : str or exudyn.OutputVariableType
+            ``eccentricity_ratio``, ``force`` (on the ball, socket's frame), ``minimum_gap``, ``peak_pressure``,
+            ``power_loss``, ``contact_load``; or what Exudyn's joints give, as for `LubricatedJoint.AddSensor`.
+        fileName, name, writeToFile
+            As for `LubricatedJoint.AddSensor`.
+
+        Returns
+        -------
+        exudyn.SensorIndex
+        """
+        asked = quantity.name if isinstance(quantity, exu.OutputVariableType) else quantity
+        if asked not in (*_QUANTITIES, *OUTPUTS):
+            raise InputError(
+                f"LubricatedSphericalJoint.AddSensor: quantity must be one of {', '.join((*_QUANTITIES, *OUTPUTS))}, "
+                f"got {quantity!r}."
+            )
+        title, read = reader(self.element, None, Quantity(asked) if asked in _QUANTITIES else asked)
+        write = bool(fileName) if writeToFile is None else writeToFile
+        self.element.require_items(self.mbs)
+        return add_sensor(self.mbs, self.element, read, name or f"{self.name} {title}", fileName, write)
+
+    def stop_at(self, *, force: float = math.inf, pressure: float = HIGHEST_PEAK) -> None:
+        """End runs with a `FilmError` at the first accepted step beyond a force (N) or peak pressure (Pa) of yours."""
+        for name, value, unit in (("force", force, "N"), ("pressure", pressure, "Pa")):
+            if value != math.inf:
+                require_number(f"LubricatedSphericalJoint.stop_at.{name}", value, unit, above=0.0)
+        self.element.failures.largest_force, self.element.failures.largest_pressure = force, pressure
+
+    def forget(self) -> None:
+        """Let the next run start with a new record."""
+        self.element.steps.forget()
+
+    def state(self) -> JointState:
+        """Record at the last accepted state; `SaveState` stores the whole system."""
+        self.element.require_items(self.mbs)
+        time, memory, begin, rows = self.element.steps.remembered(self.mbs)
+        # a digest tells any description
+        bearing = digest(self.element.model.bearing)
+        return JointState(name=self.name, bearing=bearing, time=time, memory=memory, rows=rows, begin=begin)
+
+    def restore_state(self, state: JointState) -> None:
+        """Let the next run go on from a state; `SolveDynamic` does it with ``restart``."""
+        check_owner(cast(Joint, self), state)
+        self.element.steps.resume(state.time, state.memory, state.rows, state.begin)
+
+
+def CreateLubricatedSphericalJoint(
+    mbs: exu.MainSystem,
+    name: str = "",
+    itemNumbers: Sequence[Index | None] = (None, None),
+    position: Sequence[float] | np.ndarray = (),
+    bearing: SphericalBearing | None = None,
+    axis: Sequence[float] | np.ndarray = (0.0, 0.0, 1.0),
+    rotationMatrixAxes: ArrayLike | None = None,
+    stepControl: StepControl | None = None,
+    useGlobalFrame: bool = True,
+    show: bool = True,
+    color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
+) -> LubricatedSphericalJoint:
+    """Create an oil-filled spherical joint between two bodies.
+
+    Arguments that ``mbs.CreateSphericalJoint`` also has mean the same, so that one call replaces the other; a film
+    holds the ball in three directions where the socket reaches beyond its equator (`SphericalBearing`). It is an
+    ObjectGenericODE2 without mass on the nodes of the two bodies, with its exact Jacobian. Implicit, explicit and
+    static solvers, `SolveDynamic`, `SaveState` and restarts take it like a `CreateLubricatedJoint`; `StepControl` of a
+    run and `UntilPeriodic` do not.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        The system, before Assemble.
+    name : str
+        Name of the joint, used in messages too.
+    itemNumbers : sequence of two
+        Socket, ball: bodies, nodes or rigid markers as for `CreateLubricatedJoint`.
+    position : (3,) [m]
+        Centre of socket and ball in the reference configuration, global, or in the socket's frame with
+        ``useGlobalFrame=False``; [] if a marker is given.
+    bearing : SphericalBearing
+    axis : (3,)
+        The socket's axis, from which its colatitudes count: into a cup.
+    rotationMatrixAxes : (3, 3), optional
+        The socket's frame, its third column in place of ``axis``.
+    stepControl : StepControl or None
+        Lets Exudyn halve steps in which the gap changes by too much.
+    useGlobalFrame : bool
+        See position, axis, rotationMatrixAxes.
+    show : bool
+        Draw the socket in Exudyn's renderer, in the colours of its pressure.
+    color : (4,)
+        Of the film element's nodes, RGBA; Exudyn's default for -1.
+
+    Returns
+    -------
+    LubricatedSphericalJoint
+
+    Raises
+    ------
+    InputError
+        Before anything runs: wrong or identical items, a position or axis that can't be meant, a ball that is not
+        inside the socket in the initial configuration, an assembled system.
+
+    Examples
+    --------
+    After the example of `SphericalBearing`:
+
+    >>> from exudyn.utilities import InertiaCuboid
+    >>> SC = exu.SystemContainer()
+    >>> mbs = SC.AddSystem()
+    >>> arm = mbs.CreateRigidBody(
+    ...     referencePosition=[0.1, 0, 0], inertia=InertiaCuboid(7800, [0.2, 0.02, 0.02]), gravity=[0, 0, -9.81]
+    ... )
+    >>> joint = ehd.CreateLubricatedSphericalJoint(
+    ...     mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball, axis=[0, 0, -1]
+    ... )
+    >>> mbs.Assemble()
+    >>> settings = ehd.ConfigureSolver(exu.SimulationSettings())
+    >>> settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 20, 0.01
+    >>> settings.solution.file.write = False
+    >>> ehd.SolveDynamic(mbs, settings)
+    True
+    >>> joint.history
+    <SphericalHistory of 21 steps from 0 to 0.01 s: ...>
+    """
+    require_system(_WHERE, mbs)
+    for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):
+        require_bool(f"{_WHERE}.{argument}", value)
+    require_type(f"{_WHERE}.bearing", bearing, SphericalBearing)
+    assert bearing is not None
+    require_of_joint(f"{_WHERE}.stepControl", stepControl)
+    require_vector(f"{_WHERE}.color", color, 4)
+    if mbs.systemIsConsistent:
+        raise InputError(f"{_WHERE}: the system is assembled already; create the joint before mbs.Assemble().")
+    if not isinstance(name, str) or name in {joint.name for joint in joints_of(mbs)}:
+        raise InputError(f"{_WHERE}.name must be a str that no other lubricated joint of the system has, got {name!r}.")
+    name = name or f"lubricated ball joint {mbs.systemData.NumberOfObjects()}"
+    with _in_the_name_of_this():
+        socket, ball = resolve_pair(mbs, itemNumbers)
+        rotation = joint_rotation(
+            socket, () if rotationMatrixAxes is not None else axis, rotationMatrixAxes, useGlobalFrame
+        )
+        points = joint_points(socket, ball, position, useGlobalFrame)
+    sides = socket.side(points[0], rotation), ball.side(points[1], rotation)
+    model = SphericalModel(bearing)
+    _check_start(mbs, model, (socket, ball), sides)
+    element = SphericalFilmElement(cast(JointModel, model), *sides, name)
+    display = SphericalDisplay(element)
+    number = mbs.AddObject(
+        eii.ObjectGenericODE2(
+            name=name,
+            nodeNumbers=[node for side in sides for node in side.nodes],
+            forceUserFunction=element.force,
+            jacobianUserFunction=element.jacobian,
+            visualization=eii.VObjectGenericODE2(
+                show=show, color=list(color), graphicsDataUserFunction=display.graphics
+            ),
+        )
+    )
+    element.presence = Presence(mbs, name, element, number, sides)
+    if stepControl is not None:
+        element.steps.control = GapWatch(stepControl, element.model.bearing)
+    make = functools.partial(LubricatedSphericalJoint, name=name, element=element, number=number)
+    register_joint(mbs, cast(Callable[[exu.MainSystem], Joint], make))
+    return make(mbs)
+
+
+@contextmanager
+def _in_the_name_of_this() -> Iterator[None]:
+    """Let the checks that this call shares with `CreateLubricatedJoint` speak of this one."""
+    try:
+        yield
+    except InputError as error:
+        said = str(error).replace("CreateLubricatedJoint", _WHERE).replace("housing", "socket")
+        raise InputError(said.replace("journal", "ball")) from None
+
+
+def _check_start(
+    mbs: exu.MainSystem, model: SphericalModel, items: tuple[Item, Item], sides: tuple[Side, Side]
+) -> None:
+    """Refuse an initial state in which the ball isn't inside the socket; markers tell after Assemble alone."""
+    if any(isinstance(side, MarkerSide) for side in sides):
+        return
+    for item, side in zip(items, sides, strict=True):
+        side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
+    place = relative_motion(sides[0].frame, sides[1].frame)[:3]
+    if not model.smallest_gap(place) > 0.0:
+        raise InputError(
+            f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in the "
+            f"socket's frame, radial clearance {model.bearing.radial_clearance:g} m; check the initial positions, and "
+            "whether the clearance is radial."
+        )
