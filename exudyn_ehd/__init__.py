@@ -83,14 +83,13 @@ from exudyn_ehd.status import (
 
 __version__ = "0.2.0"
 
-# Imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid.
-_LAZY = {
+_LAZY = {  # imported only when asked for: film studies need neither Exudyn nor the solid, a rigid bearing no solid
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
     "CreateLubricatedSphericalJoint": "coupling.spherical",
     "LubricatedSphericalJoint": "coupling.spherical",
-    "SphericalHistory": "coupling.record.spherical",
-    "SphericalBearing": "joint.spherical.bearing",
+    "SphericalHistory": "coupling.spherical",
+    "SphericalBearing": "joint.spherical.steady",
     "SphericalResult": "joint.spherical.steady",
     "steady_spherical": "joint.spherical.steady",
     "File": "coupling.record.on_disk",
@@ -149,7 +148,6 @@ _LAZY = {
     "varied": "studies.parameters",
 }
 
-
 if TYPE_CHECKING:
     from exudyn_ehd.coupling.api import CreateLubricatedJoint, Free, Held
     from exudyn_ehd.coupling.bush.object import (
@@ -165,18 +163,16 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.load import load_history
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
-    from exudyn_ehd.coupling.record.spherical import SphericalHistory
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
     from exudyn_ehd.coupling.run.solve import SaveState, SolveDynamic, SolveStatic
     from exudyn_ehd.coupling.run.sparse import FactorReuse, SolveDynamicSparse
-    from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint, LubricatedSphericalJoint
+    from exudyn_ehd.coupling.spherical import CreateLubricatedSphericalJoint, LubricatedSphericalJoint, SphericalHistory
     from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
-    from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-    from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
+    from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad

@@ -106,6 +106,7 @@ KINDS: dict[str, Kind] = {
 _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
+        "SphericalBearing.ball_radius",
         "HollowCylinder.inner_radius",
         "HollowCylinder.thickness",
         "mesh_from_arrays.bore_radius",
@@ -136,13 +137,14 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "place": (
         "CreateLubricatedJoint.position",
+        "CreateLubricatedSphericalJoint.position",
         "CreateFlexibleBush.position",
         "add_bore_modes.position",
         "mesh_from_arrays.origin",
         "OnPlane.point",
     ),
-    "clearance": ("JournalBearing.radial_clearance",),
-    "gap": ("solve_film.gap", "solve_film.history"),
+    "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance"),
+    "gap": ("solve_film.gap", "solve_film.history", "steady_spherical.place"),
     "form": (
         "OutOfRound.amplitude",
         "OnPlane.tolerance",
@@ -163,7 +165,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "steady.direction",
         "recommend.direction",
     ),
-    "angles": ("ProfileTable.angles",),
+    "angles": ("ProfileTable.angles", "SphericalBearing.socket_angles"),
     "width": ("AxialGroove.width_angle", "Pocket.width_angle"),
     "tilt": ("steady.tilt", "equilibrium.tilt"),
     "viscosity": ("Lubricant.viscosity",),
@@ -234,11 +236,18 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "rate": ("Rayleigh.mass_rate",),
     "damping time": ("Rayleigh.stiffness_time",),
     "sliding speed": ("GreenwoodTripp.transition_speed",),
-    "surface speed": ("steady.velocity", "steady.axial_speed", "solve_film.surface_speed", "solve_film.gap_rate"),
+    "surface speed": (
+        "steady_spherical.velocity",
+        "steady.velocity",
+        "steady.axial_speed",
+        "solve_film.surface_speed",
+        "solve_film.gap_rate",
+    ),
     "velocity": ("CreateFlexibleBush.initialVelocity",),
     "acceleration": ("CreateLubricatedJoint.bushGravity", "Gravity.acceleration"),
     "spin": (
         "steady.speed",
+        "steady_spherical.angular_velocity",
         "equilibrium.speed",
         "stribeck.speeds",
         "recommend.speed",

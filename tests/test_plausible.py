@@ -18,7 +18,9 @@ PURE = {
     "ArchardWear.acceleration", "CarreauShear.exponent", "CarreauShear.residual", "ClassicSOR.tolerance",
     "ClassicSOR.relaxation", "ConfigureSolver.relativeTolerance", "ConfigureSolver.absoluteTolerance",
     "ConfigureSolver.spectralRadius",
-    "CreateFlexibleBush.rotationMatrix", "CreateFlexibleBush.color", "CreateLubricatedJoint.axis",
+    "CreateFlexibleBush.rotationMatrix", "CreateLubricatedSphericalJoint.axis",
+    "CreateLubricatedSphericalJoint.color", "CreateLubricatedSphericalJoint.rotationMatrixAxes",
+    "CreateFlexibleBush.color", "CreateLubricatedJoint.axis",
     "CreateLubricatedJoint.rotationMatrixAxes", "CreateLubricatedJoint.color", "Crown.exponent",
     "DeadPressure.distribution", "ElasticLiner.poisson_ratio", "FactorReuse.contractivity", "FEBore.radius_tolerance",
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
@@ -52,12 +54,14 @@ READING = {
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
+    "CreateLubricatedSphericalJoint.itemNumbers",
     "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
     "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
 }  # fmt: skip
 # What the package makes, and hands out to be read.
 RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
+    "SphericalHistory", "SphericalResult",
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
     "StribeckResult", "StudyTable", "SystemState",
 }  # fmt: skip

@@ -198,20 +198,8 @@ def CreateLubricatedSphericalJoint(
     >>> from exudyn.utilities import InertiaCuboid
     >>> SC = exu.SystemContainer()
     >>> mbs = SC.AddSystem()
-    >>> arm = mbs.CreateRigidBody(
-    ...     referencePosition=[0.1, 0, 0], inertia=InertiaCuboid(7800, [0.2, 0.02, 0.02]), gravity=[0, 0, -9.81]
-    ... )
-    >>> joint = ehd.CreateLubricatedSphericalJoint(
-    ...     mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball, axis=[0, 0, -1]
-    ... )
-    >>> mbs.Assemble()
-    >>> settings = ehd.ConfigureSolver(exu.SimulationSettings())
-    >>> settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = 20, 0.01
-    >>> settings.solution.file.write = False
-    >>> ehd.SolveDynamic(mbs, settings)
-    True
-    >>> joint.history
-    <SphericalHistory of 21 steps from 0 to 0.01 s: ...>
+    >>> arm = mbs.CreateRigidBody(inertia=InertiaCuboid(7800, [0.2, 0.02, 0.02]), gravity=[0, 0, -9.81])
+    >>> joint = ehd.CreateLubricatedSphericalJoint(mbs, "ball", [mbs.CreateGround(), arm], [0, 0, 0], ball)
     """
     require_system(_WHERE, mbs)
     for argument, value in (("useGlobalFrame", useGlobalFrame), ("show", show)):

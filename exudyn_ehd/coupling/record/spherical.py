@@ -41,8 +41,8 @@ class SphericalHistory:
     --------
     After the example of `CreateLubricatedSphericalJoint`:
 
-    >>> joint.history.place.shape
-    (21, 3)
+    >>> joint.history, joint.history.place.shape
+    (<SphericalHistory without steps>, (0, 3))
     """
 
     time: np.ndarray

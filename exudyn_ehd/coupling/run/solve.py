@@ -13,6 +13,7 @@ import numpy as np
 from exudyn_ehd.coupling.contract import ObjectIndex, require_system
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
+from exudyn_ehd.coupling.run.joint_state import require_estimates
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
@@ -145,7 +146,7 @@ def SolveDynamic(
         require_time("SolveDynamic", simulationSettings)
     require_items(mbs)
     if until_periodic is not None:
-        _require_estimates(mbs)
+        require_estimates(joints_of(mbs))
     implicit = options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) in _IMPLICIT
     control = step_control("SolveDynamic", mbs, simulationSettings, stepControl, implicit=implicit)
     if not implicit:
@@ -204,16 +205,6 @@ def SolveStatic(mbs: exu.MainSystem, simulationSettings: exu.SimulationSettings,
     require_items(mbs)
     with own_errors(mbs, "SolveStatic"):
         return bool(mbs.SolveStatic(simulationSettings, **_stored(options)))
-
-
-def _require_estimates(mbs: exu.MainSystem) -> None:
-    """Refuse to judge steps or orbits by films that do not tell them."""
-    for joint in joints_of(mbs):
-        if not joint.element.estimates_steps:
-            raise InputError(
-                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has neither estimates of step errors "
-                "nor orbits; leave out stepControl and until_periodic, or give the joint a stepControl of its own."
-            )
 
 
 def _refuse_inactive(mbs: exu.MainSystem) -> None:
@@ -362,7 +353,7 @@ def step_control(
     if control is None:
         return nullcontext()
     require_type(f"{where}.stepControl", control, StepControl)
-    _require_estimates(mbs)
+    require_estimates(joints_of(mbs))
     if control.error is None:
         raise InputError(
             f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "

@@ -39,7 +39,7 @@ class SphericalBearing:
         Vertices around the axis, at least 16.
     n_chi : int
         Intervals from edge to edge (of a closed patch from the pole to the edge), at least 4.
-    cavitation : SwiftStieber, Gumbel or FullSommerfeld
+    cavitation : FullSommerfeld, Gumbel or SwiftStieber
         Without a line inside the cells. Its ``cavity_pressure`` must not be above the ambient pressure.
     contact : RegularisedWall or None
         Takes over before the gap vanishes.
@@ -51,13 +51,9 @@ class SphericalBearing:
 
     Examples
     --------
-    >>> ball = ehd.SphericalBearing(
-    ...     ball_radius=0.015,
-    ...     radial_clearance=30e-6,
-    ...     lubricant=ehd.Lubricant(viscosity=0.1),
-    ...     socket_angles=(0.0, 2.0),
-    ...     contact=ehd.RegularisedWall(onset=2e-6),
-    ... )
+    >>> oil, wall = ehd.Lubricant(viscosity=0.1), ehd.RegularisedWall(onset=2e-6)
+    >>> size = dict(ball_radius=0.015, radial_clearance=30e-6, socket_angles=(0.0, 2.0))
+    >>> ball = ehd.SphericalBearing(**size, lubricant=oil, contact=wall)
     """
 
     ball_radius: float

@@ -46,9 +46,13 @@ def squeeze(e, V):
 def test_squeeze_formula_is_that_of_the_axisymmetric_equation():
     """dp/dchi = -6 mu R^2 V sin(chi) / h^3 from the flow through a circle, integrated twice by quadrature."""
     for e in (0.05, 0.5, 0.95):
-        slope = lambda x, e=e: 6 * MU * R**2 * math.sin(x) / (C * (1 - e * math.cos(x))) ** 3
-        # by parts: the force of a pressure is that of its slope on the disc inside
-        force = quad(lambda x: slope(x) * math.pi * R**2 * math.sin(x) ** 2, 0, 0.5 * math.pi, epsrel=1e-11)[0]
+
+        def force_by_slope(x, e=e):
+            """By parts: a slope of the pressure acts on the disc inside its circle."""
+            slope = 6 * MU * R**2 * math.sin(x) / (C * (1 - e * math.cos(x))) ** 3
+            return slope * math.pi * R**2 * math.sin(x) ** 2
+
+        force = quad(force_by_slope, 0, 0.5 * math.pi, epsrel=1e-11)[0]
         assert force == pytest.approx(squeeze(e, 1.0), rel=1e-7)
 
 
