@@ -28,7 +28,8 @@ from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.balance.overload import HIGHEST_PEAK
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
-from exudyn_ehd.joint.spherical.model import SphericalModel
+from exudyn_ehd.joint.spherical.model import PLACE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.joint.spherical.steady import SphericalResult, steady_spherical
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
 
@@ -76,6 +77,23 @@ class LubricatedSphericalJoint:
         """All accepted steps up to now; as `LubricatedJoint.history`."""
         present = self.element.presence.found(self.mbs) is not None
         return spherical_history(self.element.steps.history(self.mbs, complete=present))
+
+    def film(self) -> SphericalResult:
+        """The film at the last accepted state; ``film().plot_pressure()`` draws it.
+
+        Raises
+        ------
+        InputError
+            Before Assemble.
+        FilmError
+            If there is no film at that state.
+        """
+        if not self.mbs.systemIsConsistent:
+            raise InputError(f"LubricatedSphericalJoint.film: call mbs.Assemble() first, for joint '{self.name}' too.")
+        self.element.require_items(self.mbs)
+        motion = self.element.steps.look_at_accepted(self.mbs)[1].motion
+        parts = {"place": motion[PLACE], "velocity": motion[VELOCITY], "angular_velocity": motion[SPIN]}
+        return steady_spherical(self.bearing, **parts)
 
     def AddSensor(
         self,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -13,8 +13,13 @@ from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.spherical.bearing import SphericalBearing
 from exudyn_ehd.joint.spherical.model import PLACE, SIZE, SPIN, VELOCITY, SphericalModel
+from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import FilmError, require_type, require_vector
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from matplotlib.projections.polar import PolarAxes
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -66,6 +71,13 @@ class SphericalResult:
         load, gap = shown("force", float(np.linalg.norm(self.force))), shown("length", self.minimum_gap)
         peak, loss = shown("pressure", self.peak_pressure), shown("power", self.power_loss)
         return f"<SphericalResult: load {load}, minimum film thickness {gap}, peak pressure {peak}, power loss {loss}>"
+
+    def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
+        """The pressure on the socket, seen along its axis; colatitudes in degrees outwards. See `FilmPictures`."""
+        # imported here: matplotlib is only needed for pictures
+        from exudyn_ehd.pictures.sphere import plot_patch
+
+        return plot_patch(self, title=title, ax=ax, path=path)
 
 
 def steady_spherical(
