@@ -5,9 +5,10 @@ Module map
 bearing    what a scene writes: `JournalBearing` and its options
 film       the oil film: grid, gap, Reynolds equation, cavitation closures, solvers, loads, heat
 solid      the flexible bush: quadratic elements in absolute nodal coordinates, and its reduction to modes
-joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`
+joint      one bearing as a pure function of its motion; `steady`, `equilibrium`, `stribeck`, `solve_film`, `Audit`,
+           `steady_spherical`
 pictures   maps, orbits, traces, the bearing in space: matplotlib, in one style
-coupling   Exudyn: `CreateLubricatedJoint`, `CreateFlexibleBush`, solvers, kinematics, histories, sensors
+coupling   Exudyn: `CreateLubricatedJoint`, `CreateLubricatedSphericalJoint`, `CreateFlexibleBush`, solvers, histories
 studies    many runs: `parameter_study`; what keeps an error: `recommend`, `recommend_steps`
 reference  closed forms to compare with
 tables     columns of numbers as text and as CSV; units by name

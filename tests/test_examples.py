@@ -268,6 +268,17 @@ def test_four_bar_spatial(example, tmp_path):
     assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
 
 
+def test_ball_joint_slider_crank(example, tmp_path):
+    n = example("ball_joint_slider_crank").main(quick=True, output=tmp_path)
+    assert (tmp_path / "ball_joint_slider_crank.png").stat().st_size > 10_000
+    # the films carry what the ideal joints do, within their clearances
+    assert n["largest_force_oil_N"] == pytest.approx(n["largest_force_ideal_N"], rel=5e-3)
+    assert 10 < n["slider_deviation_um"] < 2 * 25
+    assert n["slider_eccentricity_ratio"] < 1.0 and n["slider_minimum_film_thickness_um"] > 1.0
+    # one ball turns with the crank, the other one swings
+    assert n["crank_loss_W"] > n["slider_loss_W"] > 0.0
+
+
 @pytest.mark.slow
 def test_hydrostatic_or_grooved(example, tmp_path):
     rows = example("hydrostatic_or_grooved").main(quick=True, output=tmp_path)

@@ -3,6 +3,7 @@
 Module map
 ----------
 api         `CreateLubricatedJoint`, axial options `Free` and `Held`
+spherical   `CreateLubricatedSphericalJoint`: a ball in its socket
 replace     `ReplaceJoint`: films in the place of joints that a model has
 handle      `LubricatedJoint`: what a user has of a joint
 run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings

@@ -11,6 +11,7 @@ tangent      derivatives of the wrench
 heat         temperature over time
 model        from a bearing's description to its evaluation
 balance      steady films: their temperature, their position under a load
+spherical    a ball in its socket
 audit        which effects mattered
 static       steady films, equilibrium, Stribeck curve
 """

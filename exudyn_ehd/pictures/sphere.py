@@ -8,7 +8,6 @@ from typing import Protocol
 import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.projections.polar import PolarAxes
-from matplotlib.ticker import MultipleLocator
 
 from exudyn_ehd.pictures.records import Target
 from exudyn_ehd.pictures.style import COLUMN, finish, headed, open_axes, style_ticks, styled
@@ -57,9 +56,10 @@ def plot_patch(film: Patch, *, title: str = "", ax: PolarAxes | None = None, pat
         figure, ax = open_axes(ax, (COLUMN, 0.95 * COLUMN), path, projection="polar")
         image = ax.contourf(ring, np.degrees(chi), values.T, levels=24, cmap="viridis")
         ax.set_rlim(0.0, math.degrees(chi[-1]))
-        ax.yaxis.set_major_locator(MultipleLocator(30.0))
-        ax.yaxis.set_major_formatter("{x:.0f}°")
-        ax.tick_params(axis="y", labelcolor="white")
+        ax.set_rgrids([k for k in range(30, 180, 30) if chi[0] < math.radians(k) < chi[-1]], fmt="%d°", color="white")
+        # across from the peak
+        column = np.unravel_index(film.pressure.argmax(), film.pressure.shape)[0]
+        ax.set_rlabel_position(math.degrees(film.phi[column]) + 157.5)
         ax.grid(True, lw=0.4, color="#D0D0D0")
         bar = figure.colorbar(image, ax=ax, label=label("pressure", unit), pad=0.12, shrink=0.8)
         style_ticks(bar.ax)

@@ -8,5 +8,6 @@ beam_sides    points of beams
 cables        points of cables
 fitted_sides  best rigid fit of the nodes of finite elements
 relative      motion of the journal in the housing's frame
+spherical     motion of a ball in the frame of its socket
 bore_gap      smallest gap of the rigid surfaces
 """

@@ -4,6 +4,7 @@ Module map
 ----------
 element      what records ask of a joint's film element
 history      quantities over accepted steps
+spherical    the same of a ball joint, and its drawing
 on_disk      a history in a file, for long runs
 load         histories back from their files
 films        films over accepted steps
