@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -15,20 +14,23 @@ from exudyn_ehd.pictures.units import label, shown, unit_for
 from exudyn_ehd.status import InputError
 
 
-class Patch(Protocol):
-    """Pressure (n, m) in Pa on angles phi (n,) and colatitudes chi (m,) in rad."""
-
-    phi: np.ndarray
-    chi: np.ndarray
-    pressure: np.ndarray
-
-
-def plot_patch(film: Patch, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
+def plot_patch(
+    phi: np.ndarray,
+    chi: np.ndarray,
+    pressure: np.ndarray,
+    *,
+    title: str = "",
+    ax: PolarAxes | None = None,
+    path: Target = None,
+) -> Figure:
     """Draw the pressure of a patch.
 
     Parameters
     ----------
-    film : Patch
+    phi, chi : (n,), (m,) arrays
+        Angles about the axis and colatitudes, rad.
+    pressure : (n, m) array
+        Pa.
     title : str
         Stands above the peak pressure.
     ax : polar matplotlib Axes, optional
@@ -45,9 +47,9 @@ def plot_patch(film: Patch, *, title: str = "", ax: PolarAxes | None = None, pat
         raise InputError(
             f"plot_pressure: ax must be polar, got {ax.name} axes; use subplots(subplot_kw={{'projection': 'polar'}})."
         )
-    unit = unit_for("pressure", film.pressure)
-    ring = np.concatenate([film.phi, [2.0 * math.pi]])
-    values, chi = unit(np.concatenate([film.pressure, film.pressure[:1]])), film.chi
+    unit = unit_for("pressure", pressure)
+    ring = np.concatenate([phi, [2.0 * math.pi]])
+    values = unit(np.concatenate([pressure, pressure[:1]]))
     if chi[0] < chi[1] - chi[0]:
         # closed at the pole, half an interval from the first row
         values = np.column_stack([np.full(len(ring), values[:-1, 0].mean()), values])
@@ -58,10 +60,10 @@ def plot_patch(film: Patch, *, title: str = "", ax: PolarAxes | None = None, pat
         ax.set_rlim(0.0, math.degrees(chi[-1]))
         ax.set_rgrids([k for k in range(30, 180, 30) if chi[0] < math.radians(k) < chi[-1]], fmt="%d°", color="white")
         # across from the peak
-        column = np.unravel_index(film.pressure.argmax(), film.pressure.shape)[0]
-        ax.set_rlabel_position(math.degrees(film.phi[column]) + 157.5)
+        column = np.unravel_index(pressure.argmax(), pressure.shape)[0]
+        ax.set_rlabel_position(math.degrees(phi[column]) + 157.5)
         ax.grid(True, lw=0.4, color="#D0D0D0")
         bar = figure.colorbar(image, ax=ax, label=label("pressure", unit), pad=0.12, shrink=0.8)
         style_ticks(bar.ax)
-        ax.set_title(headed(title, f"peak pressure {shown('pressure', float(film.pressure.max()))}"))
+        ax.set_title(headed(title, f"peak pressure {shown('pressure', float(pressure.max()))}"))
         return finish(figure, path)

@@ -61,7 +61,7 @@ class SphericalBearing:
     lubricant: Lubricant
     socket_angles: tuple[float, float] = (0.0, 0.5 * math.pi)
     n_phi: int = 48
-    n_chi: int = 16
+    n_chi: int = 24
     cavitation: SwiftStieber | Gumbel | FullSommerfeld = SwiftStieber()
     contact: RegularisedWall | None = None
 

@@ -6,10 +6,11 @@ s = ln tan(chi / 2) the map (phi, s) of the sphere is conformal, so that
     sin^2 chi div(h^3 grad p) = d_phi(h^3 d_phi p) + d_s(h^3 d_s p) :
 
 links conduct as on a plane, and only areas know of the sphere. A `FilmGrid` with theta = phi and z = s is therefore
-that of the sphere, for every solver. Rows are equidistant in chi; control volumes end half-way between them, with the
-width d_chi / sin(chi) in s. A patch that is closed at the pole has its first row half an interval from it, so that the
-control volumes there end at the pole in a point, through which nothing flows: no cell of its own is needed, and the
-scheme stays of second order.
+that of the sphere, for every solver. Rows are stretched in chi towards the open edges, where a ball that leans on one
+has its steepest pressures, as those of cylindrical films (`exudyn_ehd.film.grid`). Control volumes end half-way between
+rows, with the width d_chi / sin(chi) in s. A patch that is closed at the pole has its first row half an interval from
+it, so that the control volumes there end at the pole in a point, through which nothing flows: no cell of its own is
+needed, and the scheme stays of second order.
 
 Integrals over control volumes (area, normal, products of two components of the normal) are exact, so that the areas
 and the drag of a centred ball hold to rounding on any grid.
@@ -24,6 +25,8 @@ import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
 
+# Of the rows, 0 is uniform.
+STRETCH = 0.75
 # Components of the symmetric second moments.
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
@@ -60,9 +63,12 @@ def sphere_patch(radius: float, angles: tuple[float, float], n_phi: int, n_chi: 
     """Patch of a sphere of ``radius`` (m) between two colatitudes (rad), with ``n_chi`` + 1 rows."""
     first, last = angles
     closed = first == 0.0
-    width = last / (n_chi + 0.5) if closed else (last - first) / n_chi
-    chi = first + width * (np.arange(n_chi + 1) + (0.5 if closed else 0.0))
-    chi[-1] = last
+    # from the middle of the patch, which of a closed one is the pole, to its edges
+    middle, half = (0.0, last) if closed else (0.5 * (first + last), 0.5 * (last - first))
+    share = (np.arange(n_chi + 1) + 0.5) / (n_chi + 0.5) if closed else np.linspace(-1.0, 1.0, n_chi + 1)
+    quarter = 0.5 * math.pi * STRETCH
+    chi = middle + half * np.sin(quarter * share) / math.sin(quarter)
+    chi[0], chi[-1] = chi[0] if closed else first, last
     faces = np.concatenate(([first], 0.5 * (chi[1:] + chi[:-1]), [last]))
     s = np.log(np.tan(0.5 * chi))
     step = 2.0 * math.pi / n_phi

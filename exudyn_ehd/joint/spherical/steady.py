@@ -77,7 +77,7 @@ class SphericalResult:
         # imported here: matplotlib is only needed for pictures
         from exudyn_ehd.pictures.sphere import plot_patch
 
-        return plot_patch(self, title=title, ax=ax, path=path)
+        return plot_patch(self.phi, self.chi, self.pressure, title=title, ax=ax, path=path)
 
 
 def steady_spherical(

@@ -57,15 +57,16 @@ def test_squeeze_formula_is_that_of_the_axisymmetric_equation():
 
 
 def test_squeeze_of_the_cup_converges_with_second_order():
-    for e, bound in ((0.1, 1e-3), (0.5, 5e-4), (0.9, 7e-3)):
+    for e, bound in ((0.1, 2e-4), (0.5, 5e-5), (0.8, 2e-3), (0.9, 5e-3)):
         errors = []
-        for n in (16, 32, 64):
+        for n in (24, 48, 96):
             wrench = model(n_chi=n, n_phi=16).evaluate(motion((0, 0, e * C), (0, 0, 1e-3))).wrench
             errors.append(wrench[2] / squeeze(e, -1e-3) - 1)
             assert np.abs(wrench[[0, 1, 3, 4, 5]]).max() < 1e-9 * abs(wrench[2])
         # the first grid is the default one in chi
         assert abs(errors[0]) < bound
-        assert 3.7 < errors[0] / errors[1] < 4.3 and 3.7 < errors[1] / errors[2] < 4.3
+        # at 0.5 the errors of pole and edge cancel
+        assert e == 0.5 or (3.6 < errors[0] / errors[1] < 4.2 and 3.6 < errors[1] / errors[2] < 4.2)
 
 
 def test_friction_of_the_centred_cup_holds_to_rounding():
