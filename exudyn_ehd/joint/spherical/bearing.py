@@ -25,6 +25,10 @@ class SphericalBearing:
     to pi/2 is a hemispherical cup that carries along z; beyond pi/2 it holds the ball both ways. Its edges are open to
     the ambient pressure. Equations and assumptions: `exudyn_ehd.joint.spherical.model`.
 
+    Errors of the default grid, of second order: squeeze of the cup against its closed form 0.02 % up to eccentricity
+    ratio 0.5, 0.4 % at 0.9; any motion in any direction, cups and belts, up to 1 % of the force at 0.8 and 2.5 % at
+    0.9, where the ball leans on an edge, and 0.5 % of the torque.
+
     Parameters
     ----------
     ball_radius : float

@@ -69,6 +69,24 @@ def test_squeeze_of_the_cup_converges_with_second_order():
         assert e == 0.5 or (3.6 < errors[0] / errors[1] < 4.2 and 3.6 < errors[1] / errors[2] < 4.2)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("angles", [CUP, (0.0, 2.3), (0.7, math.pi - 0.7)])
+@pytest.mark.parametrize(("ratio", "bound"), [(0.8, 0.01), (0.9, 0.025)])
+def test_errors_of_the_default_grid(angles, ratio, bound):
+    """What `SphericalBearing` says of random motions, against a grid of twice as many rows and columns,
+    with a quarter of the error."""
+    rng, film, fine = (
+        np.random.default_rng(8),
+        model(socket_angles=angles),
+        model(socket_angles=angles, n_phi=96, n_chi=48),
+    )
+    for state in states(rng, 6):
+        state[PLACE] *= ratio * C / np.linalg.norm(state[PLACE])
+        found, best = film.evaluate(state).film, fine.evaluate(state).film
+        for mine, exact, most in ((found.wrench[:3], best.wrench[:3], bound), (found.torque, best.torque, 0.005)):
+            assert np.linalg.norm(mine - exact) < most * np.linalg.norm(exact)
+
+
 def test_friction_of_the_centred_cup_holds_to_rounding():
     """(4 pi / 3) mu omega R^4 / c about any axis, and mu omega R^3 / c pi across it by the half that is missing."""
     film = model(n_phi=16, n_chi=4)
