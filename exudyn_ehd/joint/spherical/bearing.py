@@ -36,7 +36,8 @@ class SphericalBearing:
     radial_clearance : float
         c: radius of the socket less that of the ball, m.
     lubricant : Lubricant
-        Of constant viscosity: a temperature law gives it at the lubricant's temperature, other laws are refused.
+        A pressure law takes part, a temperature law gives the viscosity at the lubricant's temperature, other laws are
+        refused.
     socket_angles : (float, float)
         Colatitudes from the socket's axis at which the patch begins and ends, rad; 0 for a patch that is closed there.
     n_phi : int
@@ -83,7 +84,7 @@ class SphericalBearing:
                 f"which thin films are, got {self.radial_clearance!r}; if yours is diametral, halve it."
             )
         require_type(f"{name}.lubricant", self.lubricant, Lubricant)
-        for law in ("pressure_law", "shear_law", "density_law"):
+        for law in ("shear_law", "density_law"):
             if (given := getattr(self.lubricant, law)) is not None:
                 raise InputError(
                     f"{name}.lubricant: a spherical film has no {law}, got {type(given).__name__}; give a Lubricant "

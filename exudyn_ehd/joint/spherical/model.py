@@ -28,6 +28,9 @@ N in loads and sources, work and heat match link by link: -(F v + T w) = sum H^3
 Where a wall limits the film's gap to H(g), g the true one, sources and T_p carry dH/dg, as in Closed gaps of
 `exudyn_ehd.film.loads`; what the slopes leave of the pressure goes from solid to solid, without a torque.
 
+With a pressure law the solver's unknown is q, dq = dp mu_0 / mu(p) (`exudyn_ehd.film.lubricant.pressure_viscosity`),
+loads take p(q) and the viscosity of every vertex; heat is sum H^3 dq dP.
+
 The pressure comes from the film solver of cylindrical bearings on the grid of `exudyn_ehd.joint.spherical.patch`: with
 -N u / c for the storage of a control volume it needs no other input. Second order in both directions.
 """
@@ -75,6 +78,8 @@ class BallFilm:
     drag : (6, 6) array
         Force and torque of the Couette shear by velocity and angular velocity.
     stored_power : W, taken up by the wall
+    ratio, ratio_q : (n m,) arrays or floats
+        Viscosity over the reference, and its derivative to the solver's unknown.
     """
 
     pressure: np.ndarray
@@ -86,6 +91,8 @@ class BallFilm:
     contact_pressure: float
     drag: np.ndarray
     stored_power: float
+    ratio: np.ndarray | float
+    ratio_q: np.ndarray | float
 
 
 @dataclass(eq=False)
@@ -162,6 +169,10 @@ class SphericalModel:
         self.limiter = None if b.contact is None else WallContact(b.contact, c)
         self.pressure_scale = 12.0 * mu * R**2 / c**2
         self.force_scale, self.shear_scale = self.pressure_scale * R**2, mu * R**2 / c
+        law, self._cavity = b.lubricant.pressure_law, b.cavitation.cavity_pressure
+        self.law = None if law is None else law.bound(mu)
+        if self.law is not None:
+            self._cavity = float(self.law.transform(np.array(self._cavity)))
         # over control volumes: normals, and storage of a velocity (m/s) per area of the grid
         self._vector = p.vector.reshape(3, -1)
         self._moments = np.concatenate([p.area[None], p.vector, p.tensor]).reshape(10, -1)
@@ -204,10 +215,13 @@ class SphericalModel:
         self._set_gap(motion)
         s = self.solver
         s.system.pressure[self.grid.fixed] = s.system.linear_pressure[self.grid.fixed] = 0.0
-        status, _ = s.solve(0.0, 0.0, self.bearing.cavitation.cavity_pressure / self.pressure_scale)
+        status, _ = s.solve(0.0, 0.0, self._cavity / self.pressure_scale)
         if status is not Status.CONVERGED or not np.isfinite(s.pressure.sum()):
             return self._without(Status.NOT_CONVERGED, motion, gap)
-        film = self._loads(motion)
+        oil = self._oil()
+        if oil is None:
+            return self._without(Status.NO_PRESSURE, motion, gap)
+        film = self._loads(motion, *oil)
         return SphericalEvaluation(status, motion, film.wrench, gap, film, self, self.serial)
 
     def _without(self, status: Status, motion: np.ndarray, gap: float) -> SphericalEvaluation:
@@ -238,13 +252,24 @@ class SphericalModel:
         s = self.solver
         return np.where(s.work.active | self.grid.fixed, 1.0, self.bearing.cavitation.cavity_shear).ravel()
 
-    def _loads(self, motion: np.ndarray) -> BallFilm:
+    def _oil(self) -> tuple[np.ndarray, np.ndarray | float, np.ndarray | float] | None:
+        """Scaled pressure, viscosity ratio and its derivative to the unknown; None where no pressure is high enough."""
+        q = self.solver.pressure
+        if self.law is None:
+            return q, 1.0, 0.0
+        p, ratio, ratio_q = np.empty((3, *q.shape))
+        known = self.law.inverse(q * self.pressure_scale, p, ratio, ratio_q)
+        return (p / self.pressure_scale, ratio.ravel(), ratio_q.ravel() * self.pressure_scale) if known else None
+
+    def _loads(
+        self, motion: np.ndarray, P: np.ndarray, ratio: np.ndarray | float, ratio_q: np.ndarray | float
+    ) -> BallFilm:
         s, R2, cross = self.solver, self.bearing.ball_radius**2, skew(motion[PLACE])
-        velocity, P = motion[VELOCITY], s.pressure
+        velocity = motion[VELOCITY]
         normal = self._vector @ P.ravel()
         pulled = normal if not self._limits else self._vector @ (P * self._slope).ravel()
         contact = -R2 * (self._vector @ self._wall.ravel())
-        drag = (self._drag @ (self._moments @ (self._share() / s.H.ravel()))).reshape(6, 6)
+        drag = (self._drag @ (self._moments @ (self._share() * ratio / s.H.ravel()))).reshape(6, 6)
         loads = drag @ np.concatenate([velocity, motion[SPIN]])
         force = loads[:3] - self.force_scale * normal + contact
         torque = loads[3:] + 0.5 * self.force_scale * cross @ pulled
@@ -258,15 +283,22 @@ class SphericalModel:
             contact_pressure=float(self._wall.max()),
             drag=drag,
             stored_power=float((self.force_scale * (normal - pulled) - contact) @ velocity),
+            ratio=ratio,
+            ratio_q=ratio_q,
         )
 
     def tangent(self, motion: np.ndarray, film: BallFilm) -> np.ndarray:
         """d wrench / d motion (6, 11) for the film that the solver holds."""
         s, w = self.solver, self.solver.work
         cross, velocity, spin = skew(motion[PLACE]), motion[VELOCITY], motion[SPIN]
-        force, R2 = self.force_scale, self.bearing.ball_radius**2
-        # derivatives of normal and pulled (3 rows each) by adjoint solves
+        force, R2, speeds = self.force_scale, self.bearing.ball_radius**2, np.concatenate([velocity, spin])
+        # derivatives of normal and pulled (3 rows each), of Couette's loads by the viscosity (6), by adjoint solves
         rows = self._vector if not self._limits else np.concatenate([self._vector, self._vector * self._slope.ravel()])
+        n, P = len(rows), film.pressure / self.pressure_scale
+        if self.law is not None:
+            sheared = np.tensordot(self._drag.reshape(6, 6, 10), speeds, (1, 0)) @ self._moments
+            by_unknown = film.ratio_q * self._share() / s.H.ravel()
+            rows = np.concatenate([rows * film.ratio, sheared * by_unknown])
         at = w.order[: w.count]
         sides = s.adjoint(np.ascontiguousarray(rows[:, at] * w.active.ravel()[at]))
         found = s.sensitivities(sides)
@@ -277,17 +309,19 @@ class SphericalModel:
         by_place = by_gap.reshape(k, -1) @ self._gap_slope.T + by_link.reshape(k, -1) @ self._link_slope.T
         by_place -= 0.5 * by_velocity @ skew(spin)
         pressed = np.concatenate([by_place, by_velocity, 0.5 * by_velocity @ cross], axis=1)
-        normal, pulled = pressed[:3], pressed[-3:].copy()
-        pulled[:, :3] += (s.pressure * self._bend).ravel() * self._vector @ self._gap_slope.T
-        thinner = -self._share() * self._slope.ravel() / s.H.ravel() ** 2
+        normal, pulled = pressed[:3], pressed[n - 3 : n].copy()
+        pulled[:, :3] += (P * self._bend).ravel() * self._vector @ self._gap_slope.T
+        thinner = -self._share() * film.ratio * self._slope.ravel() / s.H.ravel() ** 2
         drag = self._drag @ (self._moments @ (thinner * self._gap_slope).T)
         out = np.empty((6, 9))
-        out[:, :3] = np.tensordot(drag.reshape(6, 6, 3), np.concatenate([velocity, spin]), (1, 0))
+        out[:, :3] = np.tensordot(drag.reshape(6, 6, 3), speeds, (1, 0))
         out[:, 3:] = film.drag
+        if self.law is not None:
+            out += pressed[n:]
         out[:3] -= force * normal
         out[:3, :3] -= R2 * (self._vector * self._wall_slope.ravel()) @ self._gap_slope.T
         out[3:] += 0.5 * force * cross @ pulled
-        out[3:, :3] -= 0.5 * force * skew(self._vector @ (s.pressure * self._slope).ravel())
+        out[3:, :3] -= 0.5 * force * skew(self._vector @ (P * self._slope).ravel())
         # from the ball's centre to O
         out[3:] += cross @ out[:3]
         out[3:, :3] -= skew(film.wrench[:3])

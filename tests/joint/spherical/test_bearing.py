@@ -26,8 +26,8 @@ BALL = {"ball_radius": 0.015, "radial_clearance": 30e-6, "lubricant": OIL}
         ({"cavitation": ehd.Gumbel(cavity_pressure=1e5)}, "cavity_pressure <= 0"),
         ({"contact": ehd.RegularisedWall(onset=40e-6)}, "onset must be below"),
         (
-            {"lubricant": ehd.Lubricant(viscosity=0.1, pressure_law=ehd.RoelandsPressure(coefficient=2e-8))},
-            "pressure_law",
+            {"lubricant": ehd.Lubricant(viscosity=0.1, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.5))},
+            "shear_law",
         ),
     ],
 )

@@ -18,10 +18,12 @@ WALL = ehd.RegularisedWall(onset=5e-6, pressure=1e8)
 CLOSURES = (ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.SwiftStieber(cavity_pressure=-1e5))
 
 
-def model(**options):
-    return SphericalModel(
-        ehd.SphericalBearing(ball_radius=R, radial_clearance=C, lubricant=ehd.Lubricant(viscosity=MU), **options)
-    )
+BARUS, ROELANDS = ehd.BarusPressure(coefficient=2e-8), ehd.RoelandsPressure(coefficient=2e-8)
+
+
+def model(law=None, **options):
+    oil = ehd.Lubricant(viscosity=MU, pressure_law=law)
+    return SphericalModel(ehd.SphericalBearing(ball_radius=R, radial_clearance=C, lubricant=oil, **options))
 
 
 def motion(place=(0, 0, 0), velocity=(0, 0, 0), spin=(0, 0, 0)):
@@ -218,21 +220,67 @@ def test_tangent_is_exact(closure, angles, wall):
                 assert np.abs(tangent - other)[rows, columns].max() < 2e-5 * size
 
 
+def test_squeeze_with_barus_law_is_that_of_the_transformed_pressure():
+    """q = 3 mu R^2 V / (c^3 e) [1 / (1 - e u)^2 - 1], u = cos(chi), as with a constant viscosity; p = -ln(1 - alpha q)
+    / alpha, integrated by quadrature; and no pressure carries a film with alpha q > 1."""
+    e, V, alpha = 0.8, 5e-4, BARUS.coefficient
+
+    def q(u, V=V):
+        return 3 * MU * R**2 * V / (C**3 * e) * (1 / (1 - e * u) ** 2 - 1)
+
+    assert 0.7 < alpha * q(1.0) < 1.0
+    force = 2 * math.pi * R**2 * quad(lambda u: -math.log(1 - alpha * q(u)) / alpha * u, 0, 1, epsrel=1e-10)[0]
+    found = model(BARUS, n_phi=16).evaluate(motion((0, 0, e * C), (0, 0, V)))
+    assert -found.wrench[2] == pytest.approx(force, rel=3e-3)
+    assert force > 1.2 * -squeeze(e, -V)
+    # the pole is half an interval from the first row
+    assert found.quantities()["peak_pressure"] == pytest.approx(-math.log(1 - alpha * q(1.0)) / alpha, rel=0.05)
+    thrown = model(BARUS, n_phi=16).evaluate(motion((0, 0, e * C), (0, 0, 2 * V)))
+    assert thrown.status is Status.NO_PRESSURE and np.isnan(thrown.wrench).all()
+
+
+@pytest.mark.parametrize("law", [BARUS, ROELANDS])
+@pytest.mark.parametrize("closure", CLOSURES)
+@pytest.mark.parametrize("wall", [None, WALL])
+def test_tangent_is_exact_with_a_pressure_law(law, closure, wall):
+    rng, film = (
+        np.random.default_rng(9),
+        model(law, n_phi=24, n_chi=8, cavitation=closure, socket_angles=RING, contact=wall),
+    )
+    highest = 0.0
+    for state in states(rng, 4, 0.8 if wall is None else 1.0):
+        state[SPIN] *= 10.0
+        found = film.evaluate(state)
+        if found.status is Status.NO_PRESSURE:
+            continue
+        highest = max(highest, found.quantities()["peak_pressure"])
+        tangent, other = film.evaluate(state).tangent(), numerical(film, state)
+        for rows in (slice(0, 3), slice(3, 6)):
+            for columns in (PLACE, VELOCITY, SPIN):
+                assert np.abs(tangent - other)[rows, columns].max() < 5e-5 * np.abs(other[rows, columns]).max()
+    # 0.1 to 0.4 of 1 / alpha
+    assert highest > 5e6
+
+
 @pytest.mark.parametrize("closure", CLOSURES[:3])
 @pytest.mark.parametrize("wall", [None, WALL])
-def test_work_is_heat(closure, wall):
+@pytest.mark.parametrize("law", [None, BARUS])
+def test_work_is_heat(closure, wall, law):
     """-(F v + T w) is the heat of the links and of the Couette shear, and what the wall takes up."""
     rng = np.random.default_rng(5)
-    film = model(cavitation=closure, socket_angles=RING, contact=wall)
+    film = model(law, cavitation=closure, socket_angles=RING, contact=wall)
     solver, patch = film.solver, film.patch
     for state in states(rng, 5, 0.95 if wall is None else 1.02):
+        state[VELOCITY] *= 1.0 if law is None else 0.1
         found = film.evaluate(state)
-        P, H = solver.system.linear_pressure, solver.H.copy()
+        q, H, P = solver.system.linear_pressure, solver.H.copy(), found.film.pressure / film.pressure_scale
+        thick = np.reshape(found.film.ratio * np.ones(q.size), q.shape)
         slip = state[VELOCITY][:, None, None] + R * np.cross(state[SPIN], patch.normals, axisb=0, axisc=0)
         slip -= patch.normals * (slip * patch.normals).sum(0)
-        couette = float((MU * R**2 / C * (slip**2).sum(0) * patch.area / H).sum())
+        couette = float((MU * R**2 / C * (slip**2).sum(0) * patch.area * thick / H).sum())
         kx, kz = solver.system.kx, solver.system.kz
-        links = (kx * (P - np.roll(P, -1, 0)) ** 2).sum() + (kz[:, :-1] * np.diff(P, axis=1) ** 2).sum()
+        links = (kx * (P - np.roll(P, -1, 0)) * (q - np.roll(q, -1, 0))).sum()
+        links += (kz[:, :-1] * np.diff(P, axis=1) * np.diff(q, axis=1)).sum()
         heat = film.force_scale * C * float(links) + couette
         loss = found.quantities()["power_loss"]
         assert loss > 0.0
