@@ -113,6 +113,10 @@ _LAZY = {
     "Support": "coupling.bush.object",
     "FactorReuse": "coupling.run.sparse",
     "SolveDynamicSparse": "coupling.run.sparse",
+    "RotorResult": "coupling.rotor.result",
+    "UnbalanceResponse": "coupling.rotor.result",
+    "SolveEquilibrium": "coupling.rotor.api",
+    "SolveThreshold": "coupling.rotor.api",
     "ANCFBush": "solid.bush",
     "BushMesh": "solid.mesh",
     "DeadPressure": "solid.loads",
@@ -160,6 +164,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
+    from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold
+    from exudyn_ehd.coupling.rotor.result import RotorResult, UnbalanceResponse
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
@@ -275,13 +281,16 @@ __all__ = [
     "ReynoldsTemperature",
     "RingingWarning",
     "RoelandsPressure",
+    "RotorResult",
     "RunError",
     "SaintVenantKirchhoff",
     "SaveState",
     "ShortBearing",
     "SolveDynamic",
     "SolveDynamicSparse",
+    "SolveEquilibrium",
     "SolveStatic",
+    "SolveThreshold",
     "StarvationWarning",
     "Status",
     "SteadyResult",
@@ -295,6 +304,7 @@ __all__ = [
     "SwiftStieber",
     "SystemState",
     "ThinFilmWarning",
+    "UnbalanceResponse",
     "UntilPeriodic",
     "VogelTemperature",
     "WaltherTemperature",
