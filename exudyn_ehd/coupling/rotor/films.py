@@ -134,12 +134,11 @@ class RotorFilm:
         return 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
 
     def support(self, force: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Wrench (6,) and tangent (6, 10) of a stiff spring about ``middle`` (2,) that carries a force (2,) there."""
-        stiffness = self.support_stiffness
-        wrench, tangent = np.zeros(6), np.zeros((6, 10))
-        wrench[:2] = force - stiffness * (self.motion[:2] - middle)
-        tangent[0, 0] = tangent[1, 1] = -stiffness
-        return wrench, tangent
+        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, which carry a force (2,) at ``middle``."""
+        tangent = np.zeros((6, 10))
+        tangent[_LOADS, range(4)] = -self.support_stiffness * _SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
+        away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
+        return np.concatenate((force, np.zeros(4))) + tangent @ away, tangent
 
     def guess(self, load: np.ndarray) -> np.ndarray:
         """Eccentricity (2,) in which the film may carry a load (2,)."""

@@ -360,8 +360,7 @@ class EquilibriumSearch:
                 k = direction - node.own.start
                 name = self.mbs.GetNode(NodeIndex(number))["name"]
                 return f"node {number} '{name}' {'along' if k < 3 else 'about'} {'xyz'[k % 3]}"
-        place = next(place for place, own in self.system.others if own == direction)
-        return f"coordinate {place} of the system"
+        return f"coordinate {int(self.system.places[self.system.own == direction][0])} of the system"
 
     def _lost(self, speed: float) -> FilmError:
         """What the films looked like when the search gave up."""

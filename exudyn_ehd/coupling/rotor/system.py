@@ -24,7 +24,8 @@ Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omeg
 
 from __future__ import annotations
 
-from typing import Any, cast
+from collections.abc import Mapping
+from typing import Any, TypeAlias, cast
 
 import exudyn as exu
 import numpy as np
@@ -37,6 +38,9 @@ from exudyn_ehd.status import InputError
 
 # Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
 STEP, RATE_STEP = 1e-6, 1e-2
+
+
+Rates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 class TurningNode:
@@ -66,17 +70,19 @@ class TurningNode:
         """Place (3,) in space, m."""
         return (self.reference + q[self.places])[:3]
 
-    def rates(self, q: np.ndarray, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def rates(self, q: np.ndarray, omega: np.ndarray) -> Rates:
         """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
         own, zero = q[self.places], np.zeros(3)
         rates = np.zeros(own.size)
         rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, np.eye(3), self._frame, self._jac)
-        inverse = np.linalg.pinv(self._jac[1, :, 3:])
+        turns = self._jac[1, :, 3:]
+        # Euler parameters keep their length
+        inverse = turns.T @ np.linalg.inv(turns @ turns.T)
         rates[3:] = inverse @ omega
         rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
         B = np.zeros((own.size, 6))
         B[:3, :3], B[3:, 3:] = np.eye(3), inverse
-        return B, rates[3:], -inverse @ self._jac[3, :, 3:] @ rates[3:]
+        return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
         """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
@@ -109,6 +115,8 @@ class SpinningSystem:
         Length of x.
     multipliers : (m,) array
         mu of the constraints.
+    places, own : (k,) arrays
+        Coordinates that belong to no rigid node, and their directions in x.
     """
 
     def __init__(self, mbs: exu.MainSystem, rotors: list[Rotor]) -> None:
@@ -121,7 +129,6 @@ class SpinningSystem:
             )
         self.q = np.array(data.GetODE2Coordinates(exu.ConfigurationType.Initial), dtype=float)
         self.nodes: dict[int, TurningNode] = {}
-        self.others: list[tuple[int, int]] = []
         self.size, plain = 0, np.ones(self.q.size, dtype=bool)
         for number in range(data.NumberOfNodes()):
             known = mbs.GetNode(NodeIndex(number))
@@ -131,9 +138,9 @@ class SpinningSystem:
                 self.nodes[number] = TurningNode(TURNING[known["nodeType"]], places, reference, self.size)
                 plain[places] = False
                 self.size += 6
-        for place in np.flatnonzero(plain):
-            self.others.append((int(place), self.size))
-            self.size += 1
+        self.places = np.flatnonzero(plain)
+        self.own = self.size + np.arange(self.places.size)
+        self.size += self.places.size
         self._settings = settings = exu.SimulationSettings()
         settings.staticSolver.verboseMode = 0
         settings.solution.file.write = settings.solution.sensors.active = False
@@ -169,38 +176,46 @@ class SpinningSystem:
         for node in self.nodes.values():
             if np.any(x[node.own]):
                 node.move(q, x[node.own])
-        for place, own in self.others:
-            q[place] += x[own]
+        q[self.places] += x[self.own]
         return q
 
-    def balance(self, q: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """r (size,) at coordinates q (n,), rates u and u_t = 0, and the constraints' errors (m,)."""
+    def balance(
+        self, q: np.ndarray, u: np.ndarray, known: Mapping[int, Rates] | None = None, moved: int = -1
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """r (size,) at coordinates q (n,), rates u and u_t = 0, and the constraints' errors (m,).
+
+        ``known`` are the rates of nodes other than ``moved``, where only that one has changed.
+        """
         rates, accelerations, maps = np.zeros_like(q), np.zeros_like(q), []
-        for node in self.nodes.values():
-            B, theta_t, theta_tt = node.rates(q, u[node.own][3:])
+        for number, node in self.nodes.items():
+            own = known[number] if known and number != moved else node.rates(q, u[node.own][3:])
             rates[node.places[:3]] = u[node.own][:3]
-            rates[node.places[3:]], accelerations[node.places[3:]] = theta_t, theta_tt
-            maps.append((node, B))
-        for place, own in self.others:
-            rates[place] = u[own]
+            rates[node.places[3:]], accelerations[node.places[3:]] = own[1], own[2]
+            maps.append((node, own[0]))
+        rates[self.places] = u[self.own]
         self._enter(q, rates)
         self._solver.ComputeNewtonResidual(self.mbs, self._settings)
         found = np.array(self._solver.GetSystemResidual())
-        force = self._mass_matrix() @ accelerations - found[: q.size]
+        force = -found[: q.size]
+        if accelerations.any():
+            force += self._mass_matrix() @ accelerations
         r = np.zeros(self.size)
         for node, B in maps:
             r[node.own] = B.T @ force[node.places]
-        for place, own in self.others:
-            r[own] = force[place]
+        r[self.own] = force[self.places]
         return r, found[q.size :]
 
     def derivatives(self) -> tuple[np.ndarray, np.ndarray]:
         """r_x and r_u (size, size) at the state."""
         u, r_x, r_u = self.spin(), np.empty((self.size, self.size)), np.empty((self.size, self.size))
+        known = {number: node.rates(self.q, u[node.own][3:]) for number, node in self.nodes.items()}
+        owners = np.full(self.size, -1)
+        for number, node in self.nodes.items():
+            owners[node.own] = number
         for k, unit in enumerate(np.eye(self.size)):
-            ends = [self.balance(self.moved(sign * STEP * unit), u)[0] for sign in (1.0, -1.0)]
+            ends = [self.balance(self.moved(step * unit), u, known, owners[k])[0] for step in (STEP, -STEP)]
             r_x[:, k] = (ends[0] - ends[1]) / (2.0 * STEP)
-            ends = [self.balance(self.q, u + sign * RATE_STEP * unit)[0] for sign in (1.0, -1.0)]
+            ends = [self.balance(self.q, u + step * unit, known, owners[k])[0] for step in (RATE_STEP, -RATE_STEP)]
             r_u[:, k] = (ends[0] - ends[1]) / (2.0 * RATE_STEP)
         return r_x, r_u
 
@@ -209,8 +224,7 @@ class SpinningSystem:
         B = np.zeros((self.q.size, self.size))
         for node in self.nodes.values():
             B[node.places, node.own] = node.rates(self.q, np.zeros(3))[0]
-        for place, own in self.others:
-            B[place, own] = 1.0
+        B[self.places, self.own] = 1.0
         return B
 
     def mass(self) -> np.ndarray:
