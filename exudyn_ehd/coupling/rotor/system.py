@@ -76,8 +76,11 @@ class TurningNode:
         rates = np.zeros(own.size)
         rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, np.eye(3), self._frame, self._jac)
         turns = self._jac[1, :, 3:]
-        # Euler parameters keep their length
-        inverse = turns.T @ np.linalg.inv(turns @ turns.T)
+        if self.kind == rigid_nodes.TAIT_BRYAN:
+            inverse = np.linalg.inv(turns)
+        else:
+            # columns or rows are orthogonal and of one length; Euler parameters keep theirs
+            inverse = turns.T / (turns[0] @ turns[0])
         rates[3:] = inverse @ omega
         rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
         B = np.zeros((own.size, 6))
@@ -170,13 +173,12 @@ class SpinningSystem:
                 S[own, own] = -skew(u[own])
         return S
 
-    def moved(self, x: np.ndarray) -> np.ndarray:
-        """Coordinates (n,) of the state moved by x (size,)."""
+    def moved(self, x: np.ndarray, alone: int | None = None) -> np.ndarray:
+        """Coordinates (n,) of the state moved by x (size,), which may be that of one node ``alone`` (-1: of none)."""
         q = self.q.copy()
-        for node in self.nodes.values():
-            if np.any(x[node.own]):
-                node.move(q, x[node.own])
         q[self.places] += x[self.own]
+        for number in self.nodes if alone is None else {alone} & self.nodes.keys():
+            self.nodes[number].move(q, x[self.nodes[number].own])
         return q
 
     def balance(
@@ -213,7 +215,7 @@ class SpinningSystem:
         for number, node in self.nodes.items():
             owners[node.own] = number
         for k, unit in enumerate(np.eye(self.size)):
-            ends = [self.balance(self.moved(step * unit), u, known, owners[k])[0] for step in (STEP, -STEP)]
+            ends = [self.balance(self.moved(step * unit, owners[k]), u, known, owners[k])[0] for step in (STEP, -STEP)]
             r_x[:, k] = (ends[0] - ends[1]) / (2.0 * STEP)
             ends = [self.balance(self.q, u + step * unit, known, owners[k])[0] for step in (RATE_STEP, -RATE_STEP)]
             r_u[:, k] = (ends[0] - ends[1]) / (2.0 * RATE_STEP)
