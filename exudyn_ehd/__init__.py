@@ -114,9 +114,9 @@ _LAZY = {
     "FactorReuse": "coupling.run.sparse",
     "SolveDynamicSparse": "coupling.run.sparse",
     "RotorResult": "coupling.rotor.result",
-    "UnbalanceResponse": "coupling.rotor.result",
     "SolveEquilibrium": "coupling.rotor.api",
     "SolveThreshold": "coupling.rotor.api",
+    "stability_map": "coupling.rotor.api",
     "ANCFBush": "solid.bush",
     "BushMesh": "solid.mesh",
     "DeadPressure": "solid.loads",
@@ -164,8 +164,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
-    from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold
-    from exudyn_ehd.coupling.rotor.result import RotorResult, UnbalanceResponse
+    from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
+    from exudyn_ehd.coupling.rotor.result import RotorResult
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
@@ -304,7 +304,6 @@ __all__ = [
     "SwiftStieber",
     "SystemState",
     "ThinFilmWarning",
-    "UnbalanceResponse",
     "UntilPeriodic",
     "VogelTemperature",
     "WaltherTemperature",
@@ -323,6 +322,7 @@ __all__ = [
     "show_progress",
     "slider_grid",
     "solve_film",
+    "stability_map",
     "steady",
     "stribeck",
     "varied",

@@ -135,11 +135,12 @@ def plot_map(
     ax: Axes | None = None,
     path: Target = None,
 ) -> Figure:
-    """Draw threshold speeds over a parameter: stable below, unstable above; nan counts as above ``limits``."""
+    """Draw threshold speeds over a parameter, stable below and unstable above, between the ``limits``."""
     with styled():
         figure, ax = open_axes(ax, SIZE, path)
         text, unit = name
-        x, y = unit(values), RPM(np.where(np.isnan(thresholds), limits[1], thresholds))
+        order = np.argsort(values)
+        x, y = unit(values[order]), RPM(np.clip(thresholds[order], *limits))
         ax.fill_between(x, y, RPM(limits[1]), color=VERMILION, alpha=0.2, lw=0, label="unstable")
         ax.fill_between(x, RPM(limits[0]), y, color=BLUE, alpha=0.15, lw=0, label="stable")
         ax.plot(x, y, "o-", color="black", ms=3.0)

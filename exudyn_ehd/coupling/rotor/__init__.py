@@ -2,9 +2,11 @@
 
 Module map
 ----------
-solve      equilibrium of all films from speed to speed, thresholds
+api        `SolveEquilibrium`, `SolveThreshold`, `stability_map`
 result     what was found: coefficients, eigenvalues, unbalance response
-system     an Exudyn system about a state in which rotors spin, without its films
-films      the films about such a state
+solve      equilibrium of all films from speed to speed
+checks     what the theory asks of a system
+films      the films about a state in which rotors spin
+system     an Exudyn system about such a state, without its films
 spinning   which nodes turn with a rotor, and about which axis
 """

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 
@@ -11,8 +11,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 from exudyn_ehd.coupling.contract import Index, ObjectIndex, require_system
-from exudyn_ehd.coupling.rotor.result import Layout, RotorResult
-from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, RotorState, films_off
+from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
+from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, films_off
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of, require_items
 from exudyn_ehd.status import InputError, require_number
@@ -66,14 +66,14 @@ def SolveEquilibrium(
 
     Examples
     --------
-    After the example of `JournalBearing`, a shaft of 40 kg in two bearings:
+    After the example of `Held`, the shaft in its two films under a load:
 
-    >>> mbs = exu.SystemContainer().AddSystem()
-    >>> inertia = exu.utilities.InertiaCylinder(density=7850.0, length=0.4, outerRadius=0.0636, axis=2)
-    >>> items = [mbs.CreateGround(), mbs.CreateRigidBody(inertia=inertia, gravity=[0, -9.81, 0])]
-    >>> for z, axial in ((-0.15, ehd.Held()), (0.15, None)):
-    ...     _ = ehd.CreateLubricatedJoint(mbs, f"at {z}", items, [0, 0, z], [0, 0, 1], bearing, axial=axial)
-    >>> mbs.Assemble(); result = ehd.SolveEquilibrium(mbs, [300.0, 900.0])
+    >>> load = mbs.CreateForce(itemNumber=shaft, localPosition=[0, 0, 0.1], loadVector=[0, -100, 0])
+    >>> mbs.Assemble()
+    >>> result = ehd.SolveEquilibrium(mbs, [600.0, 5000.0])
+    >>> result.eccentricity_ratio.round(4)  # speeds, films
+    array([[0.0092, 0.0092],
+           [0.0011, 0.0011]])
     """
     values = np.atleast_1d(np.asarray(speeds, dtype=float))
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values) & (values != 0.0)):
@@ -118,26 +118,83 @@ def SolveThreshold(
     --------
     After the example of `SolveEquilibrium`:
 
-    >>> threshold = ehd.SolveThreshold(mbs, 300.0, 900.0)
-    >>> round(float(threshold.speeds[0]))
-    663
+    >>> threshold = ehd.SolveThreshold(mbs, 600.0, 5000.0)
+    >>> round(float(threshold.speeds[0]))  # rad/s
+    1050
     """
-    low = require_number("SolveThreshold: lowest", lowest, "rad/s", above=0.0)
-    high = require_number("SolveThreshold: highest", highest, "rad/s", above=low)
+    low, high = _limits("SolveThreshold", lowest, highest)
     with _search(mbs, rotors, ratios) as search:
+        found = _threshold(search, low, high)
+    if found is not None and found.growth[0] > 0.0 and found.speeds[0] == low:
+        raise InputError(
+            f"SolveThreshold: the rotor is unstable at lowest = {low:.6g} rad/s already; begin at a lower speed."
+        )
+    return found
 
-        def growth(speed: float) -> float:
-            return float(_result(search, [search.at(speed)]).growth[0])
 
-        speeds = np.geomspace(low, high, SCAN)
-        if growth(low) >= 0.0:
-            raise InputError(
-                f"SolveThreshold: the rotor is unstable at lowest = {low:.6g} rad/s already; begin at a lower speed."
-            )
-        for before, speed in pairwise(speeds):
-            if growth(float(speed)) >= 0.0:
-                found = float(brentq(growth, before, speed, rtol=1e-9))
-                return _result(search, [search.at(found)])
+def stability_map(
+    make: Callable[[float], exu.MainSystem], values: Sequence[float] | np.ndarray, *, lowest: float, highest: float
+) -> StabilityMap:
+    """The speed at which a rotor becomes unstable over a parameter, as a clearance or a load.
+
+    Parameters
+    ----------
+    make : function
+        Makes the assembled system for a value.
+    values : (k,) sequence
+    lowest, highest : float
+        Speeds between which thresholds are looked for, rad/s, as in `SolveThreshold`.
+
+    Returns
+    -------
+    StabilityMap
+
+    Raises
+    ------
+    InputError, FilmError
+        As `SolveThreshold`.
+
+    Examples
+    --------
+    After the example of `SolveThreshold`:
+
+    >>> map = ehd.stability_map(lambda load: mbs, [1.0], lowest=600.0, highest=5000.0)
+    >>> map.thresholds.round()
+    array([1050.])
+    """
+    low, high = _limits("stability_map", lowest, highest)
+    thresholds, ratios = [], []
+    for value in values:
+        with _search(make(value), None, None) as search:
+            found = _threshold(search, low, high)
+        unstable = found is not None and found.speeds[0] == low and found.growth[0] > 0.0
+        thresholds.append(np.inf if found is None else 0.0 if unstable else float(found.speeds[0]))
+        worst = None if found is None or unstable else found.eigenvalues[0, np.argmax(found.eigenvalues[0].real)]
+        ratios.append(np.nan if worst is None else abs(worst.imag) / thresholds[-1])
+    return StabilityMap(
+        values=np.array(values, dtype=float),
+        thresholds=np.array(thresholds),
+        whirl_ratios=np.array(ratios),
+        limits=(low, high),
+    )
+
+
+def _limits(where: str, lowest: float, highest: float) -> tuple[float, float]:
+    low = require_number(f"{where}: lowest", lowest, "rad/s", above=0.0)
+    return low, require_number(f"{where}: highest", highest, "rad/s", above=low)
+
+
+def _threshold(search: EquilibriumSearch, low: float, high: float) -> RotorResult | None:
+    """The lowest speed at which the rotor is not stable; None without one."""
+
+    def growth(speed: float) -> float:
+        return float(_result(search, [search.at(speed)]).growth[0])
+
+    if growth(low) >= 0.0:
+        return _result(search, [search.at(low)])
+    for before, speed in pairwise(np.geomspace(low, high, SCAN).tolist()):
+        if growth(speed) >= 0.0:
+            return _result(search, [search.at(float(brentq(growth, before, speed, rtol=1e-9)))])
     return None
 
 
@@ -161,50 +218,18 @@ def _search(
         mbs.systemData.SetSystemState(state, exu.ConfigurationType.Current)
 
 
-def _result(search: EquilibriumSearch, states: list[RotorState]) -> RotorResult:
+def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> RotorResult:
     """The record of states of one search."""
-    system, films = search.system, search.films
-    clearances = np.array([film.bearing.radial_clearance for film in films])
-    motion, wrench = np.array([s.motion for s in states]), np.array([s.wrench for s in states])
-    angles = np.arctan2(motion[:, :, 1], motion[:, :, 0]) - np.arctan2(-wrench[:, :, 1], -wrench[:, :, 0])
-    angles = np.angle(np.exp(1j * angles * np.sign(motion[:, :, 8])))
-    frames = {
-        node: (rotor.frame, float(ratio))
-        for rotor, ratio in zip(system.rotors, search.ratios, strict=True)
-        for node in rotor.nodes
-    }
-    bodies = {}
-    for number in range(search.mbs.systemData.NumberOfObjects()):
-        data = search.mbs.GetObject(ObjectIndex(number))
-        if data["objectType"] == "RigidBody":
-            bodies[number] = int(data["nodeNumber"])
-
-    def quantity(name: str) -> np.ndarray:
-        return np.array([[film[name] for film in s.quantities] for s in states])
-
+    system, objects = search.system, map(ObjectIndex, range(search.mbs.systemData.NumberOfObjects()))
+    layout = Layout(
+        nodes={number: node.own.start for number, node in system.nodes.items()},
+        bodies={int(k): int(data["nodeNumber"]) for k in objects if "nodeNumber" in (data := search.mbs.GetObject(k))},
+        frames={node: rotor.frame for rotor in system.rotors for node in rotor.nodes},
+        ratios=system.ratios,
+    )
     return RotorResult(
-        speeds=np.array([s.speed for s in states]),
-        joints=tuple(film.name for film in films),
-        motion=motion,
-        wrench=wrench,
-        eccentricity_ratio=np.hypot(motion[:, :, 0], motion[:, :, 1]) / clearances,
-        attitude_angle=angles,
-        minimum_gap=quantity("minimum_gap"),
-        peak_pressure=quantity("peak_pressure"),
-        power_loss=quantity("power_loss"),
-        stiffness=np.array([s.stiffness for s in states]),
-        damping=np.array([s.damping for s in states]),
-        mass_matrix=np.array([s.matrices[0] for s in states]),
-        damping_matrix=np.array([s.matrices[1] for s in states]),
-        stiffness_matrix=np.array([s.matrices[2] for s in states]),
-        directions=np.array([s.directions for s in states]),
-        film_directions=np.array([s.film_directions for s in states]),
-        coordinates=np.array([s.coordinates for s in states]),
-        rates=np.array([s.rates for s in states]),
-        residual=np.array([s.residual for s in states]),
-        evaluations=np.array([s.evaluations for s in states]),
-        clearances=clearances,
-        layout=Layout(
-            nodes={number: node.own.start for number, node in system.nodes.items()}, bodies=bodies, frames=frames
-        ),
+        joints=tuple(film.name for film in search.films),
+        clearances=np.array([film.bearing.radial_clearance for film in search.films]),
+        layout=layout,
+        **{name: np.array([state[name] for state in states]) for name in states[0]},
     )

@@ -15,6 +15,7 @@ from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
 from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
 from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
@@ -90,9 +91,9 @@ class RotorFilm:
         self.bearing = self.model.bearing
         housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
         self.housing, self.journal = housing, journal
-        spinning = {node for rotor in system.rotors for node in rotor.nodes}
-        turns = [any(int(node) in spinning for node in side.nodes) for side in joint.element.sides]
-        if turns != [False, True]:
+        turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
+        self.ratio = turning[1]
+        if turning[0] or not turning[1]:
             raise InputError(
                 f"{WHERE}: joint '{joint.name}' must have a journal that spins in a housing that does not; name the "
                 "spinning bodies by rotors=..., and give them as second entry of the joint's itemNumbers."
@@ -134,7 +135,7 @@ class RotorFilm:
         return 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
 
     def support(self, force: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, which carry a force (2,) at ``middle``."""
+        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a force (2,) at ``middle``."""
         tangent = np.zeros((6, 10))
         tangent[_LOADS, range(4)] = -self.support_stiffness * _SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
         away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
@@ -159,16 +160,24 @@ class RotorFilm:
                 part = min(part, (-along + math.sqrt(along**2 + far**2 * square)) / far**2)
         return part
 
-    def rows(self) -> np.ndarray:
-        """Change (2, size) of the journal's x, y by all directions."""
+    def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:
+        """What `RotorResult` has of a film at its equilibrium."""
+        force, known = evaluation.wrench[:2], evaluation.quantities()
+        where = f"{WHERE}, joint '{self.name}'"
+        refuse_pressed_through(self.bearing, known["minimum_gap"], where)
+        warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
+        angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
         rows = np.zeros((2, self.size))
-        rows[:, self.places] = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place[:2]
-        return rows
-
-    def coefficients(self, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """K and C (4, 4): minus the change of F_x, F_y, M_y, -M_x by x, y, bx, by and by their rates."""
-        rows = -_SIGNS[:, None] * tangent[_LOADS]
-        return rows[:, :4], rows[:, 4:8]
+        rows[:, self.places] = self.loads(evaluation.wrench, tangent).motion_by_place[:2]
+        coefficients = -_SIGNS[:, None] * tangent[_LOADS]
+        return {
+            "motion": self.motion.copy(),
+            "wrench": evaluation.wrench,
+            "attitude_angle": math.remainder(math.copysign(angle, angle * self.motion[8]), 2.0 * math.pi),
+            "stiffness": coefficients[:, :4],
+            "damping": coefficients[:, 4:8],
+            "film_directions": rows,
+        } | {name: known[name] for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss")}
 
 
 def _carrier(joint: Joint, side: object, system: SpinningSystem) -> Carrier:

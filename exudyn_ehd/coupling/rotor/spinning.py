@@ -33,14 +33,19 @@ class Rotor:
         The axis of each in its own frame.
     frame : (3, 3) array
         Axes in space: two transverse ones, x and y of a joint, and that of the spin.
+    ratio : float
+        Speed over that of the first rotor.
     """
 
     nodes: list[int]
     axes: list[np.ndarray]
     frame: np.ndarray
+    ratio: float = 1.0
 
 
-def find_rotors(mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors) -> list[Rotor]:
+def find_rotors(
+    mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors, ratios: Sequence[float] | None
+) -> list[Rotor]:
     """The rotors of a system: those named, or the bodies of all journals with what turns with them."""
     links = _links(mbs)
     if rotors is None:
@@ -56,7 +61,13 @@ def find_rotors(mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors) -> lis
             else [node_of(mbs, part) for part in entry]
             for entry in rotors
         ]
-    return [_rotor(mbs, joints, group) for group in groups]
+    speeds = np.ones(len(groups)) if ratios is None else np.asarray(ratios, dtype=float)
+    if speeds.shape != (len(groups),) or not np.all(np.isfinite(speeds) & (speeds != 0.0)):
+        raise InputError(
+            f"{WHERE}: ratios must be {len(groups)} finite numbers other than 0, one for each rotor (driven nodes "
+            f"{[group[0] for group in groups]}), got {ratios!r}."
+        )
+    return [_rotor(mbs, joints, group, float(ratio)) for group, ratio in zip(groups, speeds, strict=True)]
 
 
 def node_of(mbs: exu.MainSystem, item: Index) -> int:
@@ -70,7 +81,7 @@ def node_of(mbs: exu.MainSystem, item: Index) -> int:
     raise InputError(f"{WHERE}: give rotors and their bodies as numbers of rigid bodies or nodes, got {item!r}.")
 
 
-def _rotor(mbs: exu.MainSystem, joints: list[Joint], nodes: list[int]) -> Rotor:
+def _rotor(mbs: exu.MainSystem, joints: list[Joint], nodes: list[int], ratio: float) -> Rotor:
     references = []
     for node in nodes:
         data = mbs.GetNode(NodeIndex(node))
@@ -85,10 +96,10 @@ def _rotor(mbs: exu.MainSystem, joints: list[Joint], nodes: list[int]) -> Rotor:
         journal = joint.element.sides[1]
         if isinstance(journal, NodeSide) and journal.nodes and int(journal.nodes[0]) in nodes:
             frame = references[nodes.index(int(journal.nodes[0]))] @ journal.rotation
-            return Rotor(nodes, [turn.T @ frame[:, 2] for turn in references], frame)
+            return Rotor(nodes, [turn.T @ frame[:, 2] for turn in references], frame, ratio)
     raise InputError(
-        f"{WHERE}: the rotor of node {nodes[0]} is the journal of no lubricated joint, whose axis it would turn about; "
-        "name the bodies that carry the journals."
+        f"{WHERE}: the rotor of node {nodes[0]} carries no journal of a lubricated joint, whose axis it would turn "
+        "about; name the bodies that do, and give joints the node of a shaft in place of a beam's element."
     )
 
 

@@ -16,7 +16,8 @@ so that, with S dphi = dphi x omega in the rows of turning nodes, and with the d
     M x_tt + (r_u + M S) x_t + (r_x + r_u S) x = 0.
 
 Displacements and rotations count in space, not in the turning body: for rotors that are the same in all directions
-about their axis the matrices are constant. Gyroscopic moments are part of r_u, damping inside of the rotor of r_u S.
+about their axis the matrices are constant. Gyroscopic moments are part of r_u. Damping inside of a rotor is that of
+Exudyn's elements: its ``RigidBodySpringDamper`` damps velocities in space, which drives no whirl.
 
 Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omega] = d/dt [dphi] + [dphi][omega] -
 [omega][dphi]. The derivatives of r are central differences; films are left out, whose tangents are exact (`films`).
@@ -114,6 +115,8 @@ class SpinningSystem:
         Coordinates of the state.
     spins : (r,) array
         Speeds of the rotors, rad/s.
+    ratios : dict
+        Speed of a rotor's node over that of the first rotor, by its number.
     size : int
         Length of x.
     multipliers : (m,) array
@@ -124,6 +127,7 @@ class SpinningSystem:
 
     def __init__(self, mbs: exu.MainSystem, rotors: list[Rotor]) -> None:
         self.mbs, self.rotors, self.spins = mbs, rotors, np.zeros(len(rotors))
+        self.ratios = {node: rotor.ratio for rotor in rotors for node in rotor.nodes}
         data = mbs.systemData
         if len(data.GetODE1Coordinates()) or mbs.NumberOfGeneralContacts():
             raise InputError(
@@ -246,6 +250,11 @@ class SpinningSystem:
             self.mbs, scalarFactor_ODE2=1.0, scalarFactor_ODE2_t=0.0, scalarFactor_ODE1=0.0, velocityLevel=False
         )
         return np.array(self._solver.GetSystemJacobian())[n:, :n] @ self.maps()
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """M, D, K (size, size) of the module's text at the state."""
+        M, S, (r_x, r_u) = self.mass(), self.turning(), self.derivatives()
+        return M, r_u + M @ S, r_x + r_u @ S
 
     def drives(self) -> np.ndarray:
         """Rows (r, size) of the angles that drives hold: those of the first nodes about their axes."""
