@@ -1,4 +1,4 @@
-"""Pictures of rotors in films over their speed: Campbell diagram, growth rates, places, unbalance response."""
+"""Pictures of rotors in films over their speed: Campbell diagram, decrements, places, unbalance response."""
 
 from __future__ import annotations
 
@@ -26,14 +26,17 @@ from exudyn_ehd.pictures.style import (
 from exudyn_ehd.pictures.units import Unit, label, unit_for
 
 SIZE, PLACES, RESPONSE = (0.62 * PAGE, 0.45 * PAGE), (COLUMN, 1.12 * COLUMN), (0.62 * PAGE, 0.6 * PAGE)
-RPM, HERTZ, RATE = Unit("1/min", 30.0 / np.pi), Unit("Hz", 0.5 / np.pi), Unit("1/s")
+RPM, HERTZ = Unit("1/min", 30.0 / np.pi), Unit("Hz", 0.5 / np.pi)
 # Vibrations that decay faster than this share of their frequency are no resonances: shown small.
 OVERDAMPED = 0.5
+# Largest decrement and frequency, over the highest speed, that are shown.
+DAMPED, REACH = 2.0, 1.15
+TICKS = (-1.0, -0.5, 0.0, 0.5, 1.0)
 _SENSE = LinearSegmentedColormap.from_list("sense of whirl", [VERMILION, GREY, BLUE])
 
 
 def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, path: Target = None) -> Figure:
-    """Draw frequencies over the speed: large where lightly damped, crossed where growing, colour by sense of whirl.
+    """Draw frequencies over the speed: small where overdamped, crossed where growing, colour by sense of whirl.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
         speed = np.abs(table["speed"])
         x = np.broadcast_to(RPM(speed)[:, None], table["frequency"].shape)
         y, light = HERTZ(table["frequency"]), table["damping_ratio"] < OVERDAMPED
-        top = 1.15 * max(float(HERTZ(speed.max())), 1e-9)
+        top = REACH * max(float(HERTZ(speed.max())), 1e-9)
         for part, size in ((~light & np.isfinite(y), 3.0), (light, 14.0)):
             dots = ax.scatter(x[part], y[part], s=size, c=table["whirl"][part], cmap=_SENSE, vmin=-1, vmax=1, lw=0)
         growing = table["growth"] > 0.0
@@ -68,18 +71,17 @@ def plot_campbell(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, pa
 
 
 def plot_stability(table: Mapping[str, np.ndarray], *, ax: Axes | None = None, path: Target = None) -> Figure:
-    """Draw growth rates of lightly damped vibrations over the speed; arguments as `plot_campbell`."""
+    """Draw logarithmic decrements of what a Campbell diagram shows; arguments as `plot_campbell`."""
     with styled():
         figure, ax = open_axes(ax, SIZE, path)
-        shown = table["damping_ratio"] < OVERDAMPED
-        x = np.broadcast_to(RPM(np.abs(table["speed"]))[:, None], shown.shape)
+        speed, values = np.abs(table["speed"]), table["log_decrement"]
+        x = np.broadcast_to(RPM(speed)[:, None], values.shape)
+        shown = (values < DAMPED) & (table["frequency"] < REACH * speed.max())
         ax.axhline(0.0, color="black", lw=0.6)
-        growth = table["growth"]
-        for part, colour, text in ((growth < 0.0, BLUE, "decays"), (growth >= 0.0, VERMILION, "grows: unstable")):
-            chosen = part & shown
-            if chosen.any():
-                ax.plot(x[chosen], growth[chosen], ".", color=colour, label=text)
-        ax.set(xlabel=label("speed", RPM), ylabel=label("growth rate", RATE))
+        for part, colour, text in ((values > 0.0, BLUE, "decays"), (values <= 0.0, VERMILION, "grows: unstable")):
+            if np.any(part & shown):
+                ax.plot(x[part & shown], values[part & shown], ".", color=colour, label=text)
+        ax.set(xlabel=label("speed", RPM), ylabel="logarithmic decrement [-]")
         ax.grid(True, lw=0.4, color="#D0D0D0")
         ax.legend()
         return finish(figure, path)
@@ -95,10 +97,10 @@ def plot_positions(
         ax.plot(np.cos(around), np.sin(around), "--", color=GREY, lw=0.8, label="clearance")
         slowest = int(np.argmin(np.abs(speeds)))
         for k, name in enumerate(names):
-            (line,) = ax.plot(*places[:, k].T, "-", label=name)
+            (line,) = ax.plot(*places[:, k].T, ("-", "--", ":")[k % 3], lw=1.4, label=name)
             text = f"slowest, {float(RPM(abs(speeds[slowest]))):.0f} {RPM.symbol}"
             ax.plot(*places[slowest, k], "o", color=line.get_color(), label=text if k == len(names) - 1 else None)
-        ax.set(xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal")
+        ax.set(xlabel="x / c [-]", ylabel="y / c [-]", aspect="equal", xticks=TICKS, yticks=TICKS)
         figure.legend(loc="outside lower center", ncols=2)
         return finish(figure, path)
 

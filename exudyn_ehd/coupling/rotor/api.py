@@ -226,6 +226,7 @@ def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> R
         bodies={int(k): int(data["nodeNumber"]) for k in objects if "nodeNumber" in (data := search.mbs.GetObject(k))},
         frames={node: rotor.frame for rotor in system.rotors for node in rotor.nodes},
         ratios=system.ratios,
+        length=search.length,
     )
     return RotorResult(
         joints=tuple(film.name for film in search.films),

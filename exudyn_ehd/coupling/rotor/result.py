@@ -34,12 +34,15 @@ class Layout:
         Axes (3, 3) in space of the rotor of a node that spins, the spin's last, by its number.
     ratios : dict
         Speed of that rotor over that of the first one.
+    length : float
+        Of the longest bearing, by which rotations count as displacements, m.
     """
 
     nodes: Mapping[int, int]
     bodies: Mapping[int, int]
     frames: Mapping[int, np.ndarray]
     ratios: Mapping[int, float]
+    length: float
 
     def spinning(self, where: str, item: Index) -> int:
         """The node of a body or node of a rotor."""
@@ -172,8 +175,8 @@ class RotorResult:
         dict
             ``speed`` (k,) rad/s; then (k, m) arrays of the vibrations at each speed by rising frequency, filled up with
             nan: ``frequency`` rad/s; ``growth`` 1/s; ``damping_ratio`` -growth / abs(eigenvalue); ``log_decrement``
-            -2 pi growth / frequency; ``whirl`` from 1 (circle in the sense of the spin) by 0 (line) to -1 (against it),
-            in the films.
+            -2 pi growth / frequency; ``whirl`` from 1 (circles in the sense of the spin) by 0 (lines, torsion) to -1
+            (against it), of all nodes that spin.
         """
         values, k = self.eigenvalues, self.speeds.size
         count = (values.imag > 0.0).sum(axis=1)
@@ -181,10 +184,14 @@ class RotorResult:
         shown = values[:, values.shape[1] - max(int(count.max()), 1) :]
         frequency = np.where(shown.imag > 0.0, shown.imag, np.nan)
         growth = np.where(shown.imag > 0.0, shown.real, np.nan)
-        orbits = np.einsum("kjan,knm->kjam", self.film_directions, self.modes[:, :, -shown.shape[1] :])
-        sense = np.sign(self.motion[:, :, 8])[:, :, None]
-        turned = -2.0 * np.sum(sense * np.imag(np.conj(orbits[:, :, 0]) * orbits[:, :, 1]), axis=1)
-        whirl = turned / np.maximum(np.sum(np.abs(orbits) ** 2, axis=(1, 2)), 1e-300)
+        turned = moved = np.zeros(shown.shape)
+        for node, frame in self.layout.frames.items():
+            first = self.layout.nodes[node]
+            for part, scale in ((slice(first, first + 3), 1.0), (slice(first + 3, first + 6), self.layout.length)):
+                x, y, z = np.moveaxis(scale * frame.T @ self.modes[:, part, -shown.shape[1] :], 1, 0)
+                turned = turned - 2.0 * np.sign(self.layout.ratios[node]) * np.imag(np.conj(x) * y)
+                moved = moved + np.abs(x) ** 2 + np.abs(y) ** 2 + np.abs(z) ** 2
+        whirl = np.sign(self.speeds)[:, None] * turned / np.maximum(moved, 1e-300)
         table = {
             "frequency": frequency,
             "growth": growth,
@@ -283,7 +290,7 @@ class RotorResult:
         return plot_campbell(self.campbell(), ax=ax, path=path)
 
     def plot_stability(self, *, ax: Axes | None = None, path: Target = None) -> Figure:
-        """Growth rates of the vibrations over the speed; above zero the rotor is unstable."""
+        """Logarithmic decrements of the vibrations over the speed; below zero the rotor is unstable."""
         from exudyn_ehd.pictures.rotors import plot_stability
 
         return plot_stability(self.campbell(), ax=ax, path=path)

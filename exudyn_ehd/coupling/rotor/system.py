@@ -39,6 +39,7 @@ from exudyn_ehd.status import InputError
 
 # Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
 STEP, RATE_STEP = 1e-6, 1e-2
+UNIT = np.eye(3)
 
 
 Rates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
@@ -75,7 +76,7 @@ class TurningNode:
         """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
         own, zero = q[self.places], np.zeros(3)
         rates = np.zeros(own.size)
-        rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, np.eye(3), self._frame, self._jac)
+        rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, UNIT, self._frame, self._jac)
         turns = self._jac[1, :, 3:]
         if self.kind == rigid_nodes.TAIT_BRYAN:
             inverse = np.linalg.inv(turns)
@@ -85,7 +86,7 @@ class TurningNode:
         rates[3:] = inverse @ omega
         rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
         B = np.zeros((own.size, 6))
-        B[:3, :3], B[3:, 3:] = np.eye(3), inverse
+        B[:3, :3], B[3:, 3:] = UNIT, inverse
         return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
 
     def move(self, q: np.ndarray, x: np.ndarray) -> None:
