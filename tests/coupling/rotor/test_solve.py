@@ -3,7 +3,20 @@
 import exudyn as exu
 import numpy as np
 import pytest
-from rigid_rotors import CLEARANCE, EULER, SPAN, TAIT_BRYAN, VECTOR, WEIGHT, bearing, fixed, shaft, sprung, three_bodies
+from rigid_rotors import (
+    CLEARANCE,
+    EULER,
+    SPAN,
+    TAIT_BRYAN,
+    VECTOR,
+    WEIGHT,
+    bearing,
+    fixed,
+    inertia_of,
+    shaft,
+    sprung,
+    three_bodies,
+)
 
 import exudyn_ehd as ehd
 
@@ -120,3 +133,52 @@ def test_what_a_run_does_under_unbalance_is_foretold(speed, turns=12, steps=80):
         measured = 2.0 * np.mean(e * np.exp(-1j * speed * t)[:, None], axis=0)
         size = np.abs(response.films[0, k]).max()
         assert np.abs(measured - response.films[0, k]).max() < 0.01 * size
+
+
+@pytest.mark.slow
+def test_a_shaft_of_beams_turns_unstable_where_the_example_of_whirl_has_it(example):
+    """Against its linear theory by hand, without gyroscopic moments and the bushes' moments; and its unbalance."""
+    whirl = example("rotor_oil_whirl")
+    film = whirl.bearing(quick=True)
+    by_hand = whirl.LinearRotor(4, film).threshold()
+    rotor = whirl.Rotor(4, film, lambda t: 0.0, lambda t: 0.0)
+    found = ehd.SolveThreshold(rotor.mbs, 0.95 * by_hand, 1.05 * by_hand)
+    assert found.speeds[0] == pytest.approx(by_hand, rel=2e-4)
+
+
+def test_speeds_and_orbits_of_geared_rotors():
+    """Two shafts beside each other, one twice as fast the other way: as each of them alone."""
+    single = ehd.SolveEquilibrium(shaft(place=0.05)[0], [SPEED]).eigenvalues[0]
+    fast = ehd.SolveEquilibrium(shaft(place=0.05)[0], [-2.0 * SPEED]).eigenvalues[0]
+
+    def beside(mbs, ground, body, turn):
+        other = mbs.CreateRigidBody(
+            referencePosition=[1.0, 0, 0.05], inertia=inertia_of(200.0, 2.0, 1.0, np.eye(3)), gravity=[0, -WEIGHT, 0]
+        )
+        for name, z in (("third", -0.2), ("fourth", 0.2)):
+            ehd.CreateLubricatedJoint(mbs, name, [ground, other], [1.0, 0, z], [0, 0, 1], bearing())
+        mbs.CreateGenericJoint(itemNumbers=[ground, other], position=[1, 0, 0], constrainedAxes=[0, 0, 1, 0, 0, 0])
+
+    mbs, body, _ = shaft(place=0.05, extra=beside)
+    both = ehd.SolveEquilibrium(mbs, SPEED, ratios=[1.0, -2.0])
+    expected = np.concatenate((single, fast))
+    expected = expected[np.lexsort((expected.real, expected.imag))]
+    np.testing.assert_allclose(both.eigenvalues[0], expected, rtol=0, atol=1e-6 * SPEED)
+    response, alone = both.unbalance_response({body: 1e-4}), ehd.SolveEquilibrium(shaft(place=0.05)[0], SPEED)
+    np.testing.assert_allclose(
+        response.amplitude("left"), alone.unbalance_response({body: 1e-4}).amplitude("left"), rtol=1e-6
+    )
+    assert response.amplitude("third")[0] < 1e-9 * response.amplitude("left")[0]
+
+
+def test_unbalances_add_up_and_turn_with_the_shaft(reference):
+    body = exu.ObjectIndex(1)
+    one, turned = (reference.unbalance_response({body: value}) for value in (1e-4, 1e-4j))
+    np.testing.assert_allclose(turned.films, 1j * one.films, rtol=1e-12)
+    np.testing.assert_allclose(turned.phase("left") - one.phase("left"), np.pi / 2.0, rtol=1e-9)
+    back = ehd.SolveEquilibrium(shaft(place=0.05)[0], -SPEED).unbalance_response({body: 1e-4})
+    np.testing.assert_allclose(back.amplitude(body), one.amplitude(body)[:1], rtol=1e-7)
+    np.testing.assert_allclose(back.phase(body), one.phase(body)[:1], rtol=1e-6)
+    # slow speeds: the film's spring against the force; the journal's body runs within its films
+    forward, backward = one.orbit(body)
+    np.testing.assert_allclose(one.amplitude(body), np.abs(forward) + np.abs(backward))
