@@ -19,6 +19,8 @@ from exudyn_ehd.status import InputError, require_number
 
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
+# What the search overwrites of a system, and a run or the history of one goes on with.
+CONFIGURATIONS = (exu.ConfigurationType.Current, exu.ConfigurationType.StartOfStep)
 
 
 def SolveEquilibrium(
@@ -210,12 +212,16 @@ def _search(
     joints = joints_of(mbs)
     if not joints:
         raise InputError(f"{WHERE}: the system has no lubricated joint; create its bearings by CreateLubricatedJoint.")
-    state = mbs.systemData.GetSystemState(exu.ConfigurationType.Current)
+    data = mbs.systemData
+    kept = [(c, data.GetSystemState(c), data.GetODE2Coordinates_tt(c), data.GetTime(c)) for c in CONFIGURATIONS]
     try:
         with films_off(mbs, joints):
             yield EquilibriumSearch(mbs, joints, rotors, ratios)
     finally:
-        mbs.systemData.SetSystemState(state, exu.ConfigurationType.Current)
+        for configuration, state, accelerations, time in kept:
+            data.SetSystemState(state, configuration)
+            data.SetODE2Coordinates_tt(accelerations, configuration)
+            data.SetTime(time, configuration)
 
 
 def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> RotorResult:

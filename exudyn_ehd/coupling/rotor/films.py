@@ -201,6 +201,8 @@ def _plain(joint: Joint) -> BearingModel:
         what = "a flexible bush, or a film of your own"
     elif model.remembers:
         what = "a film that remembers (ElrodAdams, thermal, wear, liner), of which it knows no frequency response"
+    elif not model.bearing.squeeze:
+        what = "squeeze=False and so no damping"
     elif model.needs_spin:
         what = "supply areas that turn with the journal"
     else:

@@ -63,6 +63,7 @@ def test_what_turns_with_the_rotor_or_keeps_it_from_turning():
 @pytest.mark.parametrize(
     ("options", "match"),
     [
+        ({"squeeze": False}, "joint 'left' has squeeze=False and so no damping"),
         ({"cavitation": ehd.ElrodAdams()}, "joint 'left' has a film that remembers"),
         (
             {"supply": (ehd.Hole(angle=1.0, diameter=0.005, pressure=1e5, rotating=True),)},

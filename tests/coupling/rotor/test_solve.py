@@ -182,3 +182,20 @@ def test_unbalances_add_up_and_turn_with_the_shaft(reference):
     # slow speeds: the film's spring against the force; the journal's body runs within its films
     forward, backward = one.orbit(body)
     np.testing.assert_allclose(one.amplitude(body), np.abs(forward) + np.abs(backward))
+
+
+def test_the_state_of_a_run_and_its_history_stay_as_they_are():
+    mbs, _, joints = shaft(place=0.05)
+    ehd.SolveEquilibrium(mbs, SPEED).place(mbs, SPEED)
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 1e-3, 5
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    ehd.SolveDynamic(mbs, settings)
+    coordinates, film = np.array(mbs.systemData.GetODE2Coordinates()), joints[0].element.force
+    ehd.SolveEquilibrium(mbs, SPEED)
+    np.testing.assert_array_equal(mbs.systemData.GetODE2Coordinates(), coordinates)
+    assert mbs.systemData.GetTime() == pytest.approx(1e-3) and joints[0].history.time.size == 6
+    assert mbs.GetObjectParameter(joints[0].objectNumber, "forceUserFunction")["function"] == film
+    # started in equilibrium, it stays there
+    assert np.ptp(joints[0].history.eccentricity, axis=0).max() < 1e-6 * CLEARANCE
