@@ -232,8 +232,8 @@ def draw(rotor, result, response, table, runs: dict[float, float], folder: pathl
         upper.plot(
             np.array(list(runs)) / RPM, 1e6 * np.array(list(runs.values())), "o", color="black", label="... in time"
         )
-        upper.set(yscale="log", ylim=(1e-2, 1e2))
-        upper.legend(loc="lower right")
+        upper.set(yscale="log", ylim=(1e-2, 1e3))
+        upper.legend(loc="upper right", ncols=2)
     figure.savefig(folder / "unbalance.png", dpi=120)
     table.plot("radial clearance", unit="µm", factor=1e6, path=folder / "stability_map.png")
     result.plot_positions(path=folder / "positions.png")

@@ -106,17 +106,22 @@ def plot_positions(
 
 
 def plot_response(
-    speeds: np.ndarray, curves: Sequence[tuple[str, np.ndarray, np.ndarray]], *, path: Target = None
+    speeds: np.ndarray,
+    curves: Sequence[tuple[str, np.ndarray, np.ndarray]],
+    stable: np.ndarray,
+    *,
+    path: Target = None,
 ) -> Figure:
-    """Draw amplitudes (k,) in m and phases (k,) in rad, with their names, over the speeds (k,)."""
+    """Draw named amplitudes (k,) in m and phases (k,) in rad over the speeds (k,), dotted where not stable."""
     with styled():
         figure = new_figure(RESPONSE, path)
         upper, lower = figure.subplots(2, 1, sharex=True)
         unit = unit_for("length", np.concatenate([amplitude for _, amplitude, _ in curves]))
         x = RPM(np.abs(speeds))
         for text, amplitude, phase in curves:
-            upper.plot(x, unit(amplitude), label=text)
-            lower.plot(x, np.degrees(np.unwrap(phase)))
+            for panel, y in ((upper, unit(amplitude)), (lower, np.degrees(np.unwrap(phase)))):
+                (line,) = panel.plot(x, np.where(stable, y, np.nan), label=text)
+                panel.plot(x, np.where(stable, np.nan, y), ":", color=line.get_color())
         upper.set(ylabel=label("amplitude", unit), ylim=(0.0, None))
         lower.set(xlabel=label("speed", RPM), ylabel="phase after the\nunbalance [°]")
         for panel in (upper, lower):

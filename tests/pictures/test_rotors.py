@@ -42,9 +42,11 @@ def test_places_responses_and_maps():
     ax = rotors.plot_positions(SPEEDS, places, ["left", "right"]).axes[0]
     np.testing.assert_allclose(ax.lines[1].get_xydata(), places[:, 0])
     assert ax.lines[4].get_label() == "slowest, 955 1/min"
-    upper, lower = rotors.plot_response(SPEEDS, [("disc", np.array([1e-6, 5e-6, 2e-6]), -SPEEDS / 100.0)]).axes
-    np.testing.assert_allclose(upper.lines[0].get_ydata(), [1.0, 5.0, 2.0])
-    np.testing.assert_allclose(lower.lines[0].get_ydata(), np.degrees([-1.0, -2.0, -3.0]))
+    curves = [("disc", np.array([1e-6, 5e-6, 2e-6]), -SPEEDS / 100.0)]
+    upper, lower = rotors.plot_response(SPEEDS, curves, np.array([True, True, False])).axes
+    np.testing.assert_allclose(upper.lines[0].get_ydata(), [1.0, 5.0, np.nan])
+    np.testing.assert_allclose(upper.lines[1].get_ydata(), [np.nan, np.nan, 2.0])
+    np.testing.assert_allclose(lower.lines[0].get_ydata(), np.degrees([-1.0, -2.0, np.nan]))
     assert upper.get_ylabel() == "amplitude [µm]"
     ax = Figure().add_subplot()
     limits, thresholds = (100.0, 400.0), np.array([np.inf, 300.0, 0.0])

@@ -209,7 +209,8 @@ class RotorResult:
         """Steady whirl of the rotor under unbalance, by the linear equations about each equilibrium.
 
         The force of an unbalance U = mass x distance is U Omega^2 and turns with the rotor; displacements are those of
-        ``(K - Omega^2 M + i Omega D) y = f``. They hold while they are small beside the films.
+        ``(K - Omega^2 M + i Omega D) y = f``. They hold while they are small beside the films, and at speeds at which
+        the equilibrium is stable: at others (``is_stable``) the rotor whirls away from them.
 
         Parameters
         ----------
@@ -246,6 +247,7 @@ class RotorResult:
         return UnbalanceResponse(
             speeds=self.speeds,
             spin=ratio * self.speeds,
+            is_stable=self.is_stable,
             joints=self.joints,
             films=np.einsum("kjan,kn->kja", self.film_directions, x),
             displacement=x,
@@ -315,6 +317,8 @@ class UnbalanceResponse:
     ----------
     speeds, spin : (k,) arrays
         Of the first rotor, and of that with the unbalance, rad/s.
+    is_stable : (k,) array
+        Whether the equilibrium is.
     joints : tuple of str
     films : (k, j, 2) array
         Complex amplitudes of x and y of the journals, joint frame, time factor exp(i spin t), m.
@@ -335,6 +339,7 @@ class UnbalanceResponse:
 
     speeds: np.ndarray
     spin: np.ndarray
+    is_stable: np.ndarray
     joints: tuple[str, ...]
     films: np.ndarray = field(repr=False)
     displacement: np.ndarray = field(repr=False)
@@ -367,13 +372,16 @@ class UnbalanceResponse:
     def plot(
         self, items: Sequence[str | Index] | Mapping[str, str | Index] | None = None, *, path: Target = None
     ) -> Figure:
-        """Amplitude and phase of journals, bodies or nodes over the speed, ``{text: item}``; by default all joints."""
+        """Amplitude and phase of journals, bodies or nodes over the speed, ``{text: item}``; by default all joints.
+
+        Dotted where the rotor is unstable.
+        """
         from exudyn_ehd.pictures.rotors import plot_response
 
         chosen = self.joints if items is None else items
         named = chosen if isinstance(chosen, Mapping) else {str(item): item for item in chosen}
         curves = [(text, self.amplitude(item), self.phase(item)) for text, item in named.items()]
-        return plot_response(self.speeds, curves, path=path)
+        return plot_response(self.speeds, curves, self.is_stable, path=path)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
