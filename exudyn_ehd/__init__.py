@@ -119,6 +119,10 @@ _LAZY = {  # imported only when asked for: film studies need neither Exudyn nor 
     "Support": "coupling.bush.object",
     "FactorReuse": "coupling.run.sparse",
     "SolveDynamicSparse": "coupling.run.sparse",
+    "RotorResult": "coupling.rotor.result",
+    "SolveEquilibrium": "coupling.rotor.api",
+    "SolveThreshold": "coupling.rotor.api",
+    "stability_map": "coupling.rotor.api",
     "ANCFBush": "solid.bush",
     "BushMesh": "solid.mesh",
     "DeadPressure": "solid.loads",
@@ -165,6 +169,8 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
+    from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
+    from exudyn_ehd.coupling.rotor.result import RotorResult
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
     from exudyn_ehd.coupling.run.settings import ConfigureSolver
@@ -284,13 +290,16 @@ __all__ = [
     "ReynoldsTemperature",
     "RingingWarning",
     "RoelandsPressure",
+    "RotorResult",
     "RunError",
     "SaintVenantKirchhoff",
     "SaveState",
     "ShortBearing",
     "SolveDynamic",
     "SolveDynamicSparse",
+    "SolveEquilibrium",
     "SolveStatic",
+    "SolveThreshold",
     "SphericalBearing",
     "SphericalHistory",
     "SphericalResult",
@@ -325,6 +334,7 @@ __all__ = [
     "show_progress",
     "slider_grid",
     "solve_film",
+    "stability_map",
     "steady",
     "steady_spherical",
     "stribeck",

@@ -245,6 +245,23 @@ def test_rotor_oil_whirl(example, tmp_path):
     assert n["largest_eccentricity_ratio"] < 0.99 and n["minimum_film_thickness_um"] > 1.0
 
 
+@pytest.mark.slow
+def test_rotor_campbell(example, tmp_path):
+    n = example("rotor_campbell").main(quick=True, output=tmp_path)
+    for name in ("campbell", "unbalance", "stability_map", "positions"):
+        assert (tmp_path / f"{name}.png").stat().st_size > 10_000
+    # half-speed whirl, at a speed that falls with the clearance
+    assert n["whirl_ratio"] == pytest.approx(0.5, abs=0.01)
+    assert (
+        n["threshold_rpm_at_the_largest_clearance"] < n["threshold_rpm"] < n["threshold_rpm_at_the_smallest_clearance"]
+    )
+    assert n["threshold_rpm"] == pytest.approx(8290, rel=0.01)
+    # the gyroscopic moment of the overhung disc
+    assert n["backward_Hz"] == pytest.approx(56.4, rel=0.01) and n["forward_Hz"] > 1.6 * n["backward_Hz"]
+    # linear against time
+    assert n["largest_error_in_time"] < 0.01 and n["largest_journal_amplitude"] < 0.1
+
+
 def test_four_bar_spatial(example, tmp_path):
     rows = example("four_bar_spatial").main(quick=True, output=tmp_path)
     assert (tmp_path / "four_bar_spatial.png").stat().st_size > 10_000

@@ -6,6 +6,7 @@ api         `CreateLubricatedJoint`, axial options `Free` and `Held`
 spherical   `CreateLubricatedSphericalJoint`: a ball in its socket
 replace     `ReplaceJoint`: films in the place of joints that a model has
 handle      `LubricatedJoint`: what a user has of a joint
+rotor       rotors in several films: equilibria over the speed, eigenvalues, unbalance
 run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings
 element     the film as an object of Exudyn: user functions, accepted steps, failures
 bush        nodal bush as an object of a model

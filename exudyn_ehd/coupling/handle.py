@@ -110,8 +110,8 @@ class LubricatedJoint(JointResults):
         """Let the next run start where the film carries a steady load, with the film in its steady state.
 
         The journal's node is moved sideways, its tilt stays; the journal starts at rest against the housing except for
-        its spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several, and
-        loads that depend on the place, settle in a static solve (`SolveStatic`) or a ramp of the load.
+        its spin. Temperature, oil content and modal bush start settled. For a body in one film; rotors in several start
+        from `SolveEquilibrium`, and loads that depend on the place settle in a static solve (`SolveStatic`).
 
         Parameters
         ----------

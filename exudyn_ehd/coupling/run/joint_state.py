@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.element.modal import ModalFilmElement
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.record.history import JointHistory
@@ -75,6 +76,10 @@ class Joint(Protocol):
     @property
     def bearing(self) -> JournalBearing:
         """What was given as bearing."""
+
+    @property
+    def objectNumber(self) -> Index:
+        """The film element's object in Exudyn."""
 
     @property
     def element(self) -> FilmElement:

@@ -1,0 +1,12 @@
+"""Rotors in several films: equilibrium over the speed, eigenvalues, response to unbalance.
+
+Module map
+----------
+api        `SolveEquilibrium`, `SolveThreshold`, `stability_map`
+result     what was found: coefficients, eigenvalues, unbalance response
+solve      equilibrium of all films from speed to speed
+checks     what the theory asks of a system
+films      the films about a state in which rotors spin
+system     an Exudyn system about such a state, without its films
+spinning   which nodes turn with a rotor, and about which axis
+"""

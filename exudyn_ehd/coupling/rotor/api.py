@@ -1,0 +1,242 @@
+"""What users call: equilibria over the speed, the speed at which they become unstable, that speed over a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from itertools import pairwise
+
+import exudyn as exu
+import numpy as np
+from scipy.optimize import brentq
+
+from exudyn_ehd.coupling.contract import Index, ObjectIndex, require_system
+from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
+from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, films_off
+from exudyn_ehd.coupling.rotor.spinning import WHERE
+from exudyn_ehd.coupling.run.solve import joints_of, require_items
+from exudyn_ehd.status import InputError, require_number
+
+# Speeds at which a threshold is first looked for between its limits.
+SCAN = 16
+# What the search overwrites of a system, and a run or the history of one goes on with.
+CONFIGURATIONS = (exu.ConfigurationType.Current, exu.ConfigurationType.StartOfStep)
+
+
+def SolveEquilibrium(
+    mbs: exu.MainSystem,
+    speeds: float | Sequence[float] | np.ndarray,
+    *,
+    rotors: Sequence[Index | Sequence[Index]] | None = None,
+    ratios: Sequence[float] | None = None,
+) -> RotorResult:
+    """Equilibrium of spinning rotors in all of their films at given speeds, linearised with all that the system holds.
+
+    All bodies rest but for the given spins; films, springs and constraints carry the static loads. The equations stand
+    in `exudyn_ehd.coupling.rotor.system`. The system's states stay as they are.
+
+    Rotors are made of rigid bodies (any 3D node), also of several with fixed joints or springs between them, and of
+    ``ObjectBeamGeometricallyExact`` on rigid nodes. They must be the same in all directions about their axes, their
+    unbalance is left to `RotorResult.unbalance_response`. Loads with user functions count as they are at the start
+    time. Bearings have rigid surfaces and films whose K and C hold at any frequency: no `ElrodAdams`, heat, wear,
+    liners, flexible bushes.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+        Assembled, with lubricated joints whose journals spin.
+    speeds : float or (k,) array
+        Of the first rotor about its joint's z axis, rad/s, not 0. Each is looked for from the one before.
+    rotors : sequence, optional
+        One entry for every rotor: a body or node, to which all is added that turns with it through beams, fixed joints
+        and springs that hold all rotations; or a sequence of all of its bodies and nodes. The first one is driven at
+        the constant speed, the others may twist against it. By default those of all journals.
+    ratios : (r,) sequence, optional
+        Speeds of the rotors over that of the first; 1 by default.
+
+    Returns
+    -------
+    RotorResult
+
+    Raises
+    ------
+    InputError
+        For what the theory does not hold for: rotors that are not the same in all directions, bodies that nothing
+        holds, other kinds of films or bodies.
+    FilmError
+        If no equilibrium was found at a speed.
+
+    Examples
+    --------
+    After the example of `Held`, the shaft in its two films under a load:
+
+    >>> load = mbs.CreateForce(itemNumber=shaft, localPosition=[0, 0, 0.1], loadVector=[0, -100, 0])
+    >>> mbs.Assemble()
+    >>> result = ehd.SolveEquilibrium(mbs, [600.0, 5000.0])
+    >>> result.eccentricity_ratio.round(4)  # speeds, films
+    array([[0.0092, 0.0092],
+           [0.0011, 0.0011]])
+    """
+    values = np.atleast_1d(np.asarray(speeds, dtype=float))
+    if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values) & (values != 0.0)):
+        raise InputError(f"{WHERE}.speeds must be finite numbers other than 0 in rad/s, got {speeds!r}.")
+    if not np.all(np.sign(values) == np.sign(values[0])):
+        raise InputError(f"{WHERE}.speeds must be of one sign, got {speeds!r}; solve once for each sense of rotation.")
+    with _search(mbs, rotors, ratios) as search:
+        return _result(search, [search.at(float(speed)) for speed in values])
+
+
+def SolveThreshold(
+    mbs: exu.MainSystem,
+    lowest: float,
+    highest: float,
+    *,
+    rotors: Sequence[Index | Sequence[Index]] | None = None,
+    ratios: Sequence[float] | None = None,
+) -> RotorResult | None:
+    """The lowest speed between two at which rotors in their films become unstable.
+
+    The largest real part of the eigenvalues changes its sign there, to 1e-9 of the speed; it is looked for between 16
+    speeds, so that ranges of instability narrower than their distance may be missed.
+
+    Parameters
+    ----------
+    mbs, rotors, ratios
+        As in `SolveEquilibrium`.
+    lowest, highest : float
+        Speeds of the first rotor, rad/s, 0 < lowest < highest.
+
+    Returns
+    -------
+    RotorResult or None
+        At the threshold alone; None if the rotor is stable up to ``highest``.
+
+    Raises
+    ------
+    InputError, FilmError
+        As `SolveEquilibrium`, and if the rotor is unstable at ``lowest`` already.
+
+    Examples
+    --------
+    After the example of `SolveEquilibrium`:
+
+    >>> threshold = ehd.SolveThreshold(mbs, 600.0, 5000.0)
+    >>> round(float(threshold.speeds[0]))  # rad/s
+    1050
+    """
+    low, high = _limits("SolveThreshold", lowest, highest)
+    with _search(mbs, rotors, ratios) as search:
+        found = _threshold(search, low, high)
+    if found is not None and found.growth[0] > 0.0 and found.speeds[0] == low:
+        raise InputError(
+            f"SolveThreshold: the rotor is unstable at lowest = {low:.6g} rad/s already; begin at a lower speed."
+        )
+    return found
+
+
+def stability_map(
+    make: Callable[[float], exu.MainSystem], values: Sequence[float] | np.ndarray, *, lowest: float, highest: float
+) -> StabilityMap:
+    """The speed at which a rotor becomes unstable over a parameter, as a clearance or a load.
+
+    Parameters
+    ----------
+    make : function
+        Makes the assembled system for a value.
+    values : (k,) sequence
+    lowest, highest : float
+        Speeds between which thresholds are looked for, rad/s, as in `SolveThreshold`.
+
+    Returns
+    -------
+    StabilityMap
+
+    Raises
+    ------
+    InputError, FilmError
+        As `SolveThreshold`.
+
+    Examples
+    --------
+    After the example of `SolveThreshold`:
+
+    >>> map = ehd.stability_map(lambda load: mbs, [1.0], lowest=600.0, highest=5000.0)
+    >>> map.thresholds.round()
+    array([1050.])
+    """
+    low, high = _limits("stability_map", lowest, highest)
+    thresholds, ratios = [], []
+    for value in values:
+        with _search(make(value), None, None) as search:
+            found = _threshold(search, low, high)
+        unstable = found is not None and found.speeds[0] == low and found.growth[0] > 0.0
+        thresholds.append(np.inf if found is None else 0.0 if unstable else float(found.speeds[0]))
+        worst = None if found is None or unstable else found.eigenvalues[0, np.argmax(found.eigenvalues[0].real)]
+        ratios.append(np.nan if worst is None else abs(worst.imag) / thresholds[-1])
+    return StabilityMap(
+        values=np.array(values, dtype=float),
+        thresholds=np.array(thresholds),
+        whirl_ratios=np.array(ratios),
+        limits=(low, high),
+    )
+
+
+def _limits(where: str, lowest: float, highest: float) -> tuple[float, float]:
+    low = require_number(f"{where}: lowest", lowest, "rad/s", above=0.0)
+    return low, require_number(f"{where}: highest", highest, "rad/s", above=low)
+
+
+def _threshold(search: EquilibriumSearch, low: float, high: float) -> RotorResult | None:
+    """The lowest speed at which the rotor is not stable; None without one."""
+
+    def growth(speed: float) -> float:
+        return float(_result(search, [search.at(speed)]).growth[0])
+
+    if growth(low) >= 0.0:
+        return _result(search, [search.at(low)])
+    for before, speed in pairwise(np.geomspace(low, high, SCAN).tolist()):
+        if growth(speed) >= 0.0:
+            return _result(search, [search.at(float(brentq(growth, before, speed, rtol=1e-9)))])
+    return None
+
+
+@contextmanager
+def _search(
+    mbs: exu.MainSystem, rotors: Sequence[Index | Sequence[Index]] | None, ratios: Sequence[float] | None
+) -> Iterator[EquilibriumSearch]:
+    """A search in a system that gets its states and films back."""
+    require_system(WHERE, mbs)
+    if not mbs.systemIsConsistent:
+        raise InputError(f"{WHERE}: the system is not assembled; call mbs.Assemble() first.")
+    require_items(mbs)
+    joints = joints_of(mbs)
+    if not joints:
+        raise InputError(f"{WHERE}: the system has no lubricated joint; create its bearings by CreateLubricatedJoint.")
+    data = mbs.systemData
+    kept = [(c, data.GetSystemState(c), data.GetODE2Coordinates_tt(c), data.GetTime(c)) for c in CONFIGURATIONS]
+    try:
+        with films_off(mbs, joints):
+            yield EquilibriumSearch(mbs, joints, rotors, ratios)
+    finally:
+        for configuration, state, accelerations, time in kept:
+            data.SetSystemState(state, configuration)
+            data.SetODE2Coordinates_tt(accelerations, configuration)
+            data.SetTime(time, configuration)
+
+
+def _result(search: EquilibriumSearch, states: list[dict[str, np.ndarray]]) -> RotorResult:
+    """The record of states of one search."""
+    system, objects = search.system, map(ObjectIndex, range(search.mbs.systemData.NumberOfObjects()))
+    layout = Layout(
+        nodes={number: node.own.start for number, node in system.nodes.items()},
+        bodies={int(k): int(data["nodeNumber"]) for k in objects if "nodeNumber" in (data := search.mbs.GetObject(k))},
+        frames={node: rotor.frame for rotor in system.rotors for node in rotor.nodes},
+        ratios=system.ratios,
+        length=search.length,
+    )
+    return RotorResult(
+        joints=tuple(film.name for film in search.films),
+        clearances=np.array([film.bearing.radial_clearance for film in search.films]),
+        layout=layout,
+        **{name: np.array([state[name] for state in states]) for name in states[0]},
+    )

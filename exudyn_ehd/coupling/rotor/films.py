@@ -1,0 +1,213 @@
+"""The films of a system about a state in which rotors spin, in the directions x and rates u of `system`."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.kinematics.sides import NodeSide
+from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE
+from exudyn_ehd.coupling.rotor.system import SpinningSystem, TurningNode
+from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
+from exudyn_ehd.joint.balance.position import first_guess
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.status import InputError, Status
+
+# Loads that do work on the slopes of a motion (x, y, bx, by): F_x, F_y, M_y, -M_x.
+_LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
+
+
+class Carrier:
+    """One side of a joint: its node in the system, None for ground, its frame and its Jacobians.
+
+    Work arrays as in `exudyn_ehd.coupling.kinematics.rigid_nodes`, for x and u in place of q and q_t.
+    """
+
+    def __init__(self, side: NodeSide, node: TurningNode | None) -> None:
+        self.side, self.node = side, node
+        size = 0 if node is None else 6
+        self.frame, self.jac = side.frame.copy(), np.zeros((4, 3, size))
+        self.places = np.arange(size) + (0 if node is None else node.own.start)
+        self._arm = np.zeros((3, 3))
+
+    def update(self, q: np.ndarray, u: np.ndarray) -> None:
+        """Bring frame and Jacobians to a state."""
+        if self.node is None:
+            return
+        turn, v, omega = self.node.turn(q), u[self.node.own][:3], u[self.node.own][3:]
+        arm = turn @ self.side.rho
+        self.frame[:, :3] = turn @ self.side.rotation
+        self.frame[:, 3] = self.node.position(q) + arm
+        self.frame[:, 4], self.frame[:, 5] = v + np.cross(omega, arm), omega
+        self._arm = skew(arm)
+        self.jac[0, :, :3] = self.jac[1, :, 3:] = np.eye(3)
+        self.jac[0, :, 3:], self.jac[2, :, 3:] = -self._arm, -skew(omega) @ self._arm
+
+    def geometric(self, force: np.ndarray) -> np.ndarray:
+        """d(Jp^T F + Jr^T M) / dx (n, n) at fixed loads in space: the force's arm turns."""
+        change = np.zeros((self.places.size, self.places.size))
+        change[3:, 3:] = skew(force) @ self._arm if change.size else 0.0
+        return change
+
+
+class FilmLoads(NamedTuple):
+    """A film on the directions ``places`` of x.
+
+    Attributes
+    ----------
+    force : (n,) array
+        Generalized force.
+    by_place, by_rate : (n, n) arrays
+        Its derivatives by x and u.
+    motion_by_place : (10, n) array
+        Of the journal's motion in the joint frame.
+    """
+
+    force: np.ndarray
+    by_place: np.ndarray
+    by_rate: np.ndarray
+    motion_by_place: np.ndarray
+
+
+class RotorFilm:
+    """One film of the system.
+
+    Parameters
+    ----------
+    joint : Joint
+    system : SpinningSystem
+    """
+
+    def __init__(self, joint: Joint, system: SpinningSystem) -> None:
+        self.name, self.size = joint.name, system.size
+        self.model = _plain(joint)
+        self.bearing = self.model.bearing
+        housing, journal = (_carrier(joint, side, system) for side in joint.element.sides)
+        self.housing, self.journal = housing, journal
+        turning = [system.ratios.get(int(side.nodes[0]), 0.0) if side.nodes else 0.0 for side in joint.element.sides]
+        self.ratio = turning[1]
+        if turning[0] or not turning[1]:
+            raise InputError(
+                f"{WHERE}: joint '{joint.name}' must have a journal that spins in a housing that does not; name the "
+                "spinning bodies by rotors=..., and give them as second entry of the joint's itemNumbers."
+            )
+        self.places = np.concatenate((housing.places, journal.places))
+        self.motion = np.zeros(10)
+
+    def update(self, q: np.ndarray, u: np.ndarray) -> None:
+        """Bring the journal's motion to a state."""
+        for side in (self.housing, self.journal):
+            side.update(q, u)
+        relative.relative_motion(self.housing.frame, self.journal.frame, self.motion)
+
+    def evaluate(self) -> Evaluation | None:
+        """The film at the motion; None if there is none."""
+        if not np.all(np.isfinite(self.motion)):
+            return None
+        evaluation = self.model.evaluate(self.motion)
+        return evaluation if evaluation.status is Status.CONVERGED else None
+
+    def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
+        """What a wrench (6,) and its tangent (6, 10) do to the directions."""
+        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
+        h, n = self.housing.places.size, self.places.size
+        loads, force = np.empty((4, 3)), np.empty(n)
+        relative.global_loads(*frames, wrench, loads)
+        relative.generalized_force(*jacobians, loads, force)
+        motion_x, motion_u = np.empty((10, n)), np.empty((10, n))
+        relative.motion_variation(*frames, *jacobians, motion_x, motion_u)
+        by_place, by_rate = np.zeros((n, n)), np.empty((n, n))
+        by_place[:h, :h], by_place[h:, h:] = self.housing.geometric(loads[0]), self.journal.geometric(loads[2])
+        tangent = np.ascontiguousarray(tangent)
+        relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
+        return FilmLoads(force, by_place, by_rate, motion_x)
+
+    @property
+    def support_stiffness(self) -> float:
+        """N/m, of the size of the film's own where it carries much."""
+        return 10.0 * self.bearing.reference_force(self.motion[8]) / self.bearing.radial_clearance
+
+    def support(self, force: np.ndarray, middle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Wrench (6,) and tangent (6, 10) of stiff springs along the bearing, with a force (2,) at ``middle``."""
+        tangent = np.zeros((6, 10))
+        tangent[_LOADS, range(4)] = -self.support_stiffness * _SIGNS * [1.0, 1.0, *[self.bearing.length**2 / 12.0] * 2]
+        away = np.concatenate((self.motion[:2] - middle, self.motion[2:]))
+        return np.concatenate((force, np.zeros(4))) + tangent @ away, tangent
+
+    def guess(self, load: np.ndarray) -> np.ndarray:
+        """Eccentricity (2,) in which the film may carry a load (2,)."""
+        return first_guess(self.bearing, float(self.motion[8]), load, self.motion[2:4])
+
+    def room(self, x: np.ndarray) -> float:
+        """Largest part of a step x (size,) that uses up at most 60 % of the gap at either end; `update` has run."""
+        change = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place @ x[self.places]
+        c, half, part = self.bearing.radial_clearance, 0.5 * self.bearing.length, 1.0
+        if self.model.effects.contacts:
+            return min(1.0, 0.3 * c / max(float(np.hypot(*change[:2])), 1e-300))
+        for s in (-half, half):
+            e, d = self.motion[:2] + s * self.motion[2:4], change[:2] + s * change[2:4]
+            near, far = float(np.hypot(*e)), float(np.hypot(*d))
+            allowed = near + 0.6 * max(c - near, 0.0)
+            along, square = float(e @ d), allowed**2 - near**2
+            if far > 0.0:
+                part = min(part, (-along + math.sqrt(along**2 + far**2 * square)) / far**2)
+        return part
+
+    def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:
+        """What `RotorResult` has of a film at its equilibrium."""
+        force, known = evaluation.wrench[:2], evaluation.quantities()
+        where = f"{WHERE}, joint '{self.name}'"
+        refuse_pressed_through(self.bearing, known["minimum_gap"], where)
+        warn_of_overload(self.bearing, known["peak_pressure"], float(np.hypot(*force)), where)
+        angle = math.atan2(self.motion[1], self.motion[0]) - math.atan2(-force[1], -force[0])
+        rows = np.zeros((2, self.size))
+        rows[:, self.places] = self.loads(evaluation.wrench, tangent).motion_by_place[:2]
+        coefficients = -_SIGNS[:, None] * tangent[_LOADS]
+        return {
+            "motion": self.motion.copy(),
+            "wrench": evaluation.wrench,
+            "attitude_angle": math.remainder(math.copysign(angle, angle * self.motion[8]), 2.0 * math.pi),
+            "stiffness": coefficients[:, :4],
+            "damping": coefficients[:, 4:8],
+            "film_directions": rows,
+        } | {name: known[name] for name in ("eccentricity_ratio", "minimum_gap", "peak_pressure", "power_loss")}
+
+
+def _carrier(joint: Joint, side: object, system: SpinningSystem) -> Carrier:
+    if isinstance(side, NodeSide):
+        if not side.nodes:
+            return Carrier(side, None)
+        if int(side.nodes[0]) in system.nodes:
+            return Carrier(side, system.nodes[int(side.nodes[0])])
+    kinds = sorted({system.mbs.GetNode(NodeIndex(int(node)))["nodeType"] for node in getattr(side, "nodes", ())})
+    raise InputError(
+        f"{WHERE}: both sides of joint '{joint.name}' must be ground, rigid bodies or nodes of types {list(TURNING)}, "
+        f"got {type(side).__name__} on {kinds}; give the joint the node of a beam in place of its element, and 3D "
+        "bodies."
+    )
+
+
+def _plain(joint: Joint) -> BearingModel:
+    """The model of a film whose stiffness and damping hold for motions of any frequency."""
+    element, model = joint.element, joint.element.model
+    if type(element) is not FilmElement or not isinstance(model, BearingModel):
+        what = "a flexible bush, or a film of your own"
+    elif model.remembers:
+        what = "a film that remembers (ElrodAdams, thermal, wear, liner), of which it knows no frequency response"
+    elif not model.bearing.squeeze:
+        what = "squeeze=False and so no damping"
+    elif model.needs_spin:
+        what = "supply areas that turn with the journal"
+    else:
+        return model
+    raise InputError(
+        f"{WHERE}: joint '{joint.name}' has {what}; take a rigid bearing with SwiftStieber() or Gumbel(), at the "
+        "viscosity of its temperature, or single bearings by ehd.equilibrium(...)."
+    )

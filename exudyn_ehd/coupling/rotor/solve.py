@@ -1,0 +1,264 @@
+"""Equilibrium of rotors in all of their films, followed over the speed.
+
+All coordinates rest but the spins, which are given; the torque that a constant speed takes acts on the driven node, the
+first of each rotor, about its own axis. The unknowns are the places of all bodies, by Newton's method with the exact
+tangents of the films and differences of the forces of all else (`system`), from speed to speed along the tangent of the
+branch, ``K dx/dOmega = -dr/dOmega``.
+
+The first place: every film as a stiff spring tells the load that it has to carry, and `first_guess` the place for that
+load.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import NamedTuple
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.rotor.checks import (
+    require_axis,
+    require_held,
+    require_isotropy,
+    require_mass,
+    require_steady_load,
+)
+from exudyn_ehd.coupling.rotor.films import FilmLoads, RotorFilm
+from exudyn_ehd.coupling.rotor.spinning import WHERE, Rotors, find_rotors
+from exudyn_ehd.coupling.rotor.system import SpinningSystem
+from exudyn_ehd.coupling.run.joint_state import Joint
+from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.status import FilmError
+
+# Unbalance over the loads of the films that counts as none, and steps of Newton's method that may pass.
+TOLERANCE, STEPS = 1e-8, 40
+RANK = 1e-9
+FUNCTIONS = ("forceUserFunction", "jacobianUserFunction")
+
+
+class Balance(NamedTuple):
+    """All forces at a state, in the N directions x.
+
+    Attributes
+    ----------
+    r : (N,) array
+        What is not in balance, constraints with their multipliers so far included.
+    K, r_u : (N, N) arrays
+        Its derivatives, K with the turning of the spins.
+    free : (N, n) array
+        Directions that constraints and drives leave.
+    mend : (N,) array
+        The way to where constraints hold.
+    multipliers : (m + r,) array
+        Change of the multipliers, and the torques of the drives.
+    residual : float
+        Unbalance over the films' loads.
+    """
+
+    r: np.ndarray
+    K: np.ndarray
+    r_u: np.ndarray
+    free: np.ndarray
+    mend: np.ndarray
+    multipliers: np.ndarray
+    residual: float
+
+
+class EquilibriumSearch:
+    """Search for the equilibria of one system, whose films are switched off in Exudyn meanwhile (`films_off`).
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    joints : list of Joint
+    rotors, ratios
+        As in `SolveEquilibrium`.
+    """
+
+    def __init__(
+        self, mbs: exu.MainSystem, joints: list[Joint], rotors: Rotors, ratios: Sequence[float] | None
+    ) -> None:
+        self.mbs, self.system = mbs, SpinningSystem(mbs, find_rotors(mbs, joints, rotors, ratios))
+        self.films = [RotorFilm(joint, self.system) for joint in joints]
+        self.length = max(film.bearing.length for film in self.films)
+        self.weights = np.ones(self.system.size)
+        for node in self.system.nodes.values():
+            self.weights[node.own][3:] = 1.0 / self.length
+        self.torques = np.zeros(len(self.system.rotors))
+        self.rest: tuple[np.ndarray, np.ndarray]
+        self.slope: np.ndarray | None = None
+        self.speed, self.count = math.nan, 0
+
+    def at(self, speed: float) -> dict[str, np.ndarray]:
+        """The equilibrium at a speed, rad/s, looked for from the last one found: what `RotorResult` has of each.
+
+        Raises
+        ------
+        FilmError
+            If none was found.
+        """
+        system, self.count = self.system, 0
+        system.spins[:] = [speed * rotor.ratio for rotor in system.rotors]
+        found = None
+        if self.slope is not None:
+            self._move((speed - self.speed) * self.slope)
+            found = self._newton()
+        if found is None:
+            self._start()
+            found = self._newton()
+        if found is None:
+            raise self._lost(speed)
+        evaluations, tangents = found
+        self.rest = system.derivatives()
+        balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
+        load = max(float(np.abs(e.wrench[:3]).max()) for e in evaluations)
+        require_steady_load(system, self.weights, balance.free, load)
+        changed = np.zeros(system.size)
+        for film, tangent in zip(self.films, tangents, strict=True):
+            changed[film.places] -= film.loads(film.ratio * tangent[:, 8], tangent).force
+        free, M = balance.free, system.mass()
+        self.slope = -free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ changed)
+        self.speed = speed
+        D = balance.r_u + M @ system.turning()
+        whole = {
+            "speeds": speed,
+            "mass_matrix": free.T @ M @ free,
+            "damping_matrix": free.T @ D @ free,
+            "stiffness_matrix": free.T @ balance.K @ free,
+            "directions": free,
+            "coordinates": system.q.copy(),
+            "rates": system.maps() @ system.spin(),
+            "residual": balance.residual,
+            "evaluations": self.count,
+        }
+        films = [film.found(e, t) for film, e, t in zip(self.films, *found, strict=True)]
+        return {name: np.array(value) for name, value in whole.items()} | {
+            name: np.array([film[name] for film in films]) for name in films[0]
+        }
+
+    def _start(self) -> None:
+        """Move all bodies to a first place near the equilibrium, and check what the theory asks of them."""
+        self.rest = self.system.derivatives()
+        supports = [(np.zeros(2), np.zeros(2)) for _ in self.films]
+        for _ in range(3):
+            self._update()
+            springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
+            balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
+            require_held(self.system, self.weights, balance.K, balance.free)
+            self.system.q = self.system.moved(self._step(balance))
+            self._update()
+            forces = [f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)]
+            supports = [(force, film.guess(-force)) for film, force in zip(self.films, forces, strict=True)]
+        if self.slope is None:
+            require_mass(self.system, self.weights, self.system.mass(), balance.free)
+            require_axis(self.mbs, self.system)
+            require_isotropy(self.system, self.weights)
+
+    def _update(self) -> None:
+        u = self.system.spin()
+        for film in self.films:
+            film.update(self.system.q, u)
+
+    def _films(self) -> tuple[list[Evaluation], list[np.ndarray]] | None:
+        """Films and tangents at the state; None without a film."""
+        self._update()
+        evaluations, tangents = [], []
+        for film in self.films:
+            self.count += 1
+            evaluation = film.evaluate()
+            if evaluation is None:
+                return None
+            evaluations.append(evaluation)
+            # films of one bearing's description have models of their own: the tangent is this evaluation's
+            tangents.append(evaluation.tangent())
+        return evaluations, tangents
+
+    def _balance(self, loads: list[FilmLoads]) -> Balance:
+        """All forces at the state, for the last derivatives of the system without films."""
+        system, size = self.system, sum(part.force @ part.force for part in loads)
+        r, error = system.balance(system.q, system.spin())
+        K, r_u = self.rest[0].copy(), self.rest[1].copy()
+        for film, part in zip(self.films, loads, strict=True):
+            block = np.ix_(film.places, film.places)
+            r[film.places] -= part.force
+            K[block] -= part.by_place
+            r_u[block] -= part.by_rate
+        K += r_u @ system.turning()
+        for k, rotor in enumerate(system.rotors):
+            own = slice(system.nodes[rotor.nodes[0]].own.start + 3, system.nodes[rotor.nodes[0]].own.stop)
+            # the driving torque follows the axis of its node
+            K[own, own] -= self.torques[k] * skew(system.axis(k, 0))
+        held = np.vstack((system.constraints(), system.drives()))
+        left, values, right = np.linalg.svd(held)
+        rank = int(np.sum(values > RANK * values[0]))
+        inverse = right[:rank].T / values[:rank] @ left[:, :rank].T
+        free = right[rank:].T
+        mend = -inverse[:, : error.size] @ error
+        scale = max(math.sqrt(size), 1e-300)
+        residual = float(np.abs(self.weights * (free @ (free.T @ r))).max()) / scale
+        return Balance(r, K, r_u, free, mend, -inverse.T @ r, residual)
+
+    def _step(self, balance: Balance) -> np.ndarray:
+        """Newton's step (size,)."""
+        free, mend = balance.free, balance.mend
+        return mend - free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ (balance.r + balance.K @ mend))
+
+    def _move(self, step: np.ndarray) -> None:
+        """Move the state by a step, shortened where it would use up the gap of a film."""
+        self._update()
+        self.system.q = self.system.moved(min(film.room(step) for film in self.films) * step)
+
+    def _newton(self) -> tuple[list[Evaluation], list[np.ndarray]] | None:
+        """Films and tangents of an equilibrium; None if none was found."""
+        system = self.system
+        for _ in range(STEPS):
+            films = self._films()
+            if films is None:
+                return None
+            balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
+            if balance.residual < TOLERANCE and np.abs(balance.mend).max() < TOLERANCE * self.length:
+                return films
+            count = system.multipliers.size
+            system.multipliers = system.multipliers + balance.multipliers[:count]
+            self.torques = balance.multipliers[count:]
+            try:
+                self._move(self._step(balance))
+            except np.linalg.LinAlgError:
+                return None
+        return None
+
+    def _lost(self, speed: float) -> FilmError:
+        """What the films looked like when the search gave up."""
+        self._update()
+        states = []
+        for film in self.films:
+            c = film.bearing.radial_clearance
+            e, tilt = np.hypot(*film.motion[:2]) / c, 0.5 * film.bearing.length * np.hypot(*film.motion[2:4]) / c
+            states.append(f"joint '{film.name}' at an eccentricity ratio of {e:.4g} with a tilt of {tilt:.4g}")
+        return FilmError(
+            f"{WHERE}: found no equilibrium at {speed:.6g} rad/s; the search ended with {', '.join(states)}. Begin at "
+            "a higher speed and come down in smaller steps, look at loads and clearances, and give films whose "
+            "surfaces come to touch a contact (asperity=, contact=)."
+        )
+
+
+@contextmanager
+def films_off(mbs: exu.MainSystem, joints: list[Joint]) -> Iterator[None]:
+    """Let Exudyn see no films: they are evaluated here, once per state."""
+    kept = []
+    try:
+        for joint in joints:
+            number = joint.objectNumber
+            kept += [(number, name, mbs.GetObjectParameter(number, name)["function"]) for name in FUNCTIONS]
+            mbs.SetObjectParameter(number, FUNCTIONS[0], lambda mbs, t, item, q, q_t: np.zeros(len(q)))
+            mbs.SetObjectParameter(number, FUNCTIONS[1], lambda mbs, t, item, q, *rest: np.zeros((len(q), len(q))))
+        yield
+    finally:
+        for number, name, function in kept:
+            mbs.SetObjectParameter(number, name, function)
+        for joint in joints:
+            joint.element.forget()

@@ -1,0 +1,305 @@
+"""An Exudyn system about a state in which rotors spin and all else rests, without the forces of its films.
+
+Every rigid node is described in space by a small displacement and a small rotation of its frame, ``x = (dp, dphi)``,
+and by its velocity and angular velocity, ``u = (v, omega)``; any other coordinate by itself. With q_t = B(q) u the
+equations of motion of the system are the balance of forces and moments on its bodies::
+
+    r(x, u, u_t) = B^T (M(q) q_tt - f(q, q_t) + C(q)^T mu) = 0,    q_tt = B (u_t - (dB^-1/dt) B u).
+
+A rotor at rest but for its spin has omega_i = Omega a_i, with the axis a_i of its node i. A small motion about it is no
+change of omega alone, as the frame that is turned turns with it::
+
+    d omega = dphi_t + dphi x omega,    d omega_t = dphi_tt + dphi_t x omega,
+
+so that, with S dphi = dphi x omega in the rows of turning nodes, and with the derivatives r_x and r_u::
+
+    M x_tt + (r_u + M S) x_t + (r_x + r_u S) x = 0.
+
+Displacements and rotations count in space, not in the turning body: for rotors that are the same in all directions
+about their axis the matrices are constant. Gyroscopic moments are part of r_u. Damping inside of a rotor is that of
+Exudyn's elements: its ``RigidBodySpringDamper`` damps velocities in space, which drives no whirl.
+
+Source of the variation of omega: dA = [dphi] A and A_t = [omega] A give [d omega] = d/dt [dphi] + [dphi][omega] -
+[omega][dphi]. The derivatives of r are central differences; films are left out, whose tangents are exact (`films`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, TypeAlias, cast
+
+import exudyn as exu
+import numpy as np
+
+from exudyn_ehd.coupling.contract import NodeIndex
+from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics.relative import skew
+from exudyn_ehd.coupling.rotor.spinning import TURNING, WHERE, Rotor
+from exudyn_ehd.status import InputError
+
+# Steps of the differences: m or rad, and m/s or rad/s, in which the forces of bodies are quadratic.
+STEP, RATE_STEP = 1e-6, 1e-2
+UNIT = np.eye(3)
+
+
+Rates: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+class TurningNode:
+    """Node of a rigid body or a beam.
+
+    Parameters
+    ----------
+    kind : int
+        How it turns (`rigid_nodes`).
+    places : (n,) array
+        Its coordinates among those of the system.
+    reference : (n,) array
+    first : int
+        Place of its displacement and rotation (6,) in x.
+    """
+
+    def __init__(self, kind: int, places: np.ndarray, reference: np.ndarray, first: int) -> None:
+        self.kind, self.places, self.reference = kind, places, reference
+        self.own = slice(first, first + 6)
+        self._frame, self._jac = np.zeros((3, 6)), np.zeros((4, 3, places.size))
+
+    def turn(self, q: np.ndarray) -> np.ndarray:
+        """Rotation (3, 3), node to space, at the system's coordinates."""
+        return rigid_nodes.rotation_of(self.kind, self.reference + q[self.places])
+
+    def position(self, q: np.ndarray) -> np.ndarray:
+        """Place (3,) in space, m."""
+        return (self.reference + q[self.places])[:3]
+
+    def rates(self, q: np.ndarray, omega: np.ndarray) -> Rates:
+        """B (n, 6), the rates (m,) of the rotation's coordinates for omega (3,), and their rates at constant omega."""
+        own, zero = q[self.places], np.zeros(3)
+        rates = np.zeros(own.size)
+        rigid_nodes.node_frame(self.kind, own, rates, self.reference, zero, UNIT, self._frame, self._jac)
+        turns = self._jac[1, :, 3:]
+        if self.kind == rigid_nodes.TAIT_BRYAN:
+            inverse = np.linalg.inv(turns)
+        else:
+            # columns or rows are orthogonal and of one length; Euler parameters keep theirs
+            inverse = turns.T / (turns[0] @ turns[0])
+        rates[3:] = inverse @ omega
+        rigid_nodes.node_variation(self.kind, own, rates, self.reference, zero, self._jac)
+        B = np.zeros((own.size, 6))
+        B[:3, :3], B[3:, 3:] = UNIT, inverse
+        return B, rates[3:], -inverse @ (self._jac[3, :, 3:] @ rates[3:])
+
+    def move(self, q: np.ndarray, x: np.ndarray) -> None:
+        """Change the coordinates of the system by a displacement and a rotation (6,), exact to the second order."""
+        theta = self.reference[3:] + q[self.places[3:]]
+        change = self.rates(q, x[3:])[1]
+        if self.kind == rigid_nodes.ROTATION_VECTOR:
+            change = _rotation_vector_rates(theta, change)
+        theta = theta + change
+        if self.kind == rigid_nodes.EULER_PARAMETERS:
+            theta /= np.linalg.norm(theta)
+        q[self.places[:3]] += x[:3]
+        q[self.places[3:]] = theta - self.reference[3:]
+
+
+class SpinningSystem:
+    """Forces and matrices of an assembled system without its films.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    rotors : list of Rotor
+
+    Attributes
+    ----------
+    q : (n,) array
+        Coordinates of the state.
+    spins : (r,) array
+        Speeds of the rotors, rad/s.
+    ratios : dict
+        Speed of a rotor's node over that of the first rotor, by its number.
+    size : int
+        Length of x.
+    multipliers : (m,) array
+        mu of the constraints.
+    places, own : (k,) arrays
+        Coordinates that belong to no rigid node, and their directions in x.
+    """
+
+    def __init__(self, mbs: exu.MainSystem, rotors: list[Rotor]) -> None:
+        self.mbs, self.rotors, self.spins = mbs, rotors, np.zeros(len(rotors))
+        self.ratios = {node: rotor.ratio for rotor in rotors for node in rotor.nodes}
+        data = mbs.systemData
+        if len(data.GetODE1Coordinates()) or mbs.NumberOfGeneralContacts():
+            raise InputError(
+                f"{WHERE}: the system must have second-order coordinates only and no GeneralContact; take contact "
+                "objects and controllers without states of their own."
+            )
+        self.q = np.array(data.GetODE2Coordinates(exu.ConfigurationType.Initial), dtype=float)
+        self.nodes: dict[int, TurningNode] = {}
+        self.size, plain = 0, np.ones(self.q.size, dtype=bool)
+        for number in range(data.NumberOfNodes()):
+            known = mbs.GetNode(NodeIndex(number))
+            if known["nodeType"] in TURNING:
+                places = np.array(data.GetNodeLTGODE2(number), dtype=int)
+                reference = np.array(known["referenceCoordinates"], dtype=float)
+                self.nodes[number] = TurningNode(TURNING[known["nodeType"]], places, reference, self.size)
+                plain[places] = False
+                self.size += 6
+        self.places = np.flatnonzero(plain)
+        self.own = self.size + np.arange(self.places.size)
+        self.size += self.places.size
+        self._settings = settings = exu.SimulationSettings()
+        settings.staticSolver.verboseMode = 0
+        settings.solution.file.write = settings.solution.sensors.active = False
+        self._solver = cast(Any, exu.MainSolverStatic())
+        self._solver.InitializeSolver(mbs, settings)
+        self.multipliers = np.zeros(self._solver.GetAEsize())
+
+    def axis(self, rotor: int, node: int) -> np.ndarray:
+        """Axis (3,) in space of a node of a rotor, counted within it."""
+        parts = self.rotors[rotor]
+        return self.nodes[parts.nodes[node]].turn(self.q) @ parts.axes[node]
+
+    def spin(self) -> np.ndarray:
+        """u (size,) of the state: the spins of the rotors."""
+        u = np.zeros(self.size)
+        for k, rotor in enumerate(self.rotors):
+            for i, node in enumerate(rotor.nodes):
+                u[self.nodes[node].own][3:] = self.spins[k] * self.axis(k, i)
+        return u
+
+    def turning(self) -> np.ndarray:
+        """S (size, size) of the module's text at the state."""
+        S, u = np.zeros((self.size, self.size)), self.spin()
+        for rotor in self.rotors:
+            for node in rotor.nodes:
+                own = slice(self.nodes[node].own.start + 3, self.nodes[node].own.stop)
+                S[own, own] = -skew(u[own])
+        return S
+
+    def moved(self, x: np.ndarray, alone: int | None = None) -> np.ndarray:
+        """Coordinates (n,) of the state moved by x (size,), which may be that of one node ``alone`` (-1: of none)."""
+        q = self.q.copy()
+        q[self.places] += x[self.own]
+        for number in self.nodes if alone is None else {alone} & self.nodes.keys():
+            self.nodes[number].move(q, x[self.nodes[number].own])
+        return q
+
+    def balance(
+        self, q: np.ndarray, u: np.ndarray, known: Mapping[int, Rates] | None = None, moved: int = -1
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """r (size,) at coordinates q (n,), rates u and u_t = 0, and the constraints' errors (m,).
+
+        ``known`` are the rates of nodes other than ``moved``, where only that one has changed.
+        """
+        rates, accelerations, maps = np.zeros_like(q), np.zeros_like(q), []
+        for number, node in self.nodes.items():
+            own = known[number] if known and number != moved else node.rates(q, u[node.own][3:])
+            rates[node.places[:3]] = u[node.own][:3]
+            rates[node.places[3:]], accelerations[node.places[3:]] = own[1], own[2]
+            maps.append((node, own[0]))
+        rates[self.places] = u[self.own]
+        self._enter(q, rates)
+        self._solver.ComputeNewtonResidual(self.mbs, self._settings)
+        found = np.array(self._solver.GetSystemResidual())
+        force = -found[: q.size]
+        if accelerations.any():
+            force += self._mass_matrix() @ accelerations
+        r = np.zeros(self.size)
+        for node, B in maps:
+            r[node.own] = B.T @ force[node.places]
+        r[self.own] = force[self.places]
+        return r, found[q.size :]
+
+    def derivatives(self) -> tuple[np.ndarray, np.ndarray]:
+        """r_x and r_u (size, size) at the state."""
+        u, r_x, r_u = self.spin(), np.empty((self.size, self.size)), np.empty((self.size, self.size))
+        known = {number: node.rates(self.q, u[node.own][3:]) for number, node in self.nodes.items()}
+        owners = np.full(self.size, -1)
+        for number, node in self.nodes.items():
+            owners[node.own] = number
+        for k, unit in enumerate(np.eye(self.size)):
+            ends = [self.balance(self.moved(step * unit, owners[k]), u, known, owners[k])[0] for step in (STEP, -STEP)]
+            r_x[:, k] = (ends[0] - ends[1]) / (2.0 * STEP)
+            ends = [self.balance(self.q, u + step * unit, known, owners[k])[0] for step in (RATE_STEP, -RATE_STEP)]
+            r_u[:, k] = (ends[0] - ends[1]) / (2.0 * RATE_STEP)
+        return r_x, r_u
+
+    def maps(self) -> np.ndarray:
+        """B (n, size) at the state."""
+        B = np.zeros((self.q.size, self.size))
+        for node in self.nodes.values():
+            B[node.places, node.own] = node.rates(self.q, np.zeros(3))[0]
+        B[self.places, self.own] = 1.0
+        return B
+
+    def mass(self) -> np.ndarray:
+        """M (size, size) at the state."""
+        self._enter(self.q, np.zeros_like(self.q))
+        B = self.maps()
+        return B.T @ self._mass_matrix() @ B
+
+    def constraints(self) -> np.ndarray:
+        """C B (m, size) at the state: what constraints leave no freedom."""
+        n, m = self.q.size, self.multipliers.size
+        if m == 0:
+            return np.zeros((0, self.size))
+        self._enter(self.q, np.zeros(n))
+        self._solver.SetSystemJacobian(np.zeros((n + m, n + m)))
+        self._solver.ComputeJacobianAE(
+            self.mbs, scalarFactor_ODE2=1.0, scalarFactor_ODE2_t=0.0, scalarFactor_ODE1=0.0, velocityLevel=False
+        )
+        return np.array(self._solver.GetSystemJacobian())[n:, :n] @ self.maps()
+
+    def matrices(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """M, D, K (size, size) of the module's text at the state."""
+        M, S, (r_x, r_u) = self.mass(), self.turning(), self.derivatives()
+        return M, r_u + M @ S, r_x + r_u @ S
+
+    def drives(self) -> np.ndarray:
+        """Rows (r, size) of the angles that drives hold: those of the first nodes about their axes."""
+        rows = np.zeros((len(self.rotors), self.size))
+        for k, rotor in enumerate(self.rotors):
+            rows[k, self.nodes[rotor.nodes[0]].own][3:] = self.axis(k, 0)
+        return rows
+
+    def turned(self, angle: float) -> np.ndarray:
+        """Coordinates (n,) of the state after all rotors have turned by an angle, rad."""
+        q = self.q.copy()
+        for k, rotor in enumerate(self.rotors):
+            for i, number in enumerate(rotor.nodes):
+                node = self.nodes[number]
+                a = skew(self.axis(k, i))
+                goal = (np.eye(3) + np.sin(angle) * a + (1.0 - np.cos(angle)) * a @ a) @ node.turn(self.q)
+                for _ in range(50):
+                    rest = goal @ node.turn(q).T
+                    x = 0.5 * np.array(
+                        [0, 0, 0, rest[2, 1] - rest[1, 2], rest[0, 2] - rest[2, 0], rest[1, 0] - rest[0, 1]]
+                    )
+                    node.move(q, x)
+                    if np.abs(x).max() < 1e-14:
+                        break
+        return q
+
+    def _enter(self, q: np.ndarray, rates: np.ndarray) -> None:
+        data = self.mbs.systemData
+        data.SetODE2Coordinates(q.tolist())
+        data.SetODE2Coordinates_t(rates.tolist())
+        if self.multipliers.size:
+            data.SetAECoordinates((-self.multipliers).tolist())
+
+    def _mass_matrix(self) -> np.ndarray:
+        self._solver.ComputeMassMatrix(self.mbs)
+        n = self.q.size
+        return np.array(self._solver.GetSystemMassMatrix())[:n, :n]
+
+
+def _rotation_vector_rates(theta: np.ndarray, omega: np.ndarray) -> np.ndarray:
+    """Rates (3,) of a rotation vector theta (3,) for an angular velocity in the turned frame.
+
+    Inverse of ``omega = (I - (1 - cos t) / t^2 [theta] + (t - sin t) / t^3 [theta]^2) theta_t`` with t = |theta|.
+    """
+    t, a = float(np.linalg.norm(theta)), skew(theta)
+    factor = 1.0 / 12.0 if t < 1e-3 else (1.0 - 0.5 * t / np.tan(0.5 * t)) / t**2
+    return omega + 0.5 * a @ omega + factor * a @ a @ omega

@@ -1,0 +1,201 @@
+"""Rotors in two films against `equilibrium`, closed forms of the rigid rotor, and time integration."""
+
+import exudyn as exu
+import numpy as np
+import pytest
+from rigid_rotors import (
+    CLEARANCE,
+    EULER,
+    SPAN,
+    TAIT_BRYAN,
+    VECTOR,
+    WEIGHT,
+    bearing,
+    fixed,
+    inertia_of,
+    shaft,
+    sprung,
+    three_bodies,
+)
+
+import exudyn_ehd as ehd
+
+SPEED = 300.0
+
+
+@pytest.fixture(scope="module")
+def reference():
+    return ehd.SolveEquilibrium(shaft(place=0.05)[0], [SPEED, 600.0])
+
+
+def test_a_symmetric_rotor_is_two_single_bearings():
+    """Place, K, C, threshold speed and whirl ratio of half the rotor on one film."""
+    mbs, *_ = shaft(mass=20.0, transverse=0.3, polar=0.1)
+    found = ehd.SolveThreshold(mbs, 600.0, 2500.0)
+    speed = float(found.speeds[0])
+    single = ehd.equilibrium(bearing(), speed=speed, load=(0.0, -10.0 * WEIGHT))
+    for k in (0, 1):
+        np.testing.assert_allclose(found.motion[0, k, :2], single.position, rtol=1e-10)
+        np.testing.assert_allclose(found.stiffness[0, k, :2, :2], single.stiffness, rtol=1e-10)
+        np.testing.assert_allclose(found.damping[0, k, :2, :2], single.damping, rtol=1e-10)
+    assert found.attitude_angle[0] == pytest.approx(single.attitude_angle, rel=1e-10)
+    # half of the rotor's mass is the critical one there
+    assert single.critical_mass == pytest.approx(10.0, rel=1e-7)
+    vibration = found.eigenvalues[0, np.argmax(found.eigenvalues[0].real)]
+    assert abs(vibration.real) < 1e-8 * speed
+    assert abs(vibration.imag) / speed == pytest.approx(single.whirl_ratio, rel=1e-8)
+
+
+def test_eigenvalues_are_those_of_the_rigid_rotor_on_its_coefficients(reference):
+    """m e'' = f, Jt and i Omega Jp by hand, from K and C (4, 4) of the films about the centre of mass."""
+    for k, speed in enumerate(reference.speeds):
+        K, C = np.zeros((2, 4, 4))
+        for film, z in enumerate((-0.5 * SPAN - 0.05, 0.5 * SPAN - 0.05)):
+            at = np.eye(4)
+            at[0, 2] = at[1, 3] = z
+            K += at.T @ reference.stiffness[k, film] @ at
+            C += at.T @ reference.damping[k, film] @ at
+        # slopes (bx, by) are rotations (-by, bx): gyroscopic moments couple them
+        C[2, 3], C[3, 2] = C[2, 3] + speed * 1.0, C[3, 2] - speed * 1.0
+        M = np.diag([200.0, 200.0, 2.0, 2.0])
+        matrix = np.block([[np.zeros((4, 4)), np.eye(4)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+        expected = np.linalg.eigvals(matrix)
+        for value in reference.eigenvalues[k]:
+            assert np.abs(expected - value).min() < 1e-6 * abs(value)
+
+
+@pytest.mark.parametrize("node", [EULER, TAIT_BRYAN, VECTOR])
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_results_depend_neither_on_the_node_nor_on_the_axis(reference, node, axis):
+    found = ehd.SolveEquilibrium(shaft(place=0.05, node=node, axis=axis)[0], SPEED)
+    np.testing.assert_allclose(found.eccentricity_ratio[0], reference.eccentricity_ratio[0], rtol=1e-8)
+    np.testing.assert_allclose(found.eigenvalues[0], reference.eigenvalues[0], rtol=0, atol=1e-6 * SPEED)
+
+
+def test_a_rotor_that_turns_the_other_way_is_its_mirror_image(reference):
+    found = ehd.SolveEquilibrium(shaft(place=0.05)[0], -SPEED)
+    np.testing.assert_allclose(found.motion[0, :, :2], reference.motion[0, :, :2] * [-1.0, 1.0], atol=1e-9 * CLEARANCE)
+    np.testing.assert_allclose(found.attitude_angle[0], reference.attitude_angle[0], rtol=1e-8)
+    np.testing.assert_allclose(found.eigenvalues[0], reference.eigenvalues[0], rtol=0, atol=1e-6 * SPEED)
+    np.testing.assert_allclose(found.campbell()["whirl"][0], reference.campbell()["whirl"][0], atol=1e-6)
+
+
+def test_bodies_that_are_fixed_to_each_other_are_one():
+    transverse = 0.1 + 0.3 + 0.1 + 2.0 * 10.0 * 0.15**2
+    one = ehd.SolveEquilibrium(shaft(mass=40.0, transverse=transverse, polar=0.3)[0], SPEED)
+    three = ehd.SolveEquilibrium(three_bodies(fixed, (EULER, TAIT_BRYAN, VECTOR))[0], SPEED)
+    np.testing.assert_allclose(three.eigenvalues, one.eigenvalues, rtol=0, atol=1e-7 * SPEED)
+    np.testing.assert_allclose(three.motion[0, :, :4], one.motion[0, :, :4], atol=1e-8 * CLEARANCE)
+
+
+def test_a_torsionally_soft_shaft_twists_against_the_driven_body():
+    torsion = 1e5
+    mbs, bodies = three_bodies(sprung([1e8, 1e8, 1e9, 1e6, 1e6, torsion]))
+    values = ehd.SolveEquilibrium(mbs, SPEED).eigenvalues[0]
+    chain = np.linalg.solve(np.diag([0.2, 0.05]), torsion * np.array([[2.0, -1.0], [-1.0, 1.0]]))
+    for frequency in np.sqrt(np.linalg.eigvals(chain).real):
+        assert np.abs(values.imag - frequency).min() < 1e-6 * frequency
+    # the same named one by one
+    named = ehd.SolveEquilibrium(mbs, SPEED, rotors=[bodies])
+    np.testing.assert_allclose(named.eigenvalues[0], values, rtol=0, atol=1e-6 * SPEED)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("speed", [150.0, 300.0, 500.0])
+def test_what_a_run_does_under_unbalance_is_foretold(speed, turns=12, steps=80):
+    """Amplitude and phase of the run's last turn, from an undisturbed start."""
+    mbs, body, _ = shaft(place=0.05)
+    result = ehd.SolveEquilibrium(mbs, speed)
+    unbalance = 0.002 * CLEARANCE * result.stiffness[0, 0, 0, 0] / speed**2
+
+    def load(mbs, shaft, shaft_body, turn):
+        torque = -float(result.wrench[0, :, 5].sum())
+        mbs.CreateTorque(itemNumber=shaft_body, loadVector=[0, 0, torque])
+        force = unbalance * speed**2
+        mbs.CreateForce(
+            itemNumber=shaft_body,
+            loadVector=[1, 0, 0],
+            loadVectorUserFunction=lambda mbs, t, v: [force * np.cos(speed * t), force * np.sin(speed * t), 0.0],
+        )
+
+    run, _, joints = shaft(place=0.05, extra=load)
+    result.place(run, speed)
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime = turns * 2.0 * np.pi / speed
+    settings.timeIntegration.numberOfSteps = turns * steps
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    ehd.SolveDynamic(run, settings)
+    response = result.unbalance_response({body: unbalance})
+    for k, joint in enumerate(joints):
+        history = joint.history
+        e, t = history.eccentricity[-steps:] - result.motion[0, k, :2], history.time[-steps:]
+        measured = 2.0 * np.mean(e * np.exp(-1j * speed * t)[:, None], axis=0)
+        size = np.abs(response.films[0, k]).max()
+        assert np.abs(measured - response.films[0, k]).max() < 0.01 * size
+
+
+@pytest.mark.slow
+def test_a_shaft_of_beams_turns_unstable_where_the_example_of_whirl_has_it(example):
+    """Against its linear theory by hand, without gyroscopic moments and the bushes' moments; and its unbalance."""
+    whirl = example("rotor_oil_whirl")
+    film = whirl.bearing(quick=True)
+    by_hand = whirl.LinearRotor(4, film).threshold()
+    rotor = whirl.Rotor(4, film, lambda t: 0.0, lambda t: 0.0)
+    found = ehd.SolveThreshold(rotor.mbs, 0.95 * by_hand, 1.05 * by_hand)
+    assert found.speeds[0] == pytest.approx(by_hand, rel=2e-4)
+
+
+def test_speeds_and_orbits_of_geared_rotors():
+    """Two shafts beside each other, one twice as fast the other way: as each of them alone."""
+    single = ehd.SolveEquilibrium(shaft(place=0.05)[0], [SPEED]).eigenvalues[0]
+    fast = ehd.SolveEquilibrium(shaft(place=0.05)[0], [-2.0 * SPEED]).eigenvalues[0]
+
+    def beside(mbs, ground, body, turn):
+        other = mbs.CreateRigidBody(
+            referencePosition=[1.0, 0, 0.05], inertia=inertia_of(200.0, 2.0, 1.0, np.eye(3)), gravity=[0, -WEIGHT, 0]
+        )
+        for name, z in (("third", -0.2), ("fourth", 0.2)):
+            ehd.CreateLubricatedJoint(mbs, name, [ground, other], [1.0, 0, z], [0, 0, 1], bearing())
+        mbs.CreateGenericJoint(itemNumbers=[ground, other], position=[1, 0, 0], constrainedAxes=[0, 0, 1, 0, 0, 0])
+
+    mbs, body, _ = shaft(place=0.05, extra=beside)
+    both = ehd.SolveEquilibrium(mbs, SPEED, ratios=[1.0, -2.0])
+    expected = np.concatenate((single, fast))
+    expected = expected[np.lexsort((expected.real, expected.imag))]
+    np.testing.assert_allclose(both.eigenvalues[0], expected, rtol=0, atol=1e-6 * SPEED)
+    response, alone = both.unbalance_response({body: 1e-4}), ehd.SolveEquilibrium(shaft(place=0.05)[0], SPEED)
+    np.testing.assert_allclose(
+        response.amplitude("left"), alone.unbalance_response({body: 1e-4}).amplitude("left"), rtol=1e-6
+    )
+    assert response.amplitude("third")[0] < 1e-9 * response.amplitude("left")[0]
+
+
+def test_unbalances_add_up_and_turn_with_the_shaft(reference):
+    body = exu.ObjectIndex(1)
+    one, turned = (reference.unbalance_response({body: value}) for value in (1e-4, 1e-4j))
+    np.testing.assert_allclose(turned.films, 1j * one.films, rtol=1e-12)
+    np.testing.assert_allclose(turned.phase("left") - one.phase("left"), np.pi / 2.0, rtol=1e-9)
+    back = ehd.SolveEquilibrium(shaft(place=0.05)[0], -SPEED).unbalance_response({body: 1e-4})
+    np.testing.assert_allclose(back.amplitude(body), one.amplitude(body)[:1], rtol=1e-7)
+    np.testing.assert_allclose(back.phase(body), one.phase(body)[:1], rtol=1e-6)
+    # slow speeds: the film's spring against the force; the journal's body runs within its films
+    forward, backward = one.orbit(body)
+    np.testing.assert_allclose(one.amplitude(body), np.abs(forward) + np.abs(backward))
+
+
+def test_the_state_of_a_run_and_its_history_stay_as_they_are():
+    mbs, _, joints = shaft(place=0.05)
+    ehd.SolveEquilibrium(mbs, SPEED).place(mbs, SPEED)
+    settings = exu.SimulationSettings()
+    settings.timeIntegration.endTime, settings.timeIntegration.numberOfSteps = 1e-3, 5
+    settings.solution.file.write = False
+    ehd.ConfigureSolver(settings)
+    ehd.SolveDynamic(mbs, settings)
+    coordinates, film = np.array(mbs.systemData.GetODE2Coordinates()), joints[0].element.force
+    ehd.SolveEquilibrium(mbs, SPEED)
+    np.testing.assert_array_equal(mbs.systemData.GetODE2Coordinates(), coordinates)
+    assert mbs.systemData.GetTime() == pytest.approx(1e-3) and joints[0].history.time.size == 6
+    assert mbs.GetObjectParameter(joints[0].objectNumber, "forceUserFunction")["function"] == film
+    # started in equilibrium, it stays there
+    assert np.ptp(joints[0].history.eccentricity, axis=0).max() < 1e-6 * CLEARANCE
