@@ -11,6 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import ObjectIndex, require_system
+from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
@@ -22,7 +23,7 @@ from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.watch.run_progress import run_progress
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
-from exudyn_ehd.status import EHDError, InputError, RunError, require_type
+from exudyn_ehd.status import EHDError, InputError, RunError, require_integer, require_type
 
 JOINTS = "lubricatedJoints"
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -61,6 +62,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: None = None,
+    threads: int | None = 1,
     **options: object,
 ) -> bool: ...
 @overload
@@ -71,6 +73,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: UntilPeriodic,
+    threads: int | None = 1,
     **options: object,
 ) -> LastCycle: ...
 def SolveDynamic(
@@ -80,6 +83,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: UntilPeriodic | None = None,
+    threads: int | None = 1,
     **options: object,
 ) -> bool | LastCycle:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
@@ -106,6 +110,9 @@ def SolveDynamic(
         ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
     until_periodic : UntilPeriodic, optional
         Ends the run as soon as the orbits of all joints have closed.
+    threads : int or None
+        Threads on which the films of all joints are evaluated side by side, with the same bits; None: one for each core
+        of the process. Worth it from two joints on fine grids on, see coupling/README.md.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
 
@@ -157,7 +164,9 @@ def SolveDynamic(
         if until_periodic is not None:
             films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
-        for part in (control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic")):
+        shared = films_on_threads("SolveDynamic", mbs, threads)
+        better = _better_start(mbs, simulationSettings)
+        for part in (control, better, refusing(mbs), own_errors(mbs, "SolveDynamic"), shared):
             around.enter_context(part)
         around.enter_context(progress_of(mbs, simulationSettings))
         good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
@@ -328,6 +337,13 @@ def _unheld(mbs: exu.MainSystem) -> str:
 def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
     """Where somebody looks, the progress of the run within."""
     return run_progress(mbs, settings, [(joint.name, joint.element.steps.record) for joint in joints_of(mbs)])
+
+
+def films_on_threads(where: str, mbs: exu.MainSystem, threads: int | None) -> AbstractContextManager[None]:
+    """The films of a system on so many threads, to run within."""
+    if threads is not None:
+        require_integer(f"{where}.threads", threads, at_least=1)
+    return side_by_side([joint.element for joint in joints_of(mbs)], threads)
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:

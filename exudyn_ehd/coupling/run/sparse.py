@@ -37,6 +37,7 @@ from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.solve import (
+    films_on_threads,
     own_errors,
     progress_of,
     refusing,
@@ -136,6 +137,7 @@ def SolveDynamicSparse(
     *,
     reuse: FactorReuse | None = None,
     stepControl: StepControl | None = None,
+    threads: int | None = 1,
 ) -> SparseRun:
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
@@ -152,6 +154,7 @@ def SolveDynamicSparse(
         Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
     reuse : FactorReuse, optional
     stepControl : StepControl, optional
+    threads : int or None
         As in `SolveDynamic`.
 
     Returns
@@ -182,6 +185,7 @@ def SolveDynamicSparse(
     _require_offered(settings.timeIntegration)
     require_items(mbs)
     control = step_control("SolveDynamicSparse", mbs, settings, stepControl)
+    shared = films_on_threads("SolveDynamicSparse", mbs, threads)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
@@ -202,7 +206,7 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
+        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings), shared:
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")
