@@ -87,11 +87,13 @@ __version__ = "0.2.0"
 _LAZY = {
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
+    "Every": "coupling.record.thinning",
     "File": "coupling.record.on_disk",
     "Free": "coupling.api",
     "Held": "coupling.api",
     "JointHistory": "coupling.record.history",
     "LubricatedJoint": "coupling.handle",
+    "Period": "coupling.record.thinning",
     "Quantity": "coupling.record.history",
     "ReplaceJoint": "coupling.replace",
     "ReplaceJoints": "coupling.replace",
@@ -159,6 +161,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.load import load_history
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.revolutions import Revolutions
+    from exudyn_ehd.coupling.record.thinning import Every, Period
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.run.joint_state import JointState
     from exudyn_ehd.coupling.run.restart import SystemState
@@ -217,6 +220,7 @@ __all__ = [
     "ElrodAdams",
     "EquilibriumPoint",
     "EquilibriumResult",
+    "Every",
     "FEBore",
     "FactorReuse",
     "File",
@@ -261,6 +265,7 @@ __all__ = [
     "OutOfRound",
     "OverloadWarning",
     "PatirCheng",
+    "Period",
     "Periodic",
     "PlausibilityWarning",
     "Pocket",

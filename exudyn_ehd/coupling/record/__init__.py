@@ -4,6 +4,8 @@ Module map
 ----------
 element      what records ask of a joint's film element
 history      quantities over accepted steps
+record       the rows of a joint's accepted steps
+thinning     some of the steps, with the worst ones
 on_disk      a history in a file, for long runs
 load         histories back from their files
 films        films over accepted steps

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from exudyn_ehd.coupling.record.history import DIMENSIONS, FORMAT, JointHistory, history_of
-from exudyn_ehd.coupling.record.on_disk import read_head, read_rows
+from exudyn_ehd.coupling.record.history import DIMENSIONS, FORMAT, JointHistory
+from exudyn_ehd.coupling.record.on_disk import open_rows, read_head, read_rows
+from exudyn_ehd.coupling.record.record import history_of, history_on_disk
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import require_path
 
@@ -23,7 +24,8 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     path : path
     start, end : float
         s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read but a
-        thousand before them, from which the errors of the steps are summed up.
+        thousand before them, from which the errors of the steps are summed up. Without both the history of a `File`
+        reads each of its arrays when it is asked for.
 
     Returns
     -------
@@ -47,9 +49,11 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
     require_path("load_history", path)
     head = read_head(path)
     if head is not None and head["names"] == FORMAT:
-        rows = read_rows(path, head["width"], start, end)
-        whole = history_of(rows, {name: head[name] for name in DIMENSIONS}, head["lags"])
-        return whole.between(start, end)
+        dimensions = {name: head[name] for name in DIMENSIONS}
+        if start == -math.inf and end == math.inf:
+            return history_on_disk(open_rows(path, head["width"]), dimensions, head["lags"])
+        first, rows = read_rows(path, head["width"], start, end)
+        return history_of(rows, dimensions, head["lags"], first).between(start, end)
     try:
         with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
             known = "format" in data.files and str(data["format"]) == FORMAT
@@ -61,4 +65,6 @@ def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: flo
             f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
         )
     fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
+    # files of before records could be thinned have all steps
+    fields.setdefault("step_count", np.arange(fields["time"].size))
     return JointHistory(**fields).between(start, end)

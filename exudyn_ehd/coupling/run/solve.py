@@ -163,6 +163,12 @@ def SolveDynamic(
         watch = None
         if until_periodic is not None:
             films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
+            for name, steps in films:
+                if steps.record.is_thinned:
+                    raise InputError(
+                        f"SolveDynamic.until_periodic compares all steps of a cycle, and joint '{name}' keeps some of "
+                        "them; leave out Every and Period of its record (File alone keeps memory small, too)."
+                    )
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
         shared = films_on_threads("SolveDynamic", mbs, threads)
         better = _better_start(mbs, simulationSettings)

@@ -51,7 +51,7 @@ def rotor(bearings, force=400.0, record=None):
     shaft = mbs.CreateRigidBody(
         inertia=InertiaCylinder(7800.0, 0.1 * len(bearings), 0.02, 2),
         initialAngularVelocity=[0.0, 0.0, 200.0],
-        nodeType=exu.NodeType.RotationRotationVector,
+        nodeType=exu.NodeType.RotationRxyz,
     )
     joints = []
     for k, bearing in enumerate(bearings):
