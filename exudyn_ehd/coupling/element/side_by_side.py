@@ -28,7 +28,7 @@ from typing import Protocol
 import exudyn as exu
 
 from exudyn_ehd.coupling.contract import JointModel, Trial
-from exudyn_ehd.status import Status
+from exudyn_ehd.status import Status, require_integer
 
 _CURRENT = exu.ConfigurationType.Current
 # States in a row at which all films were asked as expected, before they go side by side.
@@ -149,8 +149,10 @@ def cores() -> int:
 
 
 @contextmanager
-def side_by_side(films: Sequence[Film], threads: int | None) -> Iterator[None]:
+def side_by_side(where: str, films: Sequence[Film], threads: int | None) -> Iterator[None]:
     """Films on ``threads`` within, None: one for each core; nothing where there is one of either."""
+    if threads is not None:
+        require_integer(f"{where}.threads", threads, at_least=1)
     threads = min(cores() if threads is None else threads, len(films))
     # films that share a model would meet in its buffers
     if threads < 2 or len({id(film.model) for film in films}) < len(films):

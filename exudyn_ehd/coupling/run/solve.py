@@ -23,7 +23,7 @@ from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic, closing
 from exudyn_ehd.coupling.watch.run_progress import run_progress
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
-from exudyn_ehd.status import EHDError, InputError, RunError, require_integer, require_type
+from exudyn_ehd.status import EHDError, InputError, RunError, require_type
 
 JOINTS = "lubricatedJoints"
 _IMPLICIT = (exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.TrapezoidalIndex2)
@@ -163,16 +163,10 @@ def SolveDynamic(
         watch = None
         if until_periodic is not None:
             films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
-            for name, steps in films:
-                if steps.record.is_thinned:
-                    raise InputError(
-                        f"SolveDynamic.until_periodic compares all steps of a cycle, and joint '{name}' keeps some of "
-                        "them; leave out Every and Period of its record (File alone keeps memory small, too)."
-                    )
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
-        shared = films_on_threads("SolveDynamic", mbs, threads)
+        shared = side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads)
         better = _better_start(mbs, simulationSettings)
-        for part in (control, better, refusing(mbs), own_errors(mbs, "SolveDynamic"), shared):
+        for part in (shared, control, better, refusing(mbs), own_errors(mbs, "SolveDynamic")):
             around.enter_context(part)
         around.enter_context(progress_of(mbs, simulationSettings))
         good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
@@ -343,13 +337,6 @@ def _unheld(mbs: exu.MainSystem) -> str:
 def progress_of(mbs: exu.MainSystem, settings: exu.SimulationSettings) -> AbstractContextManager[None]:
     """Where somebody looks, the progress of the run within."""
     return run_progress(mbs, settings, [(joint.name, joint.element.steps.record) for joint in joints_of(mbs)])
-
-
-def films_on_threads(where: str, mbs: exu.MainSystem, threads: int | None) -> AbstractContextManager[None]:
-    """The films of a system on so many threads, to run within."""
-    if threads is not None:
-        require_integer(f"{where}.threads", threads, at_least=1)
-    return side_by_side([joint.element for joint in joints_of(mbs)], threads)
 
 
 def start_guess(mbs: exu.MainSystem, before: UserFunction | None = None) -> StartGuess:

@@ -216,12 +216,12 @@ def test_threads_that_make_no_sense_are_refused():
 def test_one_core_one_joint_and_a_model_in_two_joints_need_no_threads(monkeypatch, crews):
     films = [Fake([0.0]), Fake([0.0])]
     for part, threads in ((films[:1], 4), (films, 1)):
-        with side_by_side.side_by_side(part, threads):
+        with side_by_side.side_by_side("run", part, threads):
             assert films[0].crew is None
     monkeypatch.setattr(side_by_side, "cores", lambda: 1)
-    with side_by_side.side_by_side(films, None):
+    with side_by_side.side_by_side("run", films, None):
         assert films[0].crew is None
     films[1].model = films[0].model
-    with side_by_side.side_by_side(films, 2):
+    with side_by_side.side_by_side("run", films, 2):
         assert films[0].crew is None
     assert not crews
