@@ -127,7 +127,7 @@ def approach_film(links, line, active, factor, last, x, lack, p):
     return False
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True)
 def solve_line(links, line, fixed, active, factor, last, x, forth, p):
     """The film from the sets and pressures at hand; returns (ok, steps, count, width, peak).
 
@@ -197,7 +197,7 @@ def lift(order, count, p):
     return peak
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, P):
     """The film from ``active``, if it ``is_known`` also from its pressures P; returns as `solve_line`.
 
