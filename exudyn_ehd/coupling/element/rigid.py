@@ -55,6 +55,8 @@ class FilmElement:
         How often the film was asked.
     crew : SideBySide or None
         Evaluates it with the films of other joints.
+    late : Exception or None
+        What `arrive` has met, for the film's own call.
     """
 
     def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
@@ -66,7 +68,7 @@ class FilmElement:
         self._trial: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
         self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
-        self._late: Exception | None = None
+        self.late: Exception | None = None
         self.crew: SideBySide | None = None
         self.steps = AcceptedSteps(self)
         self.presence: Presence
@@ -104,7 +106,7 @@ class FilmElement:
 
     def _accept(self, mbs: exu.MainSystem) -> None:
         """Take a state as accepted if the step has moved on; raise what that has met when another film was asked."""
-        late, self._late = self._late, None
+        late, self.late = self.late, None
         if late is not None:
             raise late
         start, steps, solvers = mbs.systemData.GetTime(_START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
@@ -117,7 +119,7 @@ class FilmElement:
             self._accept(mbs)
             trial = self._prepare(mbs, q, q_t, _CURRENT, t, not self.steps.is_idle)
         except Exception as error:
-            self._late = error
+            self.late = error
             return None
         return None if trial is self._trial else trial
 

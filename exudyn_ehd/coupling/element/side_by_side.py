@@ -42,11 +42,14 @@ class Film(Protocol):
     ----------
     crew : SideBySide or None
         Whom it tells of its calls.
+    late : Exception or None
+        Error of `arrive` that its own call raises.
     model : JointModel
         Of its own, or it goes on one thread.
     """
 
     crew: SideBySide | None
+    late: Exception | None
     model: JointModel
 
     @property
@@ -165,5 +168,6 @@ def side_by_side(where: str, films: Sequence[Film], threads: int | None) -> Iter
         yield
     finally:
         for film in films:
-            film.crew = None
+            # an error that a run which has ended before did not ask for is none of the next run's
+            film.crew = film.late = None
         crew.close()

@@ -138,11 +138,25 @@ def test_a_limit_of_a_joint_ends_both_runs_with_the_same_words(crews):
     assert messages[0] == messages[1] and crews[-1].shared > 0
 
 
+def test_errors_of_a_run_that_has_ended_are_not_those_of_the_next(crews):
+    """Both joints exceed their limit in the same step: the first one ends the run, the second one's error goes."""
+    mbs, joints = rotor([SWIFT, SWIFT], force=2000.0)
+    for joint in joints:
+        joint.stop_at(force=300.0)
+    with pytest.raises(ehd.FilmError, match="film 0"):
+        ehd.SolveDynamic(mbs, scenes.settings(3e-3, 30), threads=2)
+    assert crews[-1].shared > 0
+    for joint in joints:
+        joint.stop_at()
+    ehd.SolveDynamic(mbs, scenes.settings(1e-3, 10), threads=2)
+    assert joints[1].history.time.size == 11
+
+
 class Fake:
     """A film that counts."""
 
     def __init__(self, state):
-        self.state, self.crew, self.last, self.calls = state, None, None, 0
+        self.state, self.crew, self.late, self.last, self.calls = state, None, None, None, 0
         self.model = SimpleNamespace()
 
     def read(self, mbs, configuration):
