@@ -88,9 +88,10 @@ _LAZY = {  # imported only when asked for: film studies need neither Exudyn nor 
     "ConfigureSolver": "coupling.run.settings",
     "CreateLubricatedJoint": "coupling.api",
     "CreateLubricatedSphericalJoint": "coupling.spherical",
+    "Every": "coupling.record.thinning",
     "LubricatedSphericalJoint": "coupling.spherical",
-    "SphericalHistory": "coupling.spherical",
     "SphericalBearing": "joint.spherical.steady",
+    "SphericalHistory": "coupling.spherical",
     "SphericalResult": "joint.spherical.steady",
     "steady_spherical": "joint.spherical.steady",
     "File": "coupling.record.on_disk",
@@ -98,11 +99,12 @@ _LAZY = {  # imported only when asked for: film studies need neither Exudyn nor 
     "Held": "coupling.api",
     "JointHistory": "coupling.record.history",
     "LubricatedJoint": "coupling.handle",
+    "Period": "coupling.record.thinning",
     "Quantity": "coupling.record.history",
     "ReplaceJoint": "coupling.replace",
     "ReplaceJoints": "coupling.replace",
     "Revolutions": "coupling.record.revolutions",
-    "load_history": "coupling.record.load",
+    "load_history": "coupling.record.record",
     "StepControl": "coupling.watch.step_control",
     "JointState": "coupling.run.joint_state",
     "LastCycle": "coupling.watch.periodic",
@@ -165,9 +167,10 @@ if TYPE_CHECKING:
     )
     from exudyn_ehd.coupling.handle import LubricatedJoint
     from exudyn_ehd.coupling.record.history import JointHistory, Quantity
-    from exudyn_ehd.coupling.record.load import load_history
     from exudyn_ehd.coupling.record.on_disk import File
+    from exudyn_ehd.coupling.record.record import load_history
     from exudyn_ehd.coupling.record.revolutions import Revolutions
+    from exudyn_ehd.coupling.record.thinning import Every, Period
     from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
     from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
     from exudyn_ehd.coupling.rotor.result import RotorResult
@@ -231,6 +234,7 @@ __all__ = [
     "ElrodAdams",
     "EquilibriumPoint",
     "EquilibriumResult",
+    "Every",
     "FEBore",
     "FactorReuse",
     "File",
@@ -276,6 +280,7 @@ __all__ = [
     "OutOfRound",
     "OverloadWarning",
     "PatirCheng",
+    "Period",
     "Periodic",
     "PlausibilityWarning",
     "Pocket",

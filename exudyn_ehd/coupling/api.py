@@ -6,7 +6,7 @@ import dataclasses
 import functools
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal, cast, overload
+from typing import Literal, TypeAlias, cast, overload
 
 import exudyn as exu
 import exudyn.itemInterface as eii
@@ -25,14 +25,14 @@ from exudyn_ehd.coupling.kinematics import rigid_nodes
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
 from exudyn_ehd.coupling.record.display import FilmDisplay
 from exudyn_ehd.coupling.record.on_disk import File
+from exudyn_ehd.coupling.record.thinning import Every, Period
 from exudyn_ehd.coupling.run.solve import joints_of, register_joint
 from exudyn_ehd.coupling.watch.step_control import GapWatch, StepControl, require_of_joint
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.joint.model.compile import compile_together
 from exudyn_ehd.status import InputError, Status, require_bool, require_number, require_type, require_vector
 
-if TYPE_CHECKING:
-    pass
+Record: TypeAlias = File | Every | Period
 
 _WHERE = "CreateLubricatedJoint"
 
@@ -91,7 +91,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: Literal[False] = False,
-    record: File | None = None,
+    record: Record | None = None,
 ) -> LubricatedJoint: ...
 @overload
 def CreateLubricatedJoint(
@@ -114,7 +114,7 @@ def CreateLubricatedJoint(
     bodyNumbers: Sequence[Index | None] | None = None,
     *,
     returnDict: Literal[True],
-    record: File | None = None,
+    record: Record | None = None,
 ) -> dict[str, object]: ...
 def CreateLubricatedJoint(
     mbs: exu.MainSystem,
@@ -135,7 +135,7 @@ def CreateLubricatedJoint(
     color: Sequence[float] = (-1.0, -1.0, -1.0, -1.0),
     bodyNumbers: Sequence[Index | None] | None = None,
     returnDict: bool = False,
-    record: File | None = None,
+    record: Record | None = None,
 ) -> LubricatedJoint | dict[str, object]:
     """Create an oil-filled revolute (or, axially free, cylindrical) joint between two bodies.
 
@@ -195,8 +195,9 @@ def CreateLubricatedJoint(
         The name that ``itemNumbers`` had in older calls of Exudyn; a DeprecationWarning says so.
     returnDict : bool
         Return a dictionary of numbers in place of the handle.
-    record : File or None
-        Where the accepted steps of `LubricatedJoint.history` are kept: in a file, of long runs; None: in memory.
+    record : File, Every, Period or None
+        Which of the accepted steps `LubricatedJoint.history` keeps, and where: all of them or some, in a file or in
+        memory; None: all, in memory.
 
     Returns
     -------
@@ -226,7 +227,7 @@ def CreateLubricatedJoint(
     for argument, motion in (("axial", axial), ("tilt", tilt)):
         require_type(f"{_WHERE}.{argument}", motion, Free, Held)
     require_of_joint(f"{_WHERE}.stepControl", stepControl)
-    require_type(f"{_WHERE}.record", record, File, type(None))
+    require_type(f"{_WHERE}.record", record, File, Every, Period, type(None))
     _require_new(mbs, name)
     require_vector(f"{_WHERE}.color", color, 4)
     for argument, size in (("axisRadius", axisRadius), ("axisLength", axisLength)):
@@ -261,11 +262,14 @@ def CreateLubricatedJoint(
     return joint
 
 
-def _equip(joint: LubricatedJoint, control: StepControl | None, record: File | None) -> None:
+def _equip(joint: LubricatedJoint, control: StepControl | None, record: Record | None) -> None:
     steps = joint.element.steps
     if control is not None:
         steps.control = GapWatch(control, joint.bearing)
-    if record is not None:
+    rule = record.every if isinstance(record, File) else record
+    if rule is not None:
+        steps.record.thin(rule)
+    if isinstance(record, File):
         steps.record.keep_on_disk(record.of(joint.name).absolute(), joint.name)
 
 

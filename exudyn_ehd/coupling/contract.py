@@ -82,10 +82,13 @@ class Trial:
         self.bodies = bodies
         self.motion = motion
         self.evaluation = evaluation
+        self.status = Status.NO_FILM if np.all(np.isfinite(q)) else Status.NOT_FINITE
         if evaluation is not None:
-            self.status = evaluation.status
-        else:
-            self.status = Status.NO_FILM if np.all(np.isfinite(q)) else Status.NOT_FINITE
+            self.take(evaluation)
+
+    def take(self, evaluation: Evaluation) -> None:
+        """Add what the film has answered."""
+        self.evaluation, self.status = evaluation, evaluation.status
 
 
 class JointModel(Protocol):

@@ -225,12 +225,18 @@ class LubricatedJoint(JointResults):
         Raises
         ------
         InputError
-            Before anything was recorded.
+            Before anything was recorded, and of a thinned record (`Every`, `Period`).
         """
         history = self.history
         if history.time.size == 0:
             raise InputError(
                 f"LubricatedJoint.audit: joint '{self.name}' has no accepted steps yet; run a solver first."
+            )
+        if history.is_thinned:
+            raise InputError(
+                f"LubricatedJoint.audit: joint '{self.name}' keeps {history.time.size} of {history.step_count[-1] + 1} "
+                "states, and forces that ring, heat and films that remember need every step: audit a shorter run "
+                "without Every or Period, e.g. one that goes on from ehd.SaveState in a model without them."
             )
         from exudyn_ehd.joint.audit.audit import audit_record
         from exudyn_ehd.joint.audit.samples import RecordedSteps

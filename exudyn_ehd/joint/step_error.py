@@ -67,12 +67,29 @@ def step_errors(
     deflection : (n, 2) array, optional
         Of a liner, where it is largest, m.
     """
+    return errors_behind(np.zeros(4), time, motion, tangent, minimum_gap, clearance, length, deflection)[0]
+
+
+def errors_behind(
+    before: np.ndarray,
+    time: np.ndarray,
+    motion: np.ndarray,
+    tangent: np.ndarray,
+    minimum_gap: np.ndarray,
+    clearance: float,
+    length: float,
+    deflection: np.ndarray | None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """`step_errors` behind the first `FIRST` states, with the pose's error ``before`` (4,), and that of the last state.
+
+    A record in parts has the errors of the whole if every part begins with the last `FIRST` states of the one before.
+    """
     out = np.full(time.size, np.nan)
     last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0, 0]), np.arange(time.size), -1))
     # rows before the first tangent know no error
     known = slice(max(FIRST, int(np.count_nonzero(last < 0))), None)
     if time.size <= FIRST or last[-1] < 0:
-        return out
+        return out, before
     missed = _missed(time, motion[:, :4], motion[:, 4:8])
     if deflection is not None:
         missed[:, :2] -= _lag(time, deflection)
@@ -80,10 +97,10 @@ def step_errors(
     steps = np.diff(time, prepend=time[0])
     for k in (0, 2):
         kept = _kept(-tangent[last, k], -tangent[last, k + 1], steps)
-        errors[known, k : k + 2] = _added(kept[known], missed[known, k : k + 2])
+        errors[known, k : k + 2] = _added(kept[known], missed[known, k : k + 2], before[k : k + 2])
     ends = [np.hypot(*(errors[:, :2] + s * 0.5 * length * errors[:, 2:]).T) for s in (-1.0, 1.0)]
     out[known] = (np.maximum(*ends) / np.maximum(minimum_gap, SMALLEST_GAP_SHARE * clearance))[known]
-    return out
+    return out, errors[-1]
 
 
 def next_error(
@@ -168,9 +185,9 @@ def _kept(K: np.ndarray, D: np.ndarray, step: np.ndarray) -> np.ndarray:
     return np.nan_to_num(out.T, nan=0.0, posinf=0.0, neginf=0.0)
 
 
-def _added(kept: np.ndarray, missed: np.ndarray) -> np.ndarray:
+def _added(kept: np.ndarray, missed: np.ndarray, before: np.ndarray) -> np.ndarray:
     """Errors (n, 2), each what is left of the one before and of what the step has missed."""
-    out, x, y = [], 0.0, 0.0
+    out, (x, y) = [], before.tolist()
     for (a, b, c, d), (u, v) in zip(kept.tolist(), missed.tolist(), strict=True):
         u, v = x + u, y + v
         x, y = a * u + b * v, c * u + d * v
@@ -178,16 +195,20 @@ def _added(kept: np.ndarray, missed: np.ndarray) -> np.ndarray:
     return np.array(out).reshape(-1, 2)
 
 
-def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray) -> str:
+def enough_steps(time: np.ndarray, omega: np.ndarray, error: np.ndarray, count: np.ndarray | None = None) -> str:
     """Number of steps of equal size that would do, in words: errors fall with the square of the step at least.
 
     Parameters
     ----------
     time, omega, error : (n,) arrays
         s, relative spin (rad/s), estimated errors with one that is known.
+    count : (n,) int array, optional
+        Number of each step, where steps between them are not given.
     """
     worst = int(np.nanargmax(error))
-    step = float(np.diff(time[max(0, worst - 3) : worst + 1]).max())
+    count = np.arange(time.size) if count is None else count
+    near = slice(max(0, worst - 3), worst + 1)
+    step = float((np.diff(time[near]) / np.diff(count[near])).max())
     needed = float(time[-1] - time[0]) / step * math.sqrt(max(1.0, float(error[worst]) / GOAL))
     turns = abs(float(np.trapezoid(omega, time))) / (2.0 * math.pi)
     if turns < 1.0:

@@ -23,7 +23,8 @@ from exudyn_ehd.coupling.contract import JointModel, Side, Trial
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.record import summary
 from exudyn_ehd.coupling.record.films import FilmRecorder
-from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory, Record
+from exudyn_ehd.coupling.record.history import MINIMUM_GAP, JointHistory
+from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch import solver_state, starvation, thin_films, turning_meshes
 from exudyn_ehd.coupling.watch.chatter import ChatterWatch
 from exudyn_ehd.coupling.watch.step_control import GapWatch

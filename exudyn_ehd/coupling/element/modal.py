@@ -191,8 +191,12 @@ class ModalFilmElement(BoreFilmElement):
             force[n:] += on_modes
         return force
 
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """Derivative (6 + k, 10 + k) of wrench and loads on the modes, combined by f_q and f_qt."""
+        return self._evaluation(trial).combined_tangent(f_q, f_qt)
+
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        T, n, k = self._evaluation(trial).combined_tangent(f_q, f_qt), self.rigid_size, self.stiffness.size
+        T, n, k = self._tangent(trial, f_q, f_qt), self.rigid_size, self.stiffness.size
         rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
         whole = np.empty((n + k, n + k))
         relative.modal_jacobian(T, *rigid, self._wrench_map(), f_q, f_qt, self.stiffness, whole)

@@ -97,12 +97,15 @@ class NodalFilmElement(BoreFilmElement):
         force[n:] = (self.nodal_forces(evaluation) @ housing.frame[:, :3].T).ravel()
         return force
 
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-        evaluation = self._evaluation(trial)
-        wrench, nodal = evaluation.nodal_tangent()
-        T = np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """Derivative (6 + 3 count, 10 + 4 count) of wrench and nodal forces."""
+        wrench, nodal = self._evaluation(trial).nodal_tangent()
+        return np.concatenate((wrench, nodal.reshape(3 * self.count, -1)))
+
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        evaluation, T = self._evaluation(trial), tangent
         n, n_h, k = self.rigid_size, self.sides[0].size, 2 * self.count
-        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(wrench[:, :MOTION_SIZE]))
+        rigid = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(T[:6, :MOTION_SIZE]))
         by_place, by_rate = T[:, MOTION_SIZE : MOTION_SIZE + k], T[:, MOTION_SIZE + k :]
         place, rate_place = self._housing_maps()
         A, omega = self.sides[0].frame[:, :3], self.sides[0].frame[:, 5]

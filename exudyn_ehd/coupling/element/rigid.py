@@ -18,6 +18,7 @@ from exudyn_ehd.coupling.contract import Evaluation, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
+from exudyn_ehd.coupling.element.side_by_side import SideBySide
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide, bind, read_state
 from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
@@ -54,6 +55,10 @@ class FilmElement:
         How often the film was asked.
     estimates_steps : bool
         Whether the record tells what the time steps miss, and orbits.
+    crew : SideBySide or None
+        Evaluates it with the films of other joints.
+    late : Exception or None
+        What `arrive` has met, for the film's own call.
     """
 
     estimates_steps = True
@@ -66,6 +71,9 @@ class FilmElement:
         self.evaluations = 0
         self._trial: Trial | None = None
         self._peeked: tuple[list[float], list[float], np.ndarray] | None = None
+        self._derived: tuple[Trial, tuple[float, float], np.ndarray] | None = None
+        self.late: Exception | None = None
+        self.crew: SideBySide | None = None
         self.steps = AcceptedSteps(self)
         self.presence: Presence
         self._bound = False
@@ -74,17 +82,18 @@ class FilmElement:
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
         steps = self.steps
-        start = mbs.systemData.GetTime(_START_OF_STEP)
-        solvers = solver_state.stored_solvers(mbs)
-        if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
-            steps.accept(mbs, start, solvers)
+        self._accept(mbs)
         stepping = not steps.is_idle
         if stepping or steps.solver is None:
             steps.asked = t, q
-        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping)
+        trial = self._prepare(mbs, q, q_t, _CURRENT, t, stepping)
+        if self.crew is not None:
+            self.crew.evaluate(mbs, t, self, trial)
+        if trial is not self._trial:
+            self.evaluate(trial)
         if self._refuses(t, trial):
             return np.full(len(q), np.nan)
-        if steps.control is not None and t > start and steps.control.rejects(trial.motion, steps.solver):
+        if steps.control is not None and t > steps.start and steps.control.rejects(trial.motion, steps.solver):
             return np.full(len(q), np.nan)
         return self._generalized_force(trial)
 
@@ -95,7 +104,28 @@ class FilmElement:
         trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
         if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
+        if self.crew is not None:
+            self.crew.derive(self, f_q, f_qt)
         return self._jacobian(mbs, trial, f_q, f_qt)
+
+    def _accept(self, mbs: exu.MainSystem) -> None:
+        """Take a state as accepted if the step has moved on; raise what that has met when another film was asked."""
+        late, self.late = self.late, None
+        if late is not None:
+            raise late
+        start, steps, solvers = mbs.systemData.GetTime(_START_OF_STEP), self.steps, solver_state.stored_solvers(mbs)
+        if start != steps.start or solvers[0] is not steps.solvers[0] or solvers[1] is not steps.solvers[1]:
+            steps.accept(mbs, start, solvers)
+
+    def arrive(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial | None:
+        """What `force` does before the film is evaluated, with its errors kept for it; None if nothing is left."""
+        try:
+            self._accept(mbs)
+            trial = self._prepare(mbs, q, q_t, _CURRENT, t, not self.steps.is_idle)
+        except Exception as error:
+            self.late = error
+            return None
+        return None if trial is self._trial else trial
 
     def _refuses(self, t: float, trial: Trial) -> bool:
         """Whether the solver shall reject the step; raise if there is no film and it can't.
@@ -119,7 +149,22 @@ class FilmElement:
         time: float,
         stepping: bool = True,
     ) -> Trial:
-        """Evaluate the film at a state, unless it is the last one evaluated; bring the sides' arrays there.
+        """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there."""
+        trial = self._prepare(mbs, q, q_t, configuration, time, stepping)
+        if trial is not self._trial:
+            self.evaluate(trial)
+        return trial
+
+    def _prepare(
+        self,
+        mbs: exu.MainSystem,
+        q: list[float],
+        q_t: list[float],
+        configuration: exu.ConfigurationType,
+        time: float,
+        stepping: bool,
+    ) -> Trial:
+        """The last trial if it is the state's, else a new one for `evaluate`; the sides' arrays are brought there.
 
         ``stepping`` says that the state ends a step; else the film takes the velocities as they are (a linearisation
         after a run).
@@ -142,14 +187,33 @@ class FilmElement:
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own
-        evaluation = self._trial = None
+        self._trial = self._derived = None
+        return Trial(q, q_t, memory, step, begin, bodies, motion, None)
+
+    def evaluate(self, trial: Trial) -> None:
+        """Evaluate the film at a new trial, to which the sides' arrays belong."""
         # a sum is finite only if all its terms are
-        if np.isfinite(motion.sum()):
+        if np.isfinite(trial.motion.sum()):
             spin = self._spin() if self.model.needs_spin else 0.0
-            evaluation = self.model.evaluate(motion, memory, step, spin)
+            trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
             self.evaluations += 1
-        self._trial = Trial(q, q_t, memory, step, begin, bodies, motion, evaluation)
-        return self._trial
+        self._trial = trial
+
+    def derive(self, trial: Trial, f_q: float, f_qt: float) -> None:
+        """Keep the derivatives of the film at the last trial for `jacobian`."""
+        self._derived = trial, (f_q, f_qt), self._film_tangent(trial, f_q, f_qt)
+
+    def _tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """Derivatives of the film at the last trial, as its kind has them."""
+        known, self._derived = self._derived, None
+        if known is not None and known[0] is trial and known[1] == (f_q, f_qt):
+            return known[2]
+        return self._film_tangent(trial, f_q, f_qt)
+
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        """Derivative (6, 10) of the wrench to the motion."""
+        assert trial.evaluation is not None
+        return np.ascontiguousarray(trial.evaluation.tangent())
 
     def _move(
         self, mbs: exu.MainSystem, q: list[float], q_t: list[float], configuration: exu.ConfigurationType
@@ -211,13 +275,12 @@ class FilmElement:
 
     def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         """-(f_q dQ/dq + f_qt dQ/dq_t) (n, n) at the trial."""
-        stiffness, damping = self._derivatives(mbs, trial)
+        stiffness, damping = self._derivatives(mbs, trial, self._tangent(trial, f_q, f_qt))
         return -(f_q * stiffness + f_qt * damping)
 
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-        """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong."""
-        assert trial.evaluation is not None
-        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, np.ascontiguousarray(trial.evaluation.tangent()))
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """dQ/dq and dQ/dq_t (n, n) at the trial, to which the sides' arrays belong, for the film's ``tangent``."""
+        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, tangent)
         return stiffness, damping
 
     def _rigid_derivatives(
@@ -289,7 +352,7 @@ class FilmElement:
 
     def forget(self) -> None:
         """Evaluate the film anew at the next state, whichever it is."""
-        self._trial = self._peeked = None
+        self._trial = self._peeked = self._derived = None
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film."""

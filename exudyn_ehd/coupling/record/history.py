@@ -2,25 +2,21 @@
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import enum
 import math
 import pathlib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.coupling.record.on_disk import RowsOnDisk
 from exudyn_ehd.coupling.record.revolutions import Revolutions, revolutions
-from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
-from exudyn_ehd.joint.step_error import BLOCKS, step_errors
+from exudyn_ehd.joint.step_error import BLOCKS
 from exudyn_ehd.pictures.mixins import HistoryPictures
 from exudyn_ehd.pictures.records import History
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, RunError
+from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import replacing, require_path
 from exudyn_ehd.tables import data_frame, write_csv
 
@@ -44,17 +40,15 @@ _SCALARS = (
     "bore_displacement",
     "stored_power",
 )
-_TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
-_FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-_WIDTH = _FIRST_BLOCK + BLOCKS.size
+TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
+FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
+WIDTH = FIRST_BLOCK + BLOCKS.size
 _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
 FORMAT = "exudyn_ehd JointHistory 4"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
-# Rows in memory from which on they go to a file, if there is one.
-ON_DISK = 256
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
     "force": ("force_x", "force_y", "force_z"),
@@ -98,8 +92,8 @@ class Quantity(enum.Enum):
     STORED_POWER = "stored_power"
 
 
-_COLUMNS: dict[str, int | slice] = {
-    "time": _TIME,
+COLUMNS: dict[str, int | slice] = {
+    "time": TIME,
     "motion": slice(_MOTION, _MOTION + 10),
     "eccentricity": slice(_ECCENTRICITY, _ECCENTRICITY + 2),
     "eccentricity_ratio": _RATIO,
@@ -108,8 +102,16 @@ _COLUMNS: dict[str, int | slice] = {
     "moment": slice(_WRENCH + 3, _WRENCH + 6),
     **{name: _FIRST_SCALAR + i for i, name in enumerate(_SCALARS)},
 }
-# What a history has for every step.
-_NAMES = (*_COLUMNS, "step_error")
+# What a history has for every step, and for every row.
+_NAMES = (*COLUMNS, "step_error")
+_ROWS = (*_NAMES, "step_count")
+
+
+class Source(Protocol):
+    """Where a history on disk finds its columns."""
+
+    def column(self, name: str) -> np.ndarray:
+        """One of `_ROWS`, (n, ...)."""
 
 
 @dataclasses.dataclass(frozen=True, kw_only=True)
@@ -147,8 +149,15 @@ class JointHistory(History, HistoryPictures):
     step_error : ndarray (n,)
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
+    step_count : ndarray (n,)
+        Number of the accepted step, 0 for the initial state; it has gaps where the record was thinned (`Every`,
+        `Period`): the first, last and worst steps are there, and ``step_error`` is the largest since the row before.
     radial_clearance, journal_radius, length : float
         Of the bearing [m].
+
+    Notes
+    -----
+    The history of a `File` reads each of its arrays when it is asked for, and keeps it.
 
     Examples
     --------
@@ -181,14 +190,36 @@ class JointHistory(History, HistoryPictures):
     bore_displacement: np.ndarray
     stored_power: np.ndarray
     step_error: np.ndarray
+    step_count: np.ndarray
     journal_radius: float
+
+    def __getattr__(self, name: str) -> Any:
+        source = self.__dict__.get("_source")
+        if source is None or name not in _ROWS:
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+        self.__dict__[name] = values = source.column(name)
+        return values
+
+    @classmethod
+    def on_disk(cls, source: Source, dimensions: Mapping[str, float]) -> JointHistory:
+        """A history that reads its columns when they are asked for."""
+        history = object.__new__(cls)
+        history.__dict__.update(dimensions, _source=source)
+        return history
+
+    @property
+    def is_thinned(self) -> bool:
+        """Whether accepted steps are missing between the rows."""
+        return bool(np.any(np.diff(self.step_count) > 1))
 
     def __repr__(self) -> str:
         if not self.time.size:
             return "<JointHistory without steps>"
         gap, peak = float(self.minimum_gap.min()), float(self.peak_pressure.max())
+        steps = f"{self.step_count[-1] - self.step_count[0] + 1} steps"
+        steps += f" in {self.time.size} rows" if self.is_thinned else ""
         return (
-            f"<JointHistory of {self.time.size} steps from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
+            f"<JointHistory of {steps} from {self.time[0]:.6g} to {self.time[-1]:.6g} s: "
             f"minimum film thickness {shown('length', gap)}, peak pressure {shown('pressure', peak)}>"
         )
 
@@ -213,8 +244,10 @@ class JointHistory(History, HistoryPictures):
             raise InputError(f"JointHistory.between: start must not lie after end, got {start!r} and {end!r} s.")
         slack = 1e-9 * float(np.ptp(self.time)) if self.time.size else 0.0
         kept = (self.time >= start - slack) & (self.time <= end + slack)
-        columns = {name: getattr(self, name)[kept] for name in _NAMES}
-        return dataclasses.replace(self, **columns)
+        # columns of which a part is wanted are not kept
+        known, source = self.__dict__, self.__dict__.get("_source")
+        columns = {name: (known[name] if name in known or not source else source.column(name))[kept] for name in _ROWS}
+        return JointHistory(**columns, **{name: getattr(self, name) for name in DIMENSIONS})
 
     def save(self, path: str | pathlib.Path) -> None:
         """Write everything to a NumPy file (npz); it appears whole or not at all. `load_history` reads it.
@@ -281,7 +314,7 @@ class JointHistory(History, HistoryPictures):
         InputError
             If there is no whole revolution or period.
         """
-        return revolutions({name: getattr(self, name) for name in _COLUMNS}, period)
+        return revolutions({name: getattr(self, name) for name in COLUMNS}, period)
 
 
 def eccentricity_ratios(motion: np.ndarray, radial_clearance: float, length: float) -> tuple[float, float]:
@@ -301,120 +334,18 @@ def make_row(
     tangent: np.ndarray | None = None,
 ) -> np.ndarray:
     """One row of the record; estimates of step errors need the ``tangent`` (6, 10)."""
-    row = np.empty(_WIDTH)
-    row[_TIME] = time
+    row = np.empty(WIDTH)
+    row[TIME] = time
     row[_MOTION : _MOTION + 10] = motion
     row[_ECCENTRICITY : _ECCENTRICITY + 2] = motion[:2]
     row[_RATIO], row[_RATIO_MAX] = ratios
     row[_WRENCH : _WRENCH + 6] = wrench
     for i, name in enumerate(_SCALARS):
         row[_FIRST_SCALAR + i] = quantities.get(name, np.nan)
-    row[_FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
+    row[FIRST_BLOCK:] = np.nan if tangent is None else tangent.take(_BLOCKS)
     return row
 
 
 def column(row: np.ndarray, quantity: Quantity) -> np.ndarray:
     """The part (k,) of a row that holds ``quantity``."""
-    return np.atleast_1d(row[_COLUMNS[quantity.value]])
-
-
-class Record:
-    """Rows of accepted steps of a bearing in a growing array, or the last ones with the others on disk."""
-
-    def __init__(self, bearing: JournalBearing) -> None:
-        self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
-        self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
-        self._rows = np.empty((64, _WIDTH))
-        self._count = 0
-        self._disk: RowsOnDisk | None = None
-        self._thinnest = math.nan
-
-    def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
-        """Let all rows but the last ones go to a file of this joint."""
-        head = {"width": _WIDTH, "names": FORMAT, "lags": self._lags, **self._dimensions}
-        self._disk = RowsOnDisk(path, joint, head)
-
-    def append(self, row: np.ndarray) -> None:
-        """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
-        if self._count:
-            last = self._rows[self._count - 1, _TIME]
-            if row[_TIME] < last:
-                self.clear()
-            elif row[_TIME] == last:
-                self._count -= 1
-        if self._disk is not None and self._count >= ON_DISK:
-            self.write()
-        if self._count == self._rows.shape[0]:
-            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
-        self._rows[self._count] = row
-        self._count += 1
-
-    def clear(self) -> None:
-        """Begin a new record."""
-        self._count, self._thinnest = 0, math.nan
-        if self._disk is not None:
-            self._disk.clear()
-
-    def write(self, final: np.ndarray | None = None) -> None:
-        """Bring the rows to the file, if there is one, with ``final`` behind them; the last one stays in memory too."""
-        if self._disk is None or not self._count:
-            return
-        rows, done = self._rows[: self._count], self._count - 1
-        self._disk.add(rows if final is None else np.concatenate([rows, final[None]]), done)
-        self._thinnest = self.thinnest
-        self._rows[0], self._count = self._rows[done].copy(), 1
-
-    def rows(self, final: np.ndarray | None) -> np.ndarray:
-        """Copy of all rows (n, k), with ``final`` behind them if given and later."""
-        rows = self._rows[: self._count].copy()
-        if self._disk is not None:
-            rows = np.concatenate([self._disk.read(), rows])
-        if final is not None and final[_TIME] > self.last_time:
-            rows = np.concatenate([rows, final[None]])
-        return rows
-
-    def restore(self, rows: np.ndarray) -> None:
-        """Begin with these rows (n, k)."""
-        if rows.ndim != 2 or rows.shape[1] != _WIDTH:
-            raise InputError(f"LubricatedJoint.restore_state: rows must be (n, {_WIDTH}), got {rows.shape}.")
-        self.clear()
-        self._rows, self._count = np.concatenate([rows, np.empty((64, _WIDTH))]), len(rows)
-
-    @property
-    def thinnest(self) -> float:
-        """The minimum film thickness of all rows, m; nan where no film has one."""
-        gaps = self._rows[: self._count, MINIMUM_GAP]
-        return float(np.fmin.reduce(gaps, initial=self._thinnest))
-
-    @property
-    def last_time(self) -> float:
-        """Time of the last row, minus infinity if there is none."""
-        return float(self._rows[self._count - 1, _TIME]) if self._count else -np.inf
-
-    def snapshot(self, final: np.ndarray | None) -> JointHistory:
-        """Copy of the record, with ``final`` as its last row if given."""
-        # where the file can't be written any more, the rows are still known
-        with contextlib.suppress(RunError):
-            self.write(final)
-        rows = self.rows(None)
-        if final is not None:
-            rows = np.concatenate([rows, final[None]])
-        return history_of(rows, self._dimensions, self._lags)
-
-
-def history_of(rows: np.ndarray, dimensions: dict[str, Any], lags: bool) -> JointHistory:
-    """Rows (n, k) as columns, with the errors of their steps; ``lags``: on a liner."""
-    columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in _COLUMNS.items()}
-    peak, deflection = columns["peak_angle"], None
-    if lags:
-        deflection = columns["bore_displacement"][:, None] * np.stack((np.cos(peak), np.sin(peak)), axis=1)
-    errors = step_errors(
-        columns["time"],
-        columns["motion"],
-        rows[:, _FIRST_BLOCK:].reshape(-1, *BLOCKS.shape),
-        columns["minimum_gap"],
-        dimensions["radial_clearance"],
-        dimensions["length"],
-        deflection,
-    )
-    return JointHistory(**columns, step_error=errors, **dimensions)
+    return np.atleast_1d(row[COLUMNS[quantity.value]])

@@ -13,17 +13,20 @@ import json
 import os
 import pathlib
 import secrets
-from collections.abc import Mapping
-from typing import Any, BinaryIO
+from collections.abc import Iterator, Mapping
+from typing import Any, BinaryIO, NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.status import InputError, RunError
+from exudyn_ehd.coupling.record.thinning import Every, Period
+from exudyn_ehd.status import InputError, RunError, require_type
 from exudyn_ehd.storage import require_path
 
 HEAD = 512
 # Rows read before those that are asked for.
 LEAD = 1000
+# Rows in memory while a column is read.
+PART = 4096
 FORMAT = "exudyn_ehd rows 1"
 NAME = "{name}"
 
@@ -32,14 +35,16 @@ NAME = "{name}"
 class File:
     """``record`` of `CreateLubricatedJoint`: accepted steps go to a file, and memory holds the last ones only.
 
-    A step takes 0.4 KB on disk. `load_history` reads the file, during a run and after a kill as well. `joint.history`,
-    and the line at the end of a run, read all of it: 1.3 KB of memory a step while they do, 0.3 KB for the history
-    itself. A new record of the joint replaces the file.
+    A step takes 0.4 KB on disk. `load_history` reads the file, during a run and after a kill as well. A history of it
+    reads each of its arrays when it is asked for: 8 bytes a step and number. A new record of the joint replaces the
+    file.
 
     Parameters
     ----------
     path : path
         Of a file of its own for each joint; "{name}" in it stands for the joint's name.
+    every : Every, Period or None
+        Keep some of the steps; None: all of them.
 
     Examples
     --------
@@ -49,9 +54,11 @@ class File:
     """
 
     path: str | pathlib.Path
+    every: Every | Period | None = None
 
     def __post_init__(self) -> None:
         require_path("File", self.path)
+        require_type("File.every", self.every, Every, Period, type(None))
 
     def of(self, name: str) -> pathlib.Path:
         """The path of a joint.
@@ -121,24 +128,85 @@ class RowsOnDisk:
         self._head = (json.dumps(head).ljust(HEAD - 1) + "\n").encode()
         self.path.write_bytes(self._head)
 
-    def read(self) -> np.ndarray:
-        """All rows (n, k)."""
-        if not self.count:
-            return np.empty((0, self._width))
-        with open(self.path, "rb") as file:
-            self._require_own(file)
-            return np.fromfile(file, count=self.count * self._width).reshape(-1, self._width)
+    def rows(self, behind: np.ndarray | None = None) -> RowsInFile:
+        """All settled rows, to read, with others (n, k) behind them."""
+        behind = np.empty((0, self._width)) if behind is None else behind
+        return RowsInFile(self.path, self.joint, self._head, self.count, behind)
 
     def clear(self) -> None:
         """Begin anew at the next rows."""
         self.count, self._head = 0, b""
 
     def _require_own(self, file: BinaryIO) -> None:
-        if file.read(HEAD) != self._head:
-            raise RunError(
-                f"LubricatedJoint '{self.joint}': another record has replaced the one in '{self.path}'; give every "
-                f"joint a File(...) with a path of its own, or '{NAME}' in it."
-            )
+        _require_head(file, self._head, self.path, self.joint)
+
+
+class RowsInFile(NamedTuple):
+    """Rows of a file as it was, read when they are asked for.
+
+    Attributes
+    ----------
+    path : path
+    joint : str
+        Whose they are, for messages.
+    head : bytes
+        Of the file.
+    settled : int
+        Rows in it.
+    behind : (n, k) array
+        Further rows.
+    """
+
+    path: pathlib.Path
+    joint: str
+    head: bytes
+    settled: int
+    behind: np.ndarray
+
+    @property
+    def width(self) -> int:
+        """Numbers in a row."""
+        return int(self.behind.shape[1])
+
+    @property
+    def total(self) -> int:
+        """Number of rows."""
+        return self.settled + len(self.behind)
+
+    def parts(self) -> Iterator[np.ndarray]:
+        """All rows, `PART` of them at a time.
+
+        Raises
+        ------
+        RunError
+            If the file is another one by now.
+        """
+        left = self.settled
+        if left:
+            with open(self.path, "rb") as file:
+                _require_head(file, self.head, self.path, self.joint)
+                while left:
+                    part = np.fromfile(file, count=min(left, PART) * self.width).reshape(-1, self.width)
+                    yield part
+                    left -= len(part)
+        yield self.behind
+
+    def column(self, where: int | slice) -> np.ndarray:
+        """One column (n,), or several (n, k)."""
+        return np.concatenate([part[:, where] for part in self.parts()])
+
+    def read(self) -> np.ndarray:
+        """All rows (n, k)."""
+        return self.column(slice(None))
+
+
+def _require_head(file: BinaryIO, head: bytes, path: pathlib.Path, joint: str) -> None:
+    if file.read(HEAD) != head:
+        raise RunError(
+            f"LubricatedJoint '{joint}': another record has replaced the one in '{path}'; give every "
+            f"joint a File(...) with a path of its own, or '{NAME}' in it, and read arrays of a history, or save it, "
+            "before the next run."
+        )
 
 
 def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
@@ -151,12 +219,26 @@ def read_head(path: str | pathlib.Path) -> dict[str, Any] | None:
     return head if isinstance(head, dict) and head.get("format") == FORMAT else None
 
 
-def read_rows(path: str | pathlib.Path, width: int, start: float, end: float) -> np.ndarray:
-    """The whole rows (n, width) of a file of `RowsOnDisk` from `LEAD` rows before ``start`` to ``end``, s."""
-    whole = (os.path.getsize(path) - HEAD) // (8 * width)
+def open_rows(path: str | pathlib.Path, width: int) -> RowsInFile:
+    """The whole rows (n, width) that a file of `RowsOnDisk` has by now."""
+    path = pathlib.Path(path).absolute()
+    with open(path, "rb") as file:
+        head = file.read(HEAD)
+    return RowsInFile(path, path.name, head, _whole_rows(path, width), np.empty((0, width)))
+
+
+def _whole_rows(path: str | pathlib.Path, width: int) -> int:
+    return (os.path.getsize(path) - HEAD) // (8 * width)
+
+
+def read_rows(path: str | pathlib.Path, width: int, start: float, end: float) -> tuple[int, np.ndarray]:
+    """The whole rows (n, width) of a file of `RowsOnDisk` from `LEAD` rows before ``start`` to ``end``, s, and the
+    place of the first of them."""
+    whole = _whole_rows(path, width)
     if not whole:
-        return np.empty((0, width))
+        return 0, np.empty((0, width))
     rows = np.memmap(path, dtype=float, mode="r", offset=HEAD, shape=(whole, width))
     first, last = bisect.bisect_left(rows[:, 0], start), bisect.bisect_right(rows[:, 0], end)
     # one more on either side, for times that are meant to be the limits
-    return np.array(rows[max(0, first - LEAD) : last + 1])
+    first = max(0, first - LEAD)
+    return first, np.array(rows[first : last + 1])

@@ -70,7 +70,7 @@ def tell(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
 def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: bool) -> str:
     """The line that `tell` logs."""
     h, time = history, history.time
-    text = f"LubricatedJoint '{name}', {time.size - 1} steps to t = {time[-1]:.6g} s"
+    text = f"LubricatedJoint '{name}', {h.step_count[-1]} steps to t = {time[-1]:.6g} s"
     for title, values, worst, factor, unit in (
         ("minimum film thickness", h.minimum_gap, np.nanargmin, 1e6, "um"),
         ("peak pressure", h.peak_pressure, np.nanargmax, 1e-6, "MPa"),
@@ -78,14 +78,15 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
         if np.any(np.isfinite(values)):
             k = int(worst(values))
             text += f", {title} {factor * values[k]:.3g} {unit} at {time[k]:.6g} s"
-    halved = _halved(time) if in_time else 0
+    # a thinned record does not know the size of every step
+    halved = _halved(time) if in_time and not h.is_thinned else 0
     text += f", {halved} halved steps" if halved else ""
     error = float(np.nanmax(h.step_error, initial=0.0))
     if error > LIMITS["time step"].value:
         k = int(np.nanargmax(h.step_error))
         text += (
             f", error of the time steps {100.0 * error:.0f} % of the minimum film thickness at {time[k]:.6g} s: take "
-            f"{enough_steps(time, h.motion[:, 8], h.step_error)}"
+            f"{enough_steps(time, h.motion[:, 8], h.step_error, h.step_count)}"
         )
     doubts = worth_an_audit(bearing, history) if isinstance(bearing, JournalBearing) else []
     return text + (f"; worth an audit (joint.audit()): {', '.join(doubts)}." if doubts else ".")

@@ -11,6 +11,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import ObjectIndex, require_system
+from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
 from exudyn_ehd.coupling.run.joint_state import require_estimates
@@ -62,6 +63,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: None = None,
+    threads: int | None = 1,
     **options: object,
 ) -> bool: ...
 @overload
@@ -72,6 +74,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: UntilPeriodic,
+    threads: int | None = 1,
     **options: object,
 ) -> LastCycle: ...
 def SolveDynamic(
@@ -81,6 +84,7 @@ def SolveDynamic(
     restart: SystemState | str | pathlib.Path | None = None,
     stepControl: StepControl | None = None,
     until_periodic: UntilPeriodic | None = None,
+    threads: int | None = 1,
     **options: object,
 ) -> bool | LastCycle:
     """``mbs.SolveDynamic`` with a better start of Newton's method, with this package's errors, and with restarts.
@@ -107,6 +111,9 @@ def SolveDynamic(
         ``StepControl(error=0.02)``: steps chosen by the error that they make in the films.
     until_periodic : UntilPeriodic, optional
         Ends the run as soon as the orbits of all joints have closed.
+    threads : int or None
+        Threads on which the films of all joints are evaluated side by side, with the same bits; None: one for each core
+        of the process. Worth it from two joints on fine grids on, see coupling/README.md.
     **options
         As in ``mbs.SolveDynamic``: solverType, updateInitialValues, ...; the solver is stored whatever storeSolver is.
 
@@ -160,7 +167,9 @@ def SolveDynamic(
         if until_periodic is not None:
             films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
-        for part in (control, _better_start(mbs, simulationSettings), refusing(mbs), own_errors(mbs, "SolveDynamic")):
+        shared = side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads)
+        better = _better_start(mbs, simulationSettings)
+        for part in (shared, control, better, refusing(mbs), own_errors(mbs, "SolveDynamic")):
             around.enter_context(part)
         around.enter_context(progress_of(mbs, simulationSettings))
         good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))

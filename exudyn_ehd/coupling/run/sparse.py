@@ -35,8 +35,10 @@ import numpy as np
 from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
 from exudyn_ehd.coupling.contract import require_system
+from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.solve import (
+    joints_of,
     own_errors,
     progress_of,
     refusing,
@@ -136,6 +138,7 @@ def SolveDynamicSparse(
     *,
     reuse: FactorReuse | None = None,
     stepControl: StepControl | None = None,
+    threads: int | None = 1,
 ) -> SparseRun:
     """Integrate an assembled model in time like ``mbs.SolveDynamic``, with an own sparse factorisation.
 
@@ -152,6 +155,7 @@ def SolveDynamicSparse(
         Tolerances, steps, spectral radius, Newmark and index 2 are taken from ``timeIntegration``.
     reuse : FactorReuse, optional
     stepControl : StepControl, optional
+    threads : int or None
         As in `SolveDynamic`.
 
     Returns
@@ -182,6 +186,7 @@ def SolveDynamicSparse(
     _require_offered(settings.timeIntegration)
     require_items(mbs)
     control = step_control("SolveDynamicSparse", mbs, settings, stepControl)
+    shared = side_by_side("SolveDynamicSparse", [joint.element for joint in joints_of(mbs)], threads)
     if not mbs.systemIsConsistent:
         mbs.Assemble()
     run = SparseRun()
@@ -202,7 +207,7 @@ def SolveDynamicSparse(
     # the initial accelerations still come from Exudyn's own solver, which must not fill a dense matrix
     settings.linearSolver.solverType = exu.LinearSolverType.EigenSparse
     try:
-        with control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
+        with shared, control, refusing(mbs), own_errors(mbs, "SolveDynamicSparse"), progress_of(mbs, settings):
             run.success = bool(solver.SolveSystem(mbs, settings))
             if not run.success:
                 raise exu.SolverError("SolveDynamicSparse: SolveSystem returned False")

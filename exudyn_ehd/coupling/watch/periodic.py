@@ -18,6 +18,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
 from exudyn_ehd.coupling.record.history import JointHistory
+from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, RunError, require_number
@@ -110,7 +111,15 @@ class LastCycle:
 
 
 class Steps(Protocol):
-    """What is asked of the accepted steps of a joint."""
+    """What is asked of the accepted steps of a joint.
+
+    Attributes
+    ----------
+    record : Record
+        Of all steps.
+    """
+
+    record: Record
 
     def history(self, mbs: exu.MainSystem, *, complete: bool = True) -> JointHistory:
         """Their record, with the current state if ``complete``."""
@@ -210,6 +219,12 @@ def closing(
     run = settings.timeIntegration
     if not films:
         raise InputError("SolveDynamic.until_periodic: the system has no lubricated joints whose orbits could close.")
+    for name, steps in films:
+        if steps.record.is_thinned:
+            raise InputError(
+                f"SolveDynamic.until_periodic compares all steps of a cycle, and joint '{name}' keeps some of them; "
+                "leave out Every and Period of its record (File alone keeps memory small, too)."
+            )
     if run.endTime - run.startTime < (3.0 - SAME) * aim.period:
         raise InputError(
             f"SolveDynamic.until_periodic: the run must have room for three periods of {aim.period:.6g} s, got "

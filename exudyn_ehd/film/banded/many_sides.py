@@ -228,7 +228,7 @@ def solve_tiles(forward, backward, diagonal, x):
                 own[2 * TILE + q] = y2
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_in_tiles(forward, backward, inverse, symmetric, count, width, x):
     """Solve ``A x = b`` with ``A = F^T G`` for every column of tiles x, as returned by `make_tiles`, in place.
 

@@ -28,7 +28,7 @@ _back = _unsigned(2**64 - 1)
 _YES, _NO = np.True_, np.False_
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_ldl(band, inverse, count, width, x):
     """Solve ``A x = b`` with the symmetric factor of `ldl.factor_band` for every row of x (k, count), in place."""
     _solve_rows(band, band, _YES, _YES, inverse, count, width, x)

@@ -172,7 +172,7 @@ def update_active_set(kx, kz, b, fixed, pc, active, P):
     return changes
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_active_set(kx, kz, b, fixed, pc, active, order, old_order, number, band, inv_diag, unknowns, P):
     """Swift-Stieber film; returns (ok, steps, count, width). ``active`` is the start and, on return, the result."""
     n, m = b.shape

@@ -319,7 +319,7 @@ def _change_sets(x, order, count, pc, sets, changed, pressures, fills):
     return changes, marks
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_elrod(film, inverse_step, mass_old, pc, full, order, number, lower, upper, inv_diag, t, x, P, fill):
     """Newton on the sets from ``full``, which also returns them; returns (ok, steps, count, width, convected).
 

@@ -197,7 +197,7 @@ def lift(order, count, p):
     return peak
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def find_line(links, fixed, pc, forth, is_known, line, active, factor, last, x, P):
     """The film from ``active``, if it ``is_known`` also from its pressures P; returns as `solve_line`.
 
@@ -284,7 +284,7 @@ def solve_transposed_with_line(system: FilmSystem, line: RuptureLine, work: Work
         solve_corrected(work.band, work.inv_diag, work.count, work.width, line.share, rhs)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def refine_line(links, line, factor, count, width, first, peak, least):
     """Factor of a solution, as for `refine_factor`; returns whether it is exact."""
     _, k, s, _, _, places, shift, share = line
@@ -302,7 +302,7 @@ def refine_line(links, line, factor, count, width, first, peak, least):
     return exact
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_corrected(band, inv_diag, count, width, lacks_of, x):
     """Solve with a factor that lacks the diagonals ``lacks_of`` (count,), for every row of x (k, count), in place."""
     solve_ldl(band, inv_diag, count, width, x)

@@ -112,7 +112,7 @@ def _accept(u, trial, residual, fixed, pc, chooses, active, changes):
     return changes
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, residual, active, start):
     """Newton from ``u``, in place; returns (found, steps, exact, count, width).
 

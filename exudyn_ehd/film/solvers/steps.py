@@ -45,7 +45,7 @@ ENDLESS = (np.inf, np.inf)
 _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None, line=None):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import exudyn_ehd as ehd
-from exudyn_ehd.coupling.record.history import Record, column, make_row
+from exudyn_ehd.coupling.record.history import column, make_row
+from exudyn_ehd.coupling.record.record import Record
 from exudyn_ehd.coupling.record.revolutions import revolution_times
 from exudyn_ehd.status import InputError
 

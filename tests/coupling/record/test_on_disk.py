@@ -12,8 +12,9 @@ from exudyn.utilities import InertiaCylinder
 
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record import history as rows_of
-from exudyn_ehd.coupling.record.history import Record, make_row
+from exudyn_ehd.coupling.record.history import make_row
 from exudyn_ehd.coupling.record.on_disk import HEAD, RowsOnDisk
+from exudyn_ehd.coupling.record.record import Record
 
 ROOT = Path(__file__).parents[3]
 
@@ -69,7 +70,7 @@ def test_a_part_of_a_long_file_is_read_alone(tmp_path, monkeypatch):
         row = random_row(rng, time)
         # a film that keeps nine tenths of its errors from step to step
         blocks = np.tile(np.eye(2).ravel(), 4) * np.repeat([-1000.0, -1.0, -1000.0, -1.0], 4)
-        row[rows_of._FIRST_BLOCK :] = blocks
+        row[rows_of.FIRST_BLOCK :] = blocks
         record.append(row)
     whole = record.snapshot(None)
     for start, end in ((0.3, 0.301), (whole.time[2000], whole.time[2100]), (0.399, 9.0), (-1.0, 0.02), (7.0, 8.0)):

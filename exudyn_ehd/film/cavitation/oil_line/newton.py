@@ -233,7 +233,7 @@ def _solve(lacks, order, count, width, convected, factors, x):
         solve_lu_one(L, U, inv_diag, count, width, x)
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def solve_on_curve(film, late, b, inverse_step, mass_old, pc, full, curve, order, number, factors, x, P, fill):
     """Newton from a film with the sets ``full``; returns (ok, steps, count, width, convected).
 

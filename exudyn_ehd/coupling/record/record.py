@@ -1,0 +1,258 @@
+"""The rows of a joint's accepted steps: all of them in memory, or some of them, or the last ones with a file;
+and back from files."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import math
+import pathlib
+import zipfile
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.coupling.record.history import COLUMNS, DIMENSIONS, FORMAT, MINIMUM_GAP, TIME, WIDTH, JointHistory
+from exudyn_ehd.coupling.record.on_disk import RowsInFile, RowsOnDisk, open_rows, read_head, read_rows
+from exudyn_ehd.coupling.record.thinning import STEP_COUNT, STEP_ERROR, Thinner, Thinning, errors_of
+from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.step_error import FIRST
+from exudyn_ehd.status import InputError, RunError
+from exudyn_ehd.storage import require_path
+
+# Rows in memory from which on they are thinned, or go to a file.
+MOST_ROWS = 256
+
+
+class Record:
+    """Rows of accepted steps of a bearing in a growing array, or the last ones behind what was kept of the others."""
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        self._dimensions: dict[str, Any] = {name: float(getattr(bearing, name)) for name in DIMENSIONS}
+        self._lags = isinstance(getattr(bearing, "bush", None), ElasticLiner)
+        self._rows = np.empty((64, WIDTH))
+        self._count = 0
+        self._thinner: Thinner | None = None
+        self._disk: RowsOnDisk | None = None
+        # rows that are settled, thinned ones in memory or restored ones on their way to the file
+        self._kept: list[np.ndarray] = []
+        self._thinnest = math.nan
+
+    def thin(self, rule: Thinning) -> None:
+        """Drop rows by a rule from now on."""
+        d = self._dimensions
+        self._thinner = Thinner(rule, d["radial_clearance"], d["length"], self._lags)
+
+    def keep_on_disk(self, path: pathlib.Path, joint: str) -> None:
+        """Let all rows but the last ones go to a file of this joint."""
+        head = {"width": self.width, "names": FORMAT, "lags": self._lags, **self._dimensions}
+        self._disk = RowsOnDisk(path, joint, head)
+
+    @property
+    def width(self) -> int:
+        """Of a row that is kept."""
+        return WIDTH if self._thinner is None else WIDTH + 2
+
+    @property
+    def is_thinned(self) -> bool:
+        """Whether rows are dropped."""
+        return self._thinner is not None
+
+    def append(self, row: np.ndarray) -> None:
+        """Add an accepted step; one at the time of the last replaces it, an earlier one starts a new record."""
+        if self._count:
+            last = self._rows[self._count - 1, TIME]
+            if row[TIME] < last:
+                self.clear()
+            elif row[TIME] == last:
+                self._count -= 1
+        if (self._disk is not None or self._thinner is not None) and self._count >= MOST_ROWS:
+            self.write()
+        if self._count == self._rows.shape[0]:
+            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
+        self._rows[self._count] = row
+        self._count += 1
+
+    def clear(self) -> None:
+        """Begin a new record."""
+        self._count, self._thinnest, self._kept = 0, math.nan, []
+        if self._thinner is not None:
+            self._thinner.begin_anew()
+        if self._disk is not None:
+            self._disk.clear()
+
+    def write(self, final: np.ndarray | None = None) -> None:
+        """Bring the rows to the file, if there is one, with ``final`` behind them; the last one stays in memory too.
+
+        Without a file drop those that a thinned record does not keep.
+        """
+        if (self._disk is None and self._thinner is None) or not self._count:
+            return
+        rows, done, thinner = self._rows[: self._count], self._count - 1, self._thinner
+        settled = rows[:done].copy() if thinner is None else thinner.take(rows[:done])
+        self._kept.append(settled)
+        self._thinnest = self.thinnest
+        self._rows[0], self._count = rows[done].copy(), 1
+        if self._disk is not None:
+            whole = np.concatenate(self._kept)
+            self._disk.add(np.concatenate([whole, self._behind(final)]), len(whole))
+            self._kept = []
+
+    def _behind(self, final: np.ndarray | None) -> np.ndarray:
+        """Rows (n, width) of what is not settled, with ``final`` behind them."""
+        rows = self._rows[: self._count]
+        rows = rows if final is None else np.concatenate([rows, final[None]])
+        return rows.copy() if self._thinner is None else self._thinner.look(rows)
+
+    def rows(self, final: np.ndarray | None) -> np.ndarray:
+        """Copy of all rows (n, width), with ``final`` behind them if given and later."""
+        final = None if final is None or not final[TIME] > self.last_time else final
+        before = [] if self._disk is None else [self._disk.rows().read()]
+        return np.concatenate([*before, *self._kept, self._behind(final)])
+
+    def restore(self, rows: np.ndarray) -> None:
+        """Begin with these rows (n, width)."""
+        if rows.ndim != 2 or rows.shape[1] != self.width:
+            kinds = "of a thinned record have two columns more; " if rows.shape[1:] in ((WIDTH,), (WIDTH + 2,)) else ""
+            raise InputError(
+                f"LubricatedJoint.restore_state: rows must be (n, {self.width}), got {rows.shape}; {kinds}create the "
+                "joint with the record of the stored run."
+            )
+        self.clear()
+        if self._thinner is None or not len(rows):
+            self._rows, self._count = np.concatenate([rows, np.empty((64, rows.shape[1]))])[:, :WIDTH], len(rows)
+            return
+        self._kept, self._rows[0], self._count = [rows[:-1].copy()], rows[-1, :WIDTH], 1
+        self._thinner.begin_anew(rows[-1])
+        self._thinnest = float(np.fmin.reduce(rows[:, MINIMUM_GAP]))
+
+    @property
+    def thinnest(self) -> float:
+        """The minimum film thickness of all rows, m; nan where no film has one."""
+        gaps = self._rows[: self._count, MINIMUM_GAP]
+        return float(np.fmin.reduce(gaps, initial=self._thinnest))
+
+    @property
+    def last_time(self) -> float:
+        """Time of the last row, minus infinity if there is none."""
+        return float(self._rows[self._count - 1, TIME]) if self._count else -np.inf
+
+    def snapshot(self, final: np.ndarray | None) -> JointHistory:
+        """The record, with ``final`` as its last row if given: a copy, or what reads the file."""
+        # where the file can't be written any more, the rows are still known
+        with contextlib.suppress(RunError):
+            self.write(final)
+        if self._disk is None or not self._disk.count:
+            rows = np.concatenate([*self._kept, self._behind(final)])
+            return history_of(rows, self._dimensions, self._lags)
+        behind = np.concatenate([*self._kept, self._behind(final)])
+        return history_on_disk(self._disk.rows(behind), self._dimensions, self._lags)
+
+
+def history_of(rows: np.ndarray, dimensions: Mapping[str, Any], lags: bool, first: int = 0) -> JointHistory:
+    """Rows (n, k) as columns, with the errors of their steps; ``lags``: on a liner; ``first``: rows before them."""
+    columns: dict[str, Any] = {name: np.ascontiguousarray(rows[:, where]) for name, where in COLUMNS.items()}
+    if rows.shape[1] > WIDTH:
+        count, errors = rows[:, STEP_COUNT].astype(np.int64), rows[:, STEP_ERROR].copy()
+    else:
+        count = first + np.arange(len(rows))
+        errors, _ = errors_of(rows, dimensions["radial_clearance"], dimensions["length"], lags, np.zeros(4))
+    return JointHistory(**columns, step_error=errors, step_count=count, **dimensions)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Columns:
+    """Columns of rows in a file, read one by one.
+
+    Parameters
+    ----------
+    rows : RowsInFile
+    clearance, length : float
+    lags : bool
+        As for `errors_of`.
+    """
+
+    rows: RowsInFile
+    clearance: float
+    length: float
+    lags: bool
+
+    def column(self, name: str) -> np.ndarray:
+        """As of `exudyn_ehd.coupling.record.history.Source`."""
+        thinned = self.rows.width > WIDTH
+        if name == "step_count":
+            return self.rows.column(STEP_COUNT).astype(np.int64) if thinned else np.arange(self.rows.total)
+        if name == "step_error":
+            return self.rows.column(STEP_ERROR) if thinned else self._errors()
+        return self.rows.column(COLUMNS[name])
+
+    def _errors(self) -> np.ndarray:
+        lead, before, found = np.empty((0, self.rows.width)), np.zeros(4), [np.empty(0)]
+        for part in self.rows.parts():
+            whole = np.concatenate([lead, part])
+            errors, before = errors_of(whole, self.clearance, self.length, self.lags, before)
+            found.append(errors[len(lead) :])
+            lead = whole[-FIRST:]
+        return np.concatenate(found)
+
+
+def history_on_disk(rows: RowsInFile, dimensions: Mapping[str, Any], lags: bool) -> JointHistory:
+    """A history that reads its columns when they are asked for."""
+    clearance, length = dimensions["radial_clearance"], dimensions["length"]
+    return JointHistory.on_disk(Columns(rows=rows, clearance=clearance, length=length, lags=lags), dimensions)
+
+
+def load_history(path: str | pathlib.Path, *, start: float = -math.inf, end: float = math.inf) -> JointHistory:
+    """Read what `JointHistory.save` has written, or the `File` of a record, as far as it has come.
+
+    Parameters
+    ----------
+    path : path
+    start, end : float
+        s: the steps with ``start <= time <= end``, as `JointHistory.between`. Of a `File` no others are read but a
+        thousand before them, from which the errors of the steps are summed up. Without both the history of a `File`
+        reads each of its arrays when it is asked for.
+
+    Returns
+    -------
+    JointHistory
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    InputError
+        If it holds something else, or the start lies after the end.
+
+    Examples
+    --------
+    After the example of `JointHistory`:
+
+    >>> again = ehd.load_history("main.npz")
+    >>> bool((again.force == history.force).all())
+    True
+    """
+    require_path("load_history", path)
+    head = read_head(path)
+    if head is not None and head["names"] == FORMAT:
+        dimensions = {name: head[name] for name in DIMENSIONS}
+        if start == -math.inf and end == math.inf:
+            return history_on_disk(open_rows(path, head["width"]), dimensions, head["lags"])
+        first, rows = read_rows(path, head["width"], start, end)
+        return history_of(rows, dimensions, head["lags"], first).between(start, end)
+    try:
+        with open(path, "rb") as raw, np.load(raw, allow_pickle=False) as data:
+            known = "format" in data.files and str(data["format"]) == FORMAT
+            values = {name: data[name] for name in data.files if name != "format"} if known else {}
+    except (zipfile.BadZipFile, ValueError, EOFError, TypeError, AttributeError):
+        known = False
+    if not known:
+        raise InputError(
+            f"load_history: '{path}' holds no history of this version; give a file written by joint.save(...)."
+        )
+    fields: dict[str, Any] = {name: value if value.ndim else float(value) for name, value in values.items()}
+    # files of before records could be thinned have all steps
+    fields.setdefault("step_count", np.arange(fields["time"].size))
+    return JointHistory(**fields).between(start, end)

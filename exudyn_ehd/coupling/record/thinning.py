@@ -1,0 +1,166 @@
+"""Records that keep some of their steps, none of the worst ones.
+
+Steps are put into spans. Of each the last one is kept, and those with the thinnest film, the highest pressure and the
+largest load across the axis: every row is an accepted step as it was, and the extremes of the rows are those of the
+run. A row behind the others carries two numbers more: which step it is, and the largest error of a step since the row
+before, for errors are summed over all steps before any is dropped (`exudyn_ehd.joint.step_error`).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.coupling.record.history import COLUMNS, FIRST_BLOCK, FORCE, MINIMUM_GAP, PEAK_PRESSURE, TIME, WIDTH
+from exudyn_ehd.joint.step_error import BLOCKS, FIRST, errors_behind
+from exudyn_ehd.status import require_integer, require_number
+
+# Places behind those of a row.
+STEP_COUNT, STEP_ERROR = WIDTH, WIDTH + 1
+_BLOCKS = slice(FIRST_BLOCK, FIRST_BLOCK + BLOCKS.size)
+# A span ends where a time meets its end to this share of it.
+ROUNDING = 1e-9
+
+
+class Thinning(Protocol):
+    """How steps are put into spans."""
+
+    def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """Number (n,) of the span of steps with numbers ``count`` and times (n,), none smaller than the one before."""
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Every:
+    """``record`` of `CreateLubricatedJoint`: every so many accepted steps are kept, and the worst ones between them.
+
+    Of each span of steps the last one, and those with the smallest ``minimum_gap``, the largest ``peak_pressure`` and
+    the largest load across the axis: the record's extremes are those of the run, ``step_count`` says which steps they
+    are. A span takes up to four rows, 1.9 KB. `LubricatedJoint.audit` and `UntilPeriodic`, which need all steps, refuse
+    such a record. Means over it are those of its rows, and errors of steps begin anew behind a restart.
+
+    Parameters
+    ----------
+    steps : int
+        2 or more.
+
+    Examples
+    --------
+    >>> record = ehd.File(path="results/{name}.rows", every=ehd.Every(steps=20))
+    """
+
+    steps: int
+
+    def __post_init__(self) -> None:
+        require_integer("Every.steps", self.steps, at_least=2)
+
+    def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """As of `Thinning`: the initial state alone, then so many steps each."""
+        return np.ceil(count / self.steps)
+
+
+@dataclasses.dataclass(frozen=True, kw_only=True)
+class Period:
+    """``record`` of `CreateLubricatedJoint`: a step every so many seconds, and the worst ones between; see `Every`.
+
+    Parameters
+    ----------
+    seconds : float
+        Spans end at the multiples of this, s.
+
+    Examples
+    --------
+    >>> record = ehd.Period(seconds=1e-3)
+    """
+
+    seconds: float
+
+    def __post_init__(self) -> None:
+        require_number("Period.seconds", self.seconds, "s", above=0.0)
+
+    def spans(self, count: np.ndarray, time: np.ndarray) -> np.ndarray:
+        """As of `Thinning`."""
+        return np.ceil(time / self.seconds - ROUNDING)
+
+
+class Thinner:
+    """Drops rows of a record as they come, a few hundred at a time.
+
+    Parameters
+    ----------
+    rule : Every or Period
+    clearance, length : float
+        Of the bearing, m.
+    lags : bool
+        Whether it is on a liner.
+    """
+
+    def __init__(self, rule: Thinning, clearance: float, length: float, lags: bool) -> None:
+        self.rule, self.bearing = rule, (clearance, length, lags)
+        self.begin_anew()
+
+    def begin_anew(self, last: np.ndarray | None = None) -> None:
+        """Forget all rows; ``last`` (WIDTH + 2,): the first to come is this row once more."""
+        self.count = 0 if last is None else int(last[STEP_COUNT])
+        self._known_error = np.nan if last is None else float(last[STEP_ERROR])
+        # what is kept so far of the span under way; the last rows as they came, and the pose's error there
+        self._open, self._lead, self._error = np.empty((0, WIDTH + 2)), np.empty((0, WIDTH)), np.zeros(4)
+
+    def take(self, rows: np.ndarray) -> np.ndarray:
+        """Add rows (n, WIDTH); returns those (k, WIDTH + 2) of the spans that have ended."""
+        if not len(rows):
+            return np.empty((0, WIDTH + 2))
+        whole, numbered, error = self._number(rows)
+        kept, begin = self._keep(numbered)
+        self._open, self._error, self._known_error = kept[begin:], error, np.nan
+        self._lead, self.count = whole[-FIRST:].copy(), self.count + len(rows)
+        return kept[:begin]
+
+    def look(self, rows: np.ndarray) -> np.ndarray:
+        """Rows (k, WIDTH + 2) of the span under way and those behind it, if rows (n, WIDTH) were taken."""
+        return self._keep(self._number(rows)[1])[0] if len(rows) else self._open
+
+    def _number(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The last rows and these, these with their two numbers behind those kept of the span, error of the pose."""
+        whole = np.concatenate([self._lead, rows])
+        errors, error = errors_of(whole, *self.bearing, self._error)
+        errors = errors[len(self._lead) :]
+        errors[0] = np.fmax(errors[0], self._known_error)
+        count = self.count + np.arange(len(rows))
+        return whole, np.concatenate([self._open, np.column_stack([rows, count, errors])]), error
+
+    def _keep(self, rows: np.ndarray) -> tuple[np.ndarray, int]:
+        """Those of rows (n, WIDTH + 2) that are kept, and where among them the last span begins."""
+        spans = self.rule.spans(rows[:, STEP_COUNT], rows[:, TIME])
+        edges = [0, *(np.flatnonzero(np.diff(spans)) + 1).tolist(), len(rows)]
+        load = np.hypot(rows[:, FORCE.start], rows[:, FORCE.start + 1])
+        kept = {0} if rows[0, STEP_COUNT] == 0 else set()
+        for a, b in itertools.pairwise(edges):
+            kept.add(b - 1)
+            for values in (-rows[a:b, MINIMUM_GAP], rows[a:b, PEAK_PRESSURE], load[a:b]):
+                if np.isfinite(values).any():
+                    kept.add(a + int(np.nanargmax(values)))
+        places = np.array(sorted(kept))
+        out = rows[places]
+        out[:, STEP_ERROR] = np.fmax.reduceat(rows[:, STEP_ERROR], np.concatenate([[0], places[:-1] + 1]))
+        return out, int(np.searchsorted(places, edges[-2]))
+
+
+def errors_of(
+    rows: np.ndarray, clearance: float, length: float, lags: bool, before: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Errors (n,) of the steps of rows (n, >= WIDTH), and that of the pose behind them, as `errors_behind`.
+
+    Tangents that are not known are taken from the row before, in ``rows`` themselves.
+    """
+    motion, peak, deflection = rows[:, COLUMNS["motion"]], rows[:, COLUMNS["peak_angle"]], None
+    if lags:
+        size = rows[:, COLUMNS["bore_displacement"], None]
+        deflection = size * np.stack((np.cos(peak), np.sin(peak)), axis=1)
+    tangent = rows[:, _BLOCKS]
+    last = np.maximum.accumulate(np.where(np.isfinite(tangent[:, 0]), np.arange(len(rows)), -1))
+    rows[last >= 0, _BLOCKS] = tangent[last[last >= 0]]
+    blocks, gap = rows[:, _BLOCKS].reshape(-1, *BLOCKS.shape), rows[:, MINIMUM_GAP]
+    return errors_behind(before, rows[:, TIME], motion, blocks, gap, clearance, length, deflection)
