@@ -57,10 +57,12 @@ class SphericalFilmElement(FilmElement):
         socket, ball = self.sides
         return spherical.motion_variation(socket.frame, ball.frame, socket.jac, ball.jac)
 
-    def _derivatives(self, mbs: exu.MainSystem, trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
         assert trial.evaluation is not None
-        tangent = np.ascontiguousarray(trial.evaluation.tangent()[:, spherical.ROWS])
-        stiffness, damping, _, _ = self._rigid_derivatives(mbs, trial, tangent)
+        return np.ascontiguousarray(trial.evaluation.tangent()[:, spherical.ROWS])
+
+    def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        stiffness, damping = super()._derivatives(mbs, trial, tangent)
         # it is that of another motion than the estimates of step errors know
         self.steps.tangent = None
         return stiffness, damping
