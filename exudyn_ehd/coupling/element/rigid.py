@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -29,6 +30,8 @@ from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
+_Values: TypeAlias = list[float]
+_Configuration: TypeAlias = exu.ConfigurationType
 
 
 class FilmElement:
@@ -141,28 +144,16 @@ class FilmElement:
         return trial.status != Status.NO_PRESSURE or found is None or not np.isfinite(found.wrench.sum())
 
     def _try(
-        self,
-        mbs: exu.MainSystem,
-        q: list[float],
-        q_t: list[float],
-        configuration: exu.ConfigurationType,
-        time: float,
-        stepping: bool = True,
+        self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool = True
     ) -> Trial:
         """The film at a state, evaluated unless it is the last one; the sides' arrays are brought there."""
-        trial = self._prepare(mbs, q, q_t, configuration, time, stepping)
+        trial = self._prepare(mbs, q, q_t, where, time, stepping)
         if trial is not self._trial:
             self.evaluate(trial)
         return trial
 
     def _prepare(
-        self,
-        mbs: exu.MainSystem,
-        q: list[float],
-        q_t: list[float],
-        configuration: exu.ConfigurationType,
-        time: float,
-        stepping: bool,
+        self, mbs: exu.MainSystem, q: _Values, q_t: _Values, where: _Configuration, time: float, stepping: bool
     ) -> Trial:
         """The last trial if it is the state's, else a new one for `evaluate`; the sides' arrays are brought there.
 
@@ -183,7 +174,7 @@ class FilmElement:
             return last
         peeked, self._peeked = self._peeked, None
         here = peeked is not None and peeked[0] == q and peeked[1] == q_t
-        bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, configuration)
+        bodies = motion = peeked[2] if peeked is not None and here else self._move(mbs, q, q_t, where)
         if begin is not None:
             motion = begin.film_motion(bodies, time)
         # an interrupt may leave the model between two states: the trial before is no longer its own

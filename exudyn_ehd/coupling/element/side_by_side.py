@@ -13,7 +13,7 @@ that the system had at the first call, which is not so where a model changes sta
 kernels are compiled, too. An error of an evaluation is dropped, and met again in the film's own call.
 
 Python runs on one thread at a time: what goes side by side is the film's solution, a compiled call that does without
-Python's lock. It is 0.4 of an evaluation with its tangent on 48 x 6, 0.75 on 96 x 10, 0.95 on 192 x 16; and a thread
+Python's lock. It is 0.4 of an evaluation with its tangent on 48 x 6, 0.6 on 96 x 10, 0.75 on 192 x 16; and a thread
 waits for the lock some 20 us.
 """
 

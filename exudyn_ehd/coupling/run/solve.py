@@ -157,21 +157,18 @@ def SolveDynamic(
     implicit = options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) in _IMPLICIT
     control = step_control("SolveDynamic", mbs, simulationSettings, stepControl, implicit=implicit)
     if not implicit:
-        for joint in joints_of(mbs):
-            if joint.element.is_massless:
-                raise joint.element.failures.no_mass()
+        for element in (joint.element for joint in joints_of(mbs) if joint.element.is_massless):
+            raise element.failures.no_mass()
         _refuse_inactive(mbs)
     require_type("SolveDynamic.until_periodic", until_periodic, UntilPeriodic, type(None))
     with going_on, ExitStack() as around:
-        watch = None
+        watch, films = None, [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
         if until_periodic is not None:
-            films = [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
-        shared = side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads)
-        better = _better_start(mbs, simulationSettings)
-        for part in (shared, control, better, refusing(mbs), own_errors(mbs, "SolveDynamic")):
+        around.enter_context(side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads))
+        better, progress = _better_start(mbs, simulationSettings), progress_of(mbs, simulationSettings)
+        for part in (control, better, refusing(mbs), own_errors(mbs, "SolveDynamic"), progress):
             around.enter_context(part)
-        around.enter_context(progress_of(mbs, simulationSettings))
         good = bool(mbs.SolveDynamic(simulationSettings, **_stored(options)))
     return good if watch is None else watch.last_cycle(mbs)
 
@@ -264,8 +261,7 @@ def SaveState(mbs: exu.MainSystem, path: str | pathlib.Path) -> SystemState:
     True
     """
     require_system("SaveState", mbs)
-    state = SystemState.of(mbs, joints_of(mbs))
-    state.save(path)
+    (state := SystemState.of(mbs, joints_of(mbs))).save(path)
     return state
 
 
