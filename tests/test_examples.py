@@ -285,6 +285,7 @@ def test_four_bar_spatial(example, tmp_path):
     assert elastic["right_eccentricity_ratio"] == pytest.approx(parallel["right_eccentricity_ratio"], rel=0.08)
 
 
+@pytest.mark.slow
 def test_ball_joint_slider_crank(example, tmp_path):
     n = example("ball_joint_slider_crank").main(quick=True, output=tmp_path)
     assert (tmp_path / "ball_joint_slider_crank.png").stat().st_size > 10_000

@@ -19,7 +19,7 @@ from exudyn_ehd.coupling.element.spherical import SphericalFilmElement
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.joint_frame import joint_points, joint_rotation, resolve_pair
 from exudyn_ehd.coupling.kinematics.sides import MarkerSide
-from exudyn_ehd.coupling.kinematics.spherical import relative_motion
+from exudyn_ehd.coupling.kinematics.spherical import motion_of
 from exudyn_ehd.coupling.record.history import Quantity
 from exudyn_ehd.coupling.record.sensors import OUTPUTS, add_sensor, reader
 from exudyn_ehd.coupling.record.spherical import SphericalDisplay, SphericalHistory, spherical_history
@@ -279,7 +279,7 @@ def _check_start(
         return
     for item, side in zip(items, sides, strict=True):
         side.update(mbs, item.initial_coordinates, item.initial_velocities, exu.ConfigurationType.Initial)
-    place = relative_motion(sides[0].frame, sides[1].frame)[:3]
+    place = motion_of(sides[0].frame, sides[1].frame)[:3]
     if not model.smallest_gap(place) > 0.0:
         raise InputError(
             f"{_WHERE}: the ball is outside the socket in the initial configuration: its centre is at {place} m in the "

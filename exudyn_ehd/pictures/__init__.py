@@ -6,8 +6,7 @@ records    what pictures look at: a film, the film of a joint, a history
 mixins     ``plot_...`` methods of what is or has a film or a history; draws nothing itself
 style      sizes, colours, fonts; opening and writing a figure
 units      in which unit a quantity is shown, and its label
-maps       unrolled maps of pressure, gap, fill and temperature
-sphere     pressure of a ball's socket, seen along its axis
+maps       unrolled maps of pressure, gap, fill and temperature; a ball's socket
 bearing3d  pressure around the bore with the journal in it
 histories  orbit in the clearance circle, polar diagram of the load, quantities over time or angle
 bush       deformed bushes with contours of a nodal field

@@ -55,7 +55,7 @@ def test_motion_sees_what_is_relative_alone():
     frames = rng.normal(size=(2, 3, 6))
     for frame in frames:
         frame[:, :3] = scenes.rotation(rng.normal(size=3))
-    motion = spherical.relative_motion(*frames)
+    motion = spherical.motion_of(*frames)
     turn, shift, velocity, omega = scenes.rotation(rng.normal(size=3)), *rng.normal(size=(3, 3))
     carried = frames.copy()
     for frame, before in zip(carried, frames):
@@ -63,13 +63,13 @@ def test_motion_sees_what_is_relative_alone():
         frame[:, 3] = turn @ before[:, 3] + shift
         frame[:, 4] = turn @ before[:, 4] + velocity + np.cross(omega, frame[:, 3])
         frame[:, 5] = turn @ before[:, 5] + omega
-    assert spherical.relative_motion(*carried) == pytest.approx(motion, abs=1e-13)
+    assert spherical.motion_of(*carried) == pytest.approx(motion, abs=1e-13)
     # half a microsecond on, by the velocities
     step, later = 1e-7, frames.copy()
     for frame in later:
         frame[:, :3] = scenes.rotation(step * frame[:, 5]) @ frame[:, :3]
         frame[:, 3] += step * frame[:, 4]
-    rate = (spherical.relative_motion(*later) - motion)[:3] / step
+    rate = (spherical.motion_of(*later) - motion)[:3] / step
     assert rate == pytest.approx(motion[4:7], abs=1e-5)
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from types import ModuleType
 from typing import TypeAlias
 
 import exudyn as exu
@@ -56,15 +57,15 @@ class FilmElement:
         Whether it has coordinates of its own whose mass is a numerical one.
     evaluations : int
         How often the film was asked.
-    estimates_steps : bool
-        Whether the record tells what the time steps miss, and orbits.
+    kinematics : module
+        Of the motion that the film knows.
     crew : SideBySide or None
         Evaluates it with the films of other joints.
     late : Exception or None
         What `arrive` has met, for the film's own call.
     """
 
-    estimates_steps = True
+    kinematics: ModuleType = relative
 
     def __init__(self, model: JointModel, housing: Side, journal: Side, name: str) -> None:
         self.model = model
@@ -221,20 +222,8 @@ class FilmElement:
         n = housing.size
         housing.update(mbs, q[:n], q_t[:n], configuration)
         journal.update(mbs, q[n:], q_t[n:], configuration)
-        return self._motion()
-
-    def _motion(self) -> np.ndarray:
-        """Motion at the state of the sides' frames."""
-        motion = np.empty(10)
-        relative.relative_motion(self.sides[0].frame, self.sides[1].frame, motion)
+        motion: np.ndarray = self.kinematics.motion_of(housing.frame, journal.frame)
         return motion
-
-    def _motion_variation(self) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives (10, n) of the motion to q and q_t, after `Side.vary`."""
-        housing, journal = self.sides
-        motion_q, motion_qt = np.empty((2, 10, housing.size + journal.size))
-        relative.motion_variation(housing.frame, journal.frame, housing.jac, journal.jac, motion_q, motion_qt)
-        return motion_q, motion_qt
 
     def _spin(self) -> float:
         """Angle of the journal against the housing about the bearing's axis [rad], 0 in the reference configuration."""
@@ -288,7 +277,7 @@ class FilmElement:
         relative.global_loads(*frames, trial.evaluation.wrench, loads)
         housing.vary(mbs, q[:n_h], q_t[:n_h])
         journal.vary(mbs, q[n_h:], q_t[n_h:])
-        motion_q, motion_qt = self._motion_variation()
+        motion_q, motion_qt = self.kinematics.variation_of(*frames, *jacobians)
         stiffness, damping = np.zeros((n, n)), np.empty((n, n))
         housing.geometric(mbs, q[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
         journal.geometric(mbs, q[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])

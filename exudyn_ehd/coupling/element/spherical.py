@@ -43,30 +43,22 @@ class SphericalFailures(Failures):
 class SphericalFilmElement(FilmElement):
     """Film between the sides of a socket and of a ball; parameters as for `FilmElement`."""
 
-    estimates_steps = False
+    kinematics = spherical
 
     def __init__(self, model: JointModel, socket: Side, ball: Side, name: str) -> None:
         super().__init__(model, socket, ball, name)
         self.failures = SphericalFailures(name, model.bearing)
 
-    def _motion(self) -> np.ndarray:
-        socket, ball = self.sides
-        return spherical.relative_motion(socket.frame, ball.frame)
-
-    def _motion_variation(self) -> tuple[np.ndarray, np.ndarray]:
-        socket, ball = self.sides
-        return spherical.motion_variation(socket.frame, ball.frame, socket.jac, ball.jac)
-
     def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
-        """Derivative (6, 10) of the wrench to the motion's entries that are not always zero."""
+        """Derivative (6, 10) of the wrench to the motion's `spherical.ROWS`."""
         assert trial.evaluation is not None
         return np.ascontiguousarray(trial.evaluation.tangent()[:, spherical.ROWS])
 
     def _derivatives(self, mbs: exu.MainSystem, trial: Trial, tangent: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        derivatives = super()._derivatives(mbs, trial, tangent)
+        found = super()._derivatives(mbs, trial, tangent)
         # it is that of another motion than the estimates of step errors know
         self.steps.tangent = None
-        return derivatives
+        return found
 
     def row(self, time: float, trial: Trial) -> np.ndarray | None:
         """Row of the record, None without a film; its motion is place, velocity, angular velocity and 0."""

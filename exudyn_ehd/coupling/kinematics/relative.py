@@ -137,6 +137,22 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
         _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt_out)
 
 
+def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
+    """As `relative_motion` leaves it (10,)."""
+    motion = np.empty(10)
+    relative_motion(frame_h, frame_j, motion)
+    return motion
+
+
+def variation_of(
+    frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `motion_variation` leaves it, two (10, n)."""
+    motion_q, motion_qt = np.empty((2, 10, jac_h.shape[2] + jac_j.shape[2]))
+    motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q, motion_qt)
+    return motion_q, motion_qt
+
+
 @njit(cache=True)
 def global_loads(frame_h, frame_j, wrench, loads_out):
     """Global force and moment at the two markers, rows F_H, M_H, F_J, M_J of ``loads_out`` (4, 3).

@@ -20,7 +20,7 @@ ROWS = (0, 1, 2, 3, 4, 5, 6, 8, 9, 10)
 """Of the motion (11,) of `exudyn_ehd.joint.spherical.model` what kernels for ten numbers take; the other one is 0."""
 
 
-def relative_motion(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
+def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
     """Motion (11,) of the ball for frames (3, 6)."""
     out = np.zeros(SIZE)
     d = frame_j - frame_h
@@ -29,7 +29,7 @@ def relative_motion(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:
     return out
 
 
-def motion_variation(
+def variation_of(
     frame_h: np.ndarray, frame_j: np.ndarray, jac_h: np.ndarray, jac_j: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Derivatives (10, n) of the motion's `ROWS` to q and q_t, columns in the order socket, ball."""

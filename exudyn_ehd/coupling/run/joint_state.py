@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -94,16 +93,6 @@ class Joint(Protocol):
 
     def restore_state(self, state: JointState) -> None:
         """Let the next run go on from a state."""
-
-
-def require_estimates(joints: Sequence[Joint]) -> None:
-    """Refuse to judge steps or orbits by films whose record does not tell them."""
-    for joint in joints:
-        if not joint.element.estimates_steps:
-            raise InputError(
-                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has neither estimates of step errors "
-                "nor orbits; leave out stepControl and until_periodic, or give the joint a stepControl of its own."
-            )
 
 
 def digest(bearing: JournalBearing) -> str:

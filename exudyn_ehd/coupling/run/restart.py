@@ -14,6 +14,7 @@ import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.contract import Data
+from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.run.joint_state import Joint, JointState, check_owner
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.solved_film import History
@@ -127,6 +128,17 @@ class SystemState:
                         arrays[f"{k} {name}{field.name}"] = np.asarray(value, dtype=float)
         with replacing(path, binary=True) as file:
             np.savez_compressed(file, format=_FORMAT, head=json.dumps({"time": self.time, "joints": heads}), **arrays)
+
+
+def judged(joints: Sequence[Joint]) -> Sequence[Joint]:
+    """Joints by whose films steps or orbits can be judged; `InputError` if a record does not tell them."""
+    for joint in joints:
+        if joint.element.kinematics is not relative:
+            raise InputError(
+                f"SolveDynamic: joint '{joint.name}' holds a ball, whose record has neither estimates of step errors "
+                "nor orbits; leave out stepControl and until_periodic, or give the joint a stepControl of its own."
+            )
+    return joints
 
 
 def load_state(path: str | pathlib.Path) -> SystemState:

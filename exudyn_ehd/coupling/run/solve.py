@@ -14,8 +14,7 @@ from exudyn_ehd.coupling.contract import ObjectIndex, require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.force_tolerance import ForceTolerance, free_bushes
 from exudyn_ehd.coupling.run.gap_limit import GapLimit
-from exudyn_ehd.coupling.run.joint_state import require_estimates
-from exudyn_ehd.coupling.run.restart import Joint, SystemState, load_state
+from exudyn_ehd.coupling.run.restart import Joint, SystemState, judged, load_state
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
 from exudyn_ehd.coupling.run.start_guess import ConstraintJumps, StartGuess, UserFunction
 from exudyn_ehd.coupling.run.step_refusal import StepRefusal
@@ -152,8 +151,6 @@ def SolveDynamic(
     else:
         require_time("SolveDynamic", simulationSettings)
     require_items(mbs)
-    if until_periodic is not None:
-        require_estimates(joints_of(mbs))
     implicit = options.get("solverType", exu.DynamicSolverType.GeneralizedAlpha) in _IMPLICIT
     control = step_control("SolveDynamic", mbs, simulationSettings, stepControl, implicit=implicit)
     if not implicit:
@@ -162,8 +159,9 @@ def SolveDynamic(
         _refuse_inactive(mbs)
     require_type("SolveDynamic.until_periodic", until_periodic, UntilPeriodic, type(None))
     with going_on, ExitStack() as around:
-        watch, films = None, [(joint.name, joint.element.steps) for joint in joints_of(mbs)]
+        watch = None
         if until_periodic is not None:
+            films = [(joint.name, joint.element.steps) for joint in judged(joints_of(mbs))]
             watch = around.enter_context(closing(mbs, films, until_periodic, simulationSettings))
         around.enter_context(side_by_side("SolveDynamic", [joint.element for joint in joints_of(mbs)], threads))
         better, progress = _better_start(mbs, simulationSettings), progress_of(mbs, simulationSettings)
@@ -358,7 +356,6 @@ def step_control(
     if control is None:
         return nullcontext()
     require_type(f"{where}.stepControl", control, StepControl)
-    require_estimates(joints_of(mbs))
     if control.error is None:
         raise InputError(
             f"{where}.stepControl: StepControl.error is missing, the error that the steps aim at (0.02); "
@@ -369,7 +366,7 @@ def step_control(
             f"{where}.stepControl needs an implicit solver and timeIntegration.adaptiveStep=True, with which Exudyn "
             "can repeat steps; ConfigureSolver(simulationSettings) sets it."
         )
-    return steps_by_error(mbs, settings, [joint.element for joint in joints_of(mbs)], control.error)
+    return steps_by_error(mbs, settings, [joint.element for joint in judged(joints_of(mbs))], control.error)
 
 
 @contextmanager

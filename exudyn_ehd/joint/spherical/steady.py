@@ -75,7 +75,7 @@ class SphericalResult:
     def plot_pressure(self, *, title: str = "", ax: PolarAxes | None = None, path: Target = None) -> Figure:
         """The pressure on the socket, seen along its axis; colatitudes in degrees outwards. See `FilmPictures`."""
         # imported here: matplotlib is only needed for pictures
-        from exudyn_ehd.pictures.sphere import plot_patch
+        from exudyn_ehd.pictures.maps import plot_patch
 
         return plot_patch(self.phi, self.chi, self.pressure, title=title, ax=ax, path=path)
 

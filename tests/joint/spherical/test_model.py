@@ -331,9 +331,9 @@ def test_states_without_a_film_say_so():
 def test_smallest_gap_is_that_of_the_patch():
     rng = np.random.default_rng(7)
     for angles in (CUP, RING, (1.0, 1.3)):
-        film = model(socket_angles=angles, n_phi=720, n_chi=360)
+        film = model(socket_angles=angles, n_phi=240, n_chi=120)
         for state in states(rng, 10):
             place = state[PLACE]
             gaps = C - np.tensordot(place, film.patch.normals, 1)
-            # rows and columns are half a degree apart; closed caps have none at the pole
-            assert 0.0 <= gaps.min() - film.smallest_gap(place) < 1e-4 * C
+            # rows and columns are 1.5 degrees apart; closed caps have none at the pole
+            assert 0.0 <= gaps.min() - film.smallest_gap(place) < 4e-4 * C

@@ -6,7 +6,7 @@ import pytest
 import exudyn_ehd as ehd
 
 
-@pytest.mark.parametrize("angles", [(0.0, 1.5), (0.5, 2.5)])
+@pytest.mark.parametrize("angles", [(0.0, 1.5), pytest.param((0.5, 2.5), marks=pytest.mark.slow)])
 def test_patches_are_drawn_from_pole_or_edge_to_edge(angles, tmp_path):
     ball = ehd.SphericalBearing(
         ball_radius=0.015, radial_clearance=30e-6, lubricant=ehd.Lubricant(viscosity=0.1), socket_angles=angles
