@@ -11,6 +11,7 @@ from typing import Protocol
 
 import numpy as np
 
+from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -78,6 +79,9 @@ class ThermalEffect(Protocol):
 
         Returns the viscosity over the reference that the whole film shares.
         """
+
+    def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
+        """The film's own part of a temperature, K, as a history has it, and that of walls that conduct."""
 
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """Viscosity at a temperature, K, over the reference."""

@@ -28,7 +28,7 @@ def hottest(temperature: float | np.ndarray, grid: FilmGrid) -> str:
     """Highest temperature of a film, with its place where it has a field, for messages."""
     if np.ndim(temperature) == 0:
         return f"{float(temperature):.4g} K"
-    T = np.asarray(temperature)
+    T = np.asarray(temperature)[:, : grid.z.size]  # without the walls behind it
     i, j = divmod(int(np.argmax(T)), grid.z.size)
     return f"{T[i, j]:.4g} K at theta = {grid.x[i]:.3g} rad, z = {grid.z[j] * grid.reference_length:.4g} m"
 
