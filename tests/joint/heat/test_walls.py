@@ -147,6 +147,7 @@ def test_film_and_walls_against_a_reference_of_another_kind():
     assert np.all(np.divide(*errors) > 1.8) and np.all(np.divide(*errors) < 2.3)
 
 
+@pytest.mark.slow
 def test_the_end_of_a_transient_is_the_steady_state():
     bush = ehd.Conduction(
         thickness=1e-3, conductance=20.0, expansion=1.2e-5, clearance_temperature=310.0, density=400.0
@@ -164,6 +165,7 @@ def test_the_end_of_a_transient_is_the_steady_state():
     np.testing.assert_allclose(history.temperature, settled_history(model, at).temperature, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_walls_that_give_their_heat_off_are_walls_of_a_given_temperature():
     """Excess over that film falls like 1 / conductivity and conductance of the walls."""
     given = energy(bush_coefficient=1e12, bush_temperature=315.0, journal_coefficient=1e12, journal_temperature=325.0)
@@ -265,6 +267,7 @@ def test_carry_over_at_a_groove():
     np.testing.assert_allclose(found, [1.0, 0.5, 0.25], atol=0.03)
 
 
+@pytest.mark.slow
 def test_carry_over_of_the_cavity():
     """Half Sommerfeld's film loses oil where it ends and begins with it: without, the whole film is colder."""
     means = []
