@@ -72,6 +72,7 @@ KINDS: dict[str, Kind] = {
     "oil density": Kind("kg/m3", 10.0, 500.0, 3000.0, 3e4, (("g/cm3", 1e3),)),
     "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, (("g/cm3", 1e3), ("t/mm3", 1e12))),
     "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, (("kJ/(kg K)", 1e3),)),
+    "specific heat of a solid": Kind("J/(kg K)", 20.0, 100.0, 3000.0, 1e5, (("kJ/(kg K)", 1e3),)),
     "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, note=_KELVIN),
     "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, note=_KELVIN),
     "pressure": Kind("Pa", 0.0, 50.0, 2e8, 5e9, _PRESSURE, "it is a gauge pressure"),
@@ -177,7 +178,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "NeoHooke.density",
         "Conduction.density",
     ),
-    "specific heat": ("Lubricant.specific_heat", "Conduction.specific_heat"),
+    "specific heat": ("Lubricant.specific_heat",),
+    "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
         "LumpedThermal.supply_temperature",

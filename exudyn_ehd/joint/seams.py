@@ -7,7 +7,7 @@ and pressure laws are in Pa.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -88,6 +88,9 @@ class ThermalEffect(Protocol):
 
     def advance(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature at the end of a solved film's step, K."""
+
+    def balance(self, film: SolvedFilm, temperature: Any) -> dict[str, float]:
+        """Terms of the heat balance, W, of a step or a steady state that ends at a temperature."""
 
     def steady_temperature(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature in balance with the heat of a solved film, K; not finite if there is none."""

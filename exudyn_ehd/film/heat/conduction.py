@@ -13,7 +13,7 @@ small system along the radius, condensed onto the film's surface.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -50,6 +50,13 @@ class Walls:
         if self.journal is not None:
             out["journal_temperature"] = float(self.journal[0])
         return out
+
+    def at(self, bush: float, journal: float) -> Walls:
+        """Walls of these temperatures throughout, K."""
+        own, turning = (
+            None if T is None else np.full_like(T, value) for T, value in ((self.bush, bush), (self.journal, journal))
+        )
+        return replace(self, bush=own, journal=turning)
 
     def behind(self, temperature: float | np.ndarray) -> np.ndarray:
         """The film's temperatures (n, m) with those of the walls behind them, as a film remembers them."""
