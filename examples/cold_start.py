@@ -130,7 +130,7 @@ def draw(runs: dict[float, ehd.LubricatedJoint], folder: pathlib.Path) -> None:
         colour = "tab:blue" if clearance == WIDE else "tab:red"
         history, name = joint.history.between(1.0), f"{1e6 * clearance:g} µm cold"
         axes[1].plot(history.time, 1e6 * history.clearance, color=colour, label=f"clearance, {name}")
-        axes[1].plot(history.time, 1e6 * history.minimum_gap, "--", color=colour, label="minimum film")
+        axes[1].plot(history.time, 1e6 * history.minimum_gap, "--", color=colour, label="minimum film thickness")
     axes[1].set(
         xlabel="time [s]", ylabel="clearance and film [µm]", title="what the journal's growth leaves", ylim=(0, 66)
     )
@@ -144,8 +144,9 @@ def draw(runs: dict[float, ehd.LubricatedJoint], folder: pathlib.Path) -> None:
     for ax in axes:
         ax.grid(alpha=0.3)
     axes[0].legend(loc="lower right")
-    axes[1].legend(loc="upper center", ncols=2)
-    axes[2].legend(loc="upper center", bbox_to_anchor=(0.45, 1.0))
+    axes[1].legend(loc="upper center", ncols=2, fontsize=8)
+    axes[2].set_ylim(top=float(film.temperature.max()) - ZERO + 4.0)
+    axes[2].legend(loc="upper center", ncols=2)
     fig.savefig(folder / "cold_start.png", dpi=100)
     plt.close(fig)
 

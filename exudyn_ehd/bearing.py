@@ -186,7 +186,6 @@ class JournalBearing:
             self._check_plain()
         check_line(self.film, self.cavitation, self.bush, self.lubricant)
         _check_turbulence(self)
-        _check_journal_wall(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -327,16 +326,6 @@ def _check_turbulence(bearing: JournalBearing) -> None:
             f"JournalBearing.turbulence={type(bearing.turbulence).__name__}() does not go with {', '.join(others)}: "
             "its Reynolds number takes viscosity and density at ambient pressure, its walls are smooth, and its eddies "
             "carry heat across the film; leave one out."
-        )
-
-
-def _check_journal_wall(bearing: JournalBearing) -> None:
-    """Refuse a journal's wall that is thicker than the journal."""
-    wall = getattr(bearing.thermal, "journal", None)
-    if wall is not None and wall.thickness > bearing.journal_radius * (1.0 + 1e-12):
-        raise InputError(
-            f"FilmEnergy.journal=Conduction(thickness={wall.thickness:g} m) is thicker than the journal, whose radius "
-            f"is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
         )
 
 

@@ -20,7 +20,7 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     Raises
     ------
     InputError
-        For a thermal effect whose lubricant has no temperature law.
+        For a thermal effect whose lubricant has no temperature law, or a journal's wall thicker than the journal.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
     effects = Effects(pressure_law=transform_law(oil))
@@ -53,6 +53,11 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     if thinning is not None:
         thinning.field = field
     effects = replace(effects, flux=(*effects.flux, field), shear_factor=shear_product(field, effects.shear_factor))
+    if thermal.journal is not None and thermal.journal.thickness > bearing.journal_radius * (1.0 + 1e-12):
+        raise InputError(
+            f"FilmEnergy.journal=Conduction(thickness={thermal.journal.thickness:g} m) is thicker than the journal, "
+            f"whose radius is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
+        )
     if thermal.bush is None and thermal.journal is None:
         return replace(effects, thermal=FilmTemperature(thermal, bearing, field))
     # imported here: other films need no walls

@@ -204,11 +204,9 @@ class BearingModel:
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
         )
-        for term in effects.gap_terms if void is not None and film.history is not None else ():
-            after, before = term.field(new), term.field(old)
-            if after is not before:
-                # the film does not see wear and growth of the step before the next one
-                void += after - before
+        if void is not None and film.history is not None:
+            for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
+                void += term.field(new) - term.field(old)
         return new
 
     def evaluate(
@@ -304,11 +302,9 @@ class BearingModel:
         thermal = self.effects.thermal
         if thermal is None:
             return None, None
-        temperature = None if history is None else history.temperature
-        if temperature is None:
+        if (temperature := None if history is None else history.temperature) is None:
             temperature = thermal.initial_temperature(self.grid.shape)
-        ratio = thermal.set_viscosity(temperature)
-        if ratio != self.viscosity_ratio:
+        if (ratio := thermal.set_viscosity(temperature)) != self.viscosity_ratio:
             self._set_viscosity(ratio)
         return thermal.split(temperature)
 

@@ -289,7 +289,7 @@ def test_what_is_refused():
     with pytest.raises(ehd.InputError, match=r"needs the oil's conductivity"):
         ehd.FilmEnergy(supply_temperature=SUPPLY, journal=JOURNAL)
     with pytest.raises(ehd.InputError, match="thicker than the journal"):
-        bearing(energy(journal=dataclasses.replace(JOURNAL, thickness=0.03)))
+        build_model(bearing(energy(journal=dataclasses.replace(JOURNAL, thickness=0.03))))
     with pytest.raises(ehd.InputError, match=r"Conduction\.rings"):
         dataclasses.replace(BUSH, rings=1)
     with pytest.raises(ehd.InputError, match=r"FilmEnergy\.bush must be Conduction"):
