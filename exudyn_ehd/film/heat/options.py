@@ -108,7 +108,7 @@ class Conduction:
     >>> film = ehd.steady(ehd.JournalBearing(**b, thermal=thermal), speed=314.0, eccentricity_ratio=0.8)
     >>> walls = film.walls
     >>> walls.bush.shape, walls.journal.shape  # theta and rings from the bore outward, rings inward, K
-    ((96, 9), (9,))
+    ((112, 9), (9,))
     """
 
     thickness: float
