@@ -99,15 +99,12 @@ class Conduction:
     --------
     A steel bush in still air, and a shaft that gives its heat off to its surroundings:
 
-    >>> walls = dict(
-    ...     bush=ehd.Conduction(thickness=0.02, conductance=0.2, expansion=1.15e-5),
-    ...     journal=ehd.Conduction(thickness=0.025, conductance=0.5, expansion=1.15e-5),
-    ... )
+    >>> bush = ehd.Conduction(thickness=0.02, conductance=0.2, expansion=1.15e-5)
+    >>> walls = dict(bush=bush, journal=ehd.Conduction(thickness=0.025, conductance=0.5, expansion=1.15e-5))
     >>> thermal = ehd.FilmEnergy(supply_temperature=313.15, conductivity=0.13, **walls)
     >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.oil("ISO VG 46"))
     >>> film = ehd.steady(ehd.JournalBearing(**b, thermal=thermal), speed=314.0, eccentricity_ratio=0.8)
-    >>> walls = film.walls
-    >>> walls.bush.shape, walls.journal.shape  # theta and rings from the bore outward, rings inward, K
+    >>> film.walls.bush.shape, film.walls.journal.shape  # theta and rings from the bore outward, rings inward, K
     ((112, 9), (9,))
     """
 
