@@ -41,7 +41,7 @@ from exudyn_ehd.bearing import JournalBearing, MaximumGap, Periodic
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld, Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.grid import bearing_grid, slider_grid
-from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
+from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import DowsonHigginson
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.lubricant.named_oils import oil
@@ -188,6 +188,7 @@ __all__ = [
     "CarriedOuter",
     "CircumferentialGroove",
     "ClassicSOR",
+    "Conduction",
     "ConfigureSolver",
     "CreateFlexibleBush",
     "CreateLubricatedJoint",

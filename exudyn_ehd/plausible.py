@@ -72,6 +72,7 @@ KINDS: dict[str, Kind] = {
     "oil density": Kind("kg/m3", 10.0, 500.0, 3000.0, 3e4, (("g/cm3", 1e3),)),
     "density": Kind("kg/m3", 15.0, 300.0, 2.5e4, 1e9, (("g/cm3", 1e3), ("t/mm3", 1e12))),
     "specific heat": Kind("J/(kg K)", 50.0, 500.0, 1e4, 1e5, (("kJ/(kg K)", 1e3),)),
+    "specific heat of a solid": Kind("J/(kg K)", 20.0, 100.0, 3000.0, 1e5, (("kJ/(kg K)", 1e3),)),
     "temperature": Kind("K", 1.0, 200.0, 700.0, 3000.0, note=_KELVIN),
     "oil temperature": Kind("K", 180.0, 210.0, 600.0, 1000.0, note=_KELVIN),
     "pressure": Kind("Pa", 0.0, 50.0, 2e8, 5e9, _PRESSURE, "it is a gauge pressure"),
@@ -83,6 +84,7 @@ KINDS: dict[str, Kind] = {
     "compressibility": Kind("1/Pa", 0.0, 0.0, 1e-8, 1e-6, (("1/GPa", 1e-9),)),
     "law's pressure": Kind("Pa", 1e5, 1e7, 1e10, 1e12, _STRESS),
     "temperature coefficient": Kind("1/K", 0.0, 1e-5, 0.2, 2.0),
+    "expansion": Kind("1/K", 0.0, 0.0, 1e-3, 0.1),
     "pole": Kind("K", 0.0, 0.0, 300.0, 500.0, note=_KELVIN),
     "relaxation time": Kind("s", 1e-18, 1e-11, 0.1, 1e5, (("microseconds", 1e-6),)),
     "time": Kind("s", 0.0, 0.0, 1e7, 1e12),
@@ -109,6 +111,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "SphericalBearing.ball_radius",
         "HollowCylinder.inner_radius",
         "HollowCylinder.thickness",
+        "Conduction.thickness",
         "mesh_from_arrays.bore_radius",
         "mesh_from_fem.bore_radius",
         "OnCylinder.radius",
@@ -173,8 +176,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "density": (
         "SaintVenantKirchhoff.density",
         "NeoHooke.density",
+        "Conduction.density",
     ),
     "specific heat": ("Lubricant.specific_heat",),
+    "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
         "Lubricant.temperature",
         "LumpedThermal.supply_temperature",
@@ -184,6 +189,9 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "FilmEnergy.bush_temperature",
         "FilmEnergy.journal_temperature",
         "FilmEnergy.initial_temperature",
+        "Conduction.ambient_temperature",
+        "Conduction.initial_temperature",
+        "Conduction.clearance_temperature",
     ),
     "oil temperature": (
         "oil.temperature",
@@ -223,6 +231,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "compressibility": ("DowsonHigginson.coefficient", "DowsonHigginson.saturation"),
     "law's pressure": ("RoelandsPressure.reference_pressure",),
     "temperature coefficient": ("ReynoldsTemperature.coefficient", "WaltherTemperature.expansion"),
+    "expansion": ("Conduction.expansion",),
     "pole": ("VogelTemperature.pole",),
     "relaxation time": ("CarreauShear.relaxation_time",),
     "time": (
@@ -265,10 +274,10 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "LubricatedJoint.stop_at.force",
     ),
     "line force": ("LineLoad.force_per_length",),
-    "heat conductance": ("LumpedThermal.housing_conductance",),
+    "heat conductance": ("LumpedThermal.housing_conductance", "Conduction.conductance"),
     "heat capacity": ("LumpedThermal.capacity",),
     "heat transfer": ("FilmEnergy.bush_coefficient", "FilmEnergy.journal_coefficient"),
-    "conductivity": ("FilmEnergy.conductivity",),
+    "conductivity": ("FilmEnergy.conductivity", "Conduction.conductivity"),
 }
 
 ARGUMENTS: dict[str, str] = {argument: kind for kind, group in _ARGUMENTS.items() for argument in group}

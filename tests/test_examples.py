@@ -333,6 +333,19 @@ def test_turbulent_bearing(example, tmp_path):
         assert critical[law] < 1.0 < critical["laminar"] and orbit[law] > 1.5 and orbit["laminar"] < 0.5
 
 
+@pytest.mark.slow
+def test_cold_start(example, tmp_path):
+    rows = example("cold_start").main(quick=True, output=tmp_path)
+    assert (tmp_path / "cold_start.png").stat().st_size > 10_000
+    # the journal takes a part of the clearance that the warm bearing has again
+    assert 40.0 < rows["50 um: smallest clearance of the start [um]"] < 43.0
+    assert 48.0 < rows["50 um: clearance in the end, all warm [um]"] < 50.0
+    # the narrow one has a steady film that the cold start does not reach
+    assert 12.0 < rows["20 um: minimum film thickness in the end [um]"] < 16.0
+    assert 60.0 < rows["20 um: seizes after [s]"] < 80.0
+    assert math.isnan(rows["50 um: seizes after [s]"])
+
+
 def test_reading_results(example, tmp_path):
     found = example("reading_results").main(quick=True, results=tmp_path)
     assert [path.name for path in found["files"]] == [

@@ -7,10 +7,11 @@ and pressure laws are in Pa.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
+from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.reynolds.links import FluxEffect
@@ -79,11 +80,17 @@ class ThermalEffect(Protocol):
         Returns the viscosity over the reference that the whole film shares.
         """
 
+    def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
+        """The film's own part of a temperature, K, as a history has it, and that of walls that conduct."""
+
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """Viscosity at a temperature, K, over the reference."""
 
     def advance(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature at the end of a solved film's step, K."""
+
+    def balance(self, film: SolvedFilm, temperature: Any) -> dict[str, float]:
+        """Terms of the heat balance, W, of a step or a steady state that ends at a temperature."""
 
     def steady_temperature(self, film: SolvedFilm) -> float | np.ndarray:
         """Temperature in balance with the heat of a solved film, K; not finite if there is none."""

@@ -26,6 +26,7 @@ from scipy.sparse import csr_matrix, diags
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.grid import Directions, FilmGrid
+from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.lubricant.shear_thinning import ShearThinning
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -52,7 +53,7 @@ class History:
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
-        Film temperature, K.
+        Film temperature, K; (n, m + k) with that of conducting walls behind it, see `exudyn_ehd.joint.heat.walls`.
     deflection : (n, m) array or None
         Scaled deflection of an elastic liner.
     density : (n, m) array or None
@@ -281,6 +282,8 @@ class SolvedFilm(NamedTuple):
         None for a rigid bore.
     serial : int
         ``parts.evaluations`` at this evaluation.
+    walls : Walls or None
+        None where no wall conducts.
     """
 
     parts: FilmParts
@@ -299,6 +302,7 @@ class SolvedFilm(NamedTuple):
     minimum_gap: float
     bore: BoreState | None
     serial: int
+    walls: Walls | None = None
 
     def require_current(self) -> None:
         """Raise RuntimeError if the buffers belong to another evaluation by now."""

@@ -10,6 +10,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from exudyn_ehd.bearing import JournalBearing
+    from exudyn_ehd.film.heat.conduction import Walls
 
 Target = str | pathlib.Path | None
 """Where a picture is written; None: nowhere."""
@@ -31,6 +32,8 @@ class Film:
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         K; None for an isothermal bearing.
+    walls : Walls or None
+        Temperatures of bush and journal, and the clearance that they leave; None where none conducts.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
     force, moment : (3,) arrays
@@ -53,6 +56,7 @@ class Film:
     moment: np.ndarray
     bearing: JournalBearing = field(repr=False)
     motion: np.ndarray = field(repr=False)
+    walls: Walls | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

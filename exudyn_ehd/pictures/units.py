@@ -73,6 +73,9 @@ QUANTITIES: dict[str, tuple[str, str]] = {
     "supply_flow": ("supply flow", "flow"),
     "film_temperature": ("film temperature", "temperature"),
     "peak_temperature": ("peak temperature", "temperature"),
+    "bush_temperature": ("bush temperature", "temperature"),
+    "journal_temperature": ("journal temperature", "temperature"),
+    "clearance": ("radial clearance", "length"),
 }
 
 

@@ -29,6 +29,15 @@ EFFECTS = {
     "turbulent": {"turbulence": ehd.Hirs(onset=8.0, full=24.0, coefficient=2.0)},
     "lumped": {"thermal": ehd.LumpedThermal(supply_temperature=320.0)},
     "energy": {"thermal": ehd.FilmEnergy(supply_temperature=320.0)},
+    "walls": {
+        "thermal": ehd.FilmEnergy(
+            supply_temperature=320.0,
+            conductivity=0.13,
+            bush=ehd.Conduction(thickness=0.02, conductance=1.0, initial_temperature=325.0, expansion=1e-5),
+            journal=ehd.Conduction(thickness=0.025, conductance=1.0, initial_temperature=335.0, expansion=1e-5),
+            carry_over=0.8,
+        )
+    },
     "wear": {
         "asperity": ehd.GreenwoodTripp(composite_roughness=5e-6, composite_modulus=1e9),
         "wear": ehd.ArchardWear(wear_rate=1e-15),
@@ -165,5 +174,5 @@ def test_most_pairs_are_allowed(monkeypatch):
             build_model(_bearing(pair, "swift"))
         except ehd.InputError:
             refused.append(pair)
-    laminar = {"barus", "roelands", "carreau", "density", "roughness"}
+    laminar = {"barus", "roelands", "carreau", "density", "roughness", "walls"}
     assert all("wall" in pair or ("turbulent" in pair and laminar & set(pair)) for pair in refused), refused

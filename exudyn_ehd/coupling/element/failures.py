@@ -12,7 +12,7 @@ from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
 from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
 from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above
+from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above, seized
 from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
 from exudyn_ehd.joint.solved_film import History
 from exudyn_ehd.status import FilmError, HotFilmWarning, InputError, MemoryWarning, Status
@@ -83,6 +83,8 @@ class Failures:
 
     def absurd(self, time: float, row: np.ndarray, trial: Trial) -> FilmError | None:
         """The state of an accepted step is none of a bearing; None if it is one."""
+        if seizure := self._seized(time, trial):
+            return seizure
         if self._pressure(row) > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
         return self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
@@ -178,6 +180,11 @@ class Failures:
             f"{PRESSED_THROUGH}; {self._place(trial.motion)}check load, mass and units; give the contact more "
             "stiffness (RegularisedWall.pressure), or take smaller steps or a StepControl if the step has overshot.",
         )
+
+    def _seized(self, time: float, trial: Trial) -> FilmError | None:
+        """Growing walls have taken the whole clearance; None if they have not."""
+        message = seized(getattr(getattr(trial.evaluation, "film", None), "walls", None))
+        return self._at(time, message) if message else None
 
     def overload(self, row: np.ndarray) -> float:
         """Pressures of an accepted step over what a material bears."""

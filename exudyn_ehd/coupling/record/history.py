@@ -39,6 +39,9 @@ _SCALARS = (
     "peak_angle",
     "bore_displacement",
     "stored_power",
+    "bush_temperature",
+    "journal_temperature",
+    "clearance",
 )
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
@@ -47,7 +50,7 @@ _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-FORMAT = "exudyn_ehd JointHistory 4"
+FORMAT = "exudyn_ehd JointHistory 5"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -90,6 +93,9 @@ class Quantity(enum.Enum):
     PEAK_ANGLE = "peak_angle"
     BORE_DISPLACEMENT = "bore_displacement"
     STORED_POWER = "stored_power"
+    BUSH_TEMPERATURE = "bush_temperature"
+    JOURNAL_TEMPERATURE = "journal_temperature"
+    CLEARANCE = "clearance"
 
 
 COLUMNS: dict[str, int | slice] = {
@@ -146,6 +152,8 @@ class JointHistory(History, HistoryPictures):
         Largest displacement of a liner or of a flexible bore [m].
     stored_power : ndarray (n,)
         Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
+    bush_temperature, journal_temperature, clearance : ndarray (n,)
+        Mean temperatures at the film of walls that conduct [K], and the radial clearance that they leave [m].
     step_error : ndarray (n,)
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -189,6 +197,9 @@ class JointHistory(History, HistoryPictures):
     peak_angle: np.ndarray
     bore_displacement: np.ndarray
     stored_power: np.ndarray
+    bush_temperature: np.ndarray
+    journal_temperature: np.ndarray
+    clearance: np.ndarray
     step_error: np.ndarray
     step_count: np.ndarray
     journal_radius: float

@@ -2,6 +2,8 @@
 
 Module map
 ----------
-options   what a scene names: LumpedThermal, FilmEnergy
-energy    energy equation on the film's grid
+options     what a scene names: LumpedThermal, FilmEnergy, Conduction
+energy      energy equation on the film's grid
+passage     heat through the film's surfaces
+conduction  rings of a wall
 """

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from exudyn_ehd.status import require_number, require_numbers
+from exudyn_ehd.status import InputError, require_integer, require_number, require_numbers, require_type
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -64,6 +64,70 @@ class LumpedThermal:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Conduction:
+    """Wall of a bush or a journal that takes heat from the film, conducts it, stores it, and grows with it.
+
+    ``rho c dT/dt = k (1/r d/dr (r dT/dr) + 1/r^2 d2T/dtheta2) - loss``, the mean along the bearing, in rings of finite
+    volumes from the film's surface on. A bush has a temperature at every angle and gives heat off at its outer surface,
+    ``conductance (T - ambient_temperature)``, evenly all around. A journal turns fast against the heat: it has one
+    temperature at every angle, and gives heat off along its axis, by all of its section alike. Steady heat that is the
+    same all around is exact, the rest of second order; backward Euler over the accepted steps, first order.
+
+    A wall whose surfaces are free grows at the film by ``expansion R (mean of T - clearance_temperature)``, the mean
+    over its section, whatever the profile along the radius (Timoshenko and Goodier, Theory of Elasticity, the thermal
+    stress of discs and cylinders). What varies with the angle is left out of the growth.
+
+    Parameters
+    ----------
+    thickness : float
+        Of the wall, m: of a bush outward from the bore, of a journal inward from its surface; a solid journal's is its
+        radius.
+    conductance : float
+        To the ambient, W/K; of a bush its outer surface times the heat transfer coefficient there. 0: none.
+    ambient_temperature, initial_temperature : float or None
+        K; None: the supply temperature of the oil.
+    conductivity, density, specific_heat : float
+        W/(m K), kg/m3, J/(kg K), the defaults those of steel.
+    expansion : float
+        Coefficient of linear thermal expansion, 1/K; of steel 1.15e-5. 0: the wall does not grow.
+    clearance_temperature : float or None
+        At which the bearing has its radial clearance, K; None: the supply temperature.
+    rings : int
+        Intervals along the radius.
+
+    Examples
+    --------
+    A steel bush in still air, and a shaft that gives its heat off to its surroundings:
+
+    >>> bush = ehd.Conduction(thickness=0.02, conductance=0.2, expansion=1.15e-5)
+    >>> walls = dict(bush=bush, journal=ehd.Conduction(thickness=0.025, conductance=0.5, expansion=1.15e-5))
+    >>> thermal = ehd.FilmEnergy(supply_temperature=313.15, conductivity=0.13, **walls)
+    >>> b = dict(journal_radius=0.025, length=0.025, radial_clearance=25e-6, lubricant=ehd.oil("ISO VG 46"))
+    >>> film = ehd.steady(ehd.JournalBearing(**b, thermal=thermal), speed=314.0, eccentricity_ratio=0.8)
+    >>> film.walls.bush.shape, film.walls.journal.shape  # theta and rings from the bore outward, rings inward, K
+    ((112, 9), (9,))
+    """
+
+    thickness: float
+    conductance: float
+    ambient_temperature: float | None = None
+    initial_temperature: float | None = None
+    conductivity: float = 45.0
+    density: float = 7800.0
+    specific_heat: float = 460.0
+    expansion: float = 0.0
+    clearance_temperature: float | None = None
+    rings: int = 8
+
+    def __post_init__(self) -> None:
+        require_numbers(self, above=0.0, thickness="m", conductivity="W/(m K)", density="kg/m3")
+        require_numbers(self, above=0.0, specific_heat="J/(kg K)")
+        require_numbers(self, at_least=0.0, conductance="W/K", expansion="1/K")
+        _check_temperatures(self, "ambient_temperature", "initial_temperature", "clearance_temperature")
+        require_integer("Conduction.rings", self.rings, at_least=2)
+
+
+@dataclass(frozen=True, kw_only=True)
 class FilmEnergy:
     """Temperature field T(theta, z), averaged across the film; where heating decides load or peak temperature.
 
@@ -104,6 +168,15 @@ class FilmEnergy:
     conductivity : float or None
         Of the oil, W/(m K), 0.13 for mineral oils: U_b and U_j then act on the film's surfaces, with the oil between
         them and the mean temperature, 3 to 6 k/h; None: U_b and U_j from the mean temperature.
+    bush, journal : Conduction or None
+        Walls that take the film's heat at its surfaces, in place of coefficient and temperature on that side; they need
+        the oil's ``conductivity``. The walls' temperatures are unknowns of a step as the film's are, and the gap of a
+        step sees their growth at its start.
+    carry_over : float
+        Share of hot oil's rise over the supply temperature that passes a supply area which feeds nothing, above 0 up to
+        1: of Q that arrives ``(1 / carry_over - 1) Q`` is exchanged with the supply. Of closures that do not conserve
+        mass also the share of the cavity's rise that the film begins with, the rest being fresh oil. 1: it passes
+        as it is, and mixes with what is fed.
 
     Examples
     --------
@@ -120,6 +193,9 @@ class FilmEnergy:
     journal_temperature: float | None = None
     initial_temperature: float | None = None
     conductivity: float | None = None
+    bush: Conduction | None = None
+    journal: Conduction | None = None
+    carry_over: float = 1.0
 
     def __post_init__(self) -> None:
         _check_temperatures(
@@ -128,9 +204,27 @@ class FilmEnergy:
         require_numbers(self, at_least=0.0, bush_coefficient="W/(m2 K)", journal_coefficient="W/(m2 K)")
         if self.conductivity is not None:
             require_number("FilmEnergy.conductivity", self.conductivity, "W/(m K)", above=0.0)
+        require_number("FilmEnergy.carry_over", self.carry_over, above=0.0, at_most=1.0)
+        for side in ("bush", "journal"):
+            self._check_wall(side, getattr(self, side))
+
+    def _check_wall(self, side: str, wall: Conduction | None) -> None:
+        require_type(f"FilmEnergy.{side}", wall, Conduction, type(None))
+        if wall is None:
+            return
+        if getattr(self, f"{side}_coefficient") != 0.0 or getattr(self, f"{side}_temperature") is not None:
+            raise InputError(
+                f"FilmEnergy.{side}=Conduction(...) and {side}_coefficient or {side}_temperature exclude each other: "
+                "both say where the heat on that side goes; leave out the coefficient and its temperature."
+            )
+        if self.conductivity is None:
+            raise InputError(
+                f"FilmEnergy.{side}=Conduction(...) needs the oil's conductivity, got None: the heat reaches the wall "
+                "across the film; give conductivity=0.13 (W/(m K)) for mineral oils."
+            )
 
 
-def _check_temperatures(spec: LumpedThermal | FilmEnergy, *names: str) -> None:
+def _check_temperatures(spec: LumpedThermal | FilmEnergy | Conduction, *names: str) -> None:
     for name in names:
         value = getattr(spec, name)
         if value is not None or name == "supply_temperature":

@@ -113,8 +113,9 @@ class Comparison:
         if remembers:
             motion = its.motion[:MOTION_SIZE]
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
-        # the temperature is held where both have one: what else changes it is of second order
-        held = mine.history if other.effects.thermal is not None and self.model.effects.thermal is not None else None
+        # the temperature is held where both have the same: what else changes it is of second order
+        same = other.bearing.thermal is not None and other.bearing.thermal == self.model.bearing.thermal
+        held = mine.history if same else None
         if other.flexible and other.bearing.bush is self.model.bearing.bush:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)

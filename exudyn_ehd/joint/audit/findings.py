@@ -33,6 +33,7 @@ LIMITS = {
     "profile": Limit(0.1, "of the minimum film thickness, as for elasticity"),
     "piezoviscosity": Limit(0.1, "alpha p_max: 3 % of the load, 5 % of the peak pressure"),
     "heating": Limit(0.1, "change of the viscosity"),
+    "walls": Limit(0.05, "of the heat, that much of the film's rise"),
     "oil temperature": Limit(HOT, "K: `exudyn_ehd.joint.balance.hot_oil`, which warns from there on"),
     "shear thinning": Limit(1.0, "shear rate over the one at which a multigrade oil begins to thin"),
     "roughness": Limit(
@@ -61,6 +62,7 @@ PLAINLY_NOTHING = {
     "profile": 0.01,
     "piezoviscosity": 0.01,
     "heating": 0.01,
+    "walls": 0.01,
     "shear thinning": 0.2,
     "roughness": 10.0,
     "contact": 6.0,

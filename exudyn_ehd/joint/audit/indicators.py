@@ -108,6 +108,7 @@ INDICATORS = (
     Indicator(surfaces.shape, partial(replace, profile=None)),
     Indicator(oil.piezoviscosity, isoviscous),
     Indicator(oil.heating, partial(replace, thermal=None)),
+    Indicator(oil.walls),
     Indicator(oil.temperature),
     Indicator(oil.shear_thinning, newtonian),
     Indicator(surfaces.roughness, smooth),

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from exudyn_ehd.film.heat.options import FilmEnergy
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.switches import (
     TYPICAL_PRESSURE_COEFFICIENT,
@@ -17,6 +18,8 @@ from exudyn_ehd.joint.audit.switches import (
     newtonian,
     piezoviscous,
     thinning,
+    typical_conductance,
+    walled,
     warmer,
 )
 from exudyn_ehd.joint.balance.hot_oil import COOLER
@@ -77,6 +80,33 @@ def heating(case: Case) -> Finding:
         mattering="give the bearing thermal=LumpedThermal(...) and the lubricant a temperature_law, "
         "or the viscosity at its running temperature.",
         needless="the film stays at its supply temperature: thermal=None.",
+    )
+
+
+def walls(case: Case) -> Finding | None:
+    """Heat into bush and journal: its share, or what walls of steel would change at a steady state.
+
+    None without a temperature field, and for runs without such walls, which warm up for longer than the run.
+    """
+    b = case.bearing
+    if not isinstance(b.thermal, FilmEnergy):
+        return None
+    if b.thermal.bush is not None or b.thermal.journal is not None:
+        bush, journal = case.largest("to_bush"), case.largest("to_journal")
+        text = f"largest shares of the heat: {bush:.0%} into the bush, {journal:.0%} into the journal"
+        needless = "the oil takes nearly all of the heat: bush=None and journal=None."
+        return finding("walls", text, max(bush + journal, 0.0), True, needless=needless)
+    if case.record is not None or b.thermal.bush_coefficient > 0.0 or b.thermal.journal_coefficient > 0.0:
+        return None
+    lost = case.largest("rise") * typical_conductance(b) / max(case.largest("power_loss"), 1e-300)
+    return judged(
+        case,
+        "walls",
+        "share of the loss that steel around the film would give off",
+        lost,
+        False,
+        walled,
+        mattering="give FilmEnergy(conductivity=0.13) a bush=Conduction(...) and a journal=Conduction(...).",
     )
 
 

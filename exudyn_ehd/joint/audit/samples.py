@@ -31,8 +31,10 @@ class RecordedSteps:
         As in `exudyn_ehd.joint.solved_film`.
     force : (n, 3) array
         N, on the journal.
-    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature, bore_displacement : (n,) arrays
-        m, Pa, W, m3/s, N, K, m.
+    minimum_gap, peak_pressure, power_loss, leakage, contact_load, film_temperature : (n,) arrays
+        m, Pa, W, m3/s, N, K.
+    bush_temperature, journal_temperature, bore_displacement : (n,) arrays
+        K, K, m.
     step_error : (n,) array
         Estimated error of the gap that the time steps have made, over the minimum film thickness.
     """
@@ -46,6 +48,8 @@ class RecordedSteps:
     leakage: np.ndarray
     contact_load: np.ndarray
     film_temperature: np.ndarray
+    bush_temperature: np.ndarray
+    journal_temperature: np.ndarray
     bore_displacement: np.ndarray
     step_error: np.ndarray
 
@@ -120,14 +124,16 @@ def _differenced(record: RecordedSteps) -> np.ndarray:
 
 
 def _first_history(model: BearingModel, record: RecordedSteps, k: int) -> History | None:
-    """History of a flooded film at a recorded step, at the recorded temperature."""
-    history = model.initial_history(record.motion[k])
+    """History of a flooded film at a recorded step, at the recorded temperature, with walls as hot as at the film."""
+    history, thermal = model.initial_history(record.motion[k]), model.effects.thermal
     T = float(record.film_temperature[k])
-    if history is None or history.temperature is None or not math.isfinite(T):
+    if history is None or history.temperature is None or thermal is None or not math.isfinite(T):
         return history
-    return replace(
-        history, temperature=np.full(np.shape(history.temperature), T) if np.ndim(history.temperature) else T
-    )
+    film, walls = thermal.split(history.temperature)
+    film = np.full(np.shape(film), T) if np.ndim(film) else T
+    if walls is not None:
+        film = walls.at(float(record.bush_temperature[k]), float(record.journal_temperature[k])).behind(film)
+    return replace(history, temperature=film)
 
 
 @dataclass(frozen=True)
@@ -146,6 +152,8 @@ class Sample:
         Smallest in the film at ambient pressure, Pa s.
     rise : float
         Largest temperature of the film above that of the supply, K; 0 for an isothermal film.
+    to_bush, to_journal : float
+        Shares of the film's heat that walls take up.
     cavitated, tension : float
         Shares of the bore.
     tilt_loss, squeeze_share : float
@@ -167,6 +175,8 @@ class Sample:
     flow: float
     viscosity: float
     rise: float
+    to_bush: float
+    to_journal: float
     cavitated: float
     tension: float
     tilt_loss: float
@@ -190,6 +200,7 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
     unbroken = s.fill >= 1.0 if s.closure.conserves_mass else s.work.active | g.fixed
     i, j = np.unravel_index(int(np.argmax(pressure)), pressure.shape)
     thermal = b.thermal
+    to_bush, to_journal = _wall_shares(model, film)
     return Sample(
         speed=math.hypot(g.reference_length * w.omega, w.axial_speed),
         minimum_gap=max(q["minimum_gap"], 1e-6 * b.radial_clearance),
@@ -200,6 +211,8 @@ def take_sample(model: BearingModel, state: FilmState) -> Sample | None:
         flow=max(q["leakage"], q.get("supply_flow", 0.0), 0.0),
         viscosity=_smallest_viscosity(film),
         rise=0.0 if thermal is None else q["peak_temperature"] - thermal.supply_temperature,
+        to_bush=to_bush,
+        to_journal=to_journal,
         cavitated=float(np.sum(weight[~unbroken])),
         tension=float(np.sum(weight[pressure < TENSION])),
         tilt_loss=tilt_loss(b, w.motion),
@@ -235,6 +248,16 @@ def _as_recorded(sample: Sample, record: RecordedSteps, k: int) -> Sample:
         power_loss=float(record.power_loss[k]),
         deflection=float(record.bore_displacement[k]),
     )
+
+
+def _wall_shares(model: BearingModel, film: SolvedFilm) -> tuple[float, float]:
+    """Shares of a film's heat that enter a bush and a journal that conduct, at the temperatures of the step's start."""
+    thermal = model.effects.thermal
+    if thermal is None or film.walls is None or film.temperature is None:
+        return 0.0, 0.0
+    balance = thermal.balance(film, film.walls.behind(film.temperature))
+    heat = max(balance["heat_in"], 1e-300)
+    return balance["bush"] / heat, balance["journal"] / heat
 
 
 def _smallest_viscosity(film: SolvedFilm) -> float:

@@ -10,7 +10,7 @@ from functools import partial
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
-from exudyn_ehd.film.heat.options import LumpedThermal
+from exudyn_ehd.film.heat.options import Conduction, FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import ReynoldsTemperature
@@ -31,6 +31,10 @@ TYPICAL_COMPOSITE_MODULUS = 1.15e11  # Pa, steel on steel
 TYPICAL_CAVITY_PRESSURE = -1e5  # Pa (gauge), oil vapour
 STEEL = {"youngs_modulus": 2.1e11, "poisson_ratio": 0.3, "density": 7800.0}
 RING_THICKNESS = 0.5  # of the bore radius
+
+TYPICAL_OIL_CONDUCTIVITY, TYPICAL_STEEL_EXPANSION = 0.13, 1.15e-5  # W/(m K), 1/K
+# W/(m2 K) from a housing to still air with its radiation, W/(m K) of steel, and shaft lengths, radii, on either side.
+TYPICAL_AIR_COEFFICIENT, TYPICAL_STEEL_CONDUCTIVITY, SHAFT = 15.0, 45.0, 4.0
 
 Switch = Callable[[JournalBearing], JournalBearing]
 
@@ -84,6 +88,32 @@ def heated(bearing: JournalBearing) -> JournalBearing:
         law = ReynoldsTemperature(point=(oil.temperature, oil.viscosity), coefficient=TYPICAL_TEMPERATURE_COEFFICIENT)
         bearing = _oil(bearing, temperature_law=law)
     return replace(bearing, thermal=LumpedThermal(supply_temperature=oil.temperature))
+
+
+def typical_conductance(bearing: JournalBearing) -> float:
+    """From a steel ring half a radius thick to air and along a steel shaft to both sides, W/K."""
+    R = bearing.journal_radius
+    outside = 2.0 * math.pi * (1.0 + RING_THICKNESS) * R * bearing.length * TYPICAL_AIR_COEFFICIENT
+    return outside + _along_shaft(R)
+
+
+def _along_shaft(radius: float) -> float:
+    return 2.0 * math.pi * radius * TYPICAL_STEEL_CONDUCTIVITY / SHAFT
+
+
+def walled(bearing: JournalBearing) -> JournalBearing:
+    """With a steel ring half a radius thick in air and a solid steel journal, which grow."""
+    R, thermal = bearing.journal_radius, bearing.thermal
+    assert isinstance(thermal, FilmEnergy)
+    along = _along_shaft(R)
+    bush = Conduction(
+        thickness=RING_THICKNESS * R,
+        conductance=typical_conductance(bearing) - along,
+        expansion=TYPICAL_STEEL_EXPANSION,
+    )
+    journal = replace(bush, thickness=R, conductance=along)
+    conductivity = TYPICAL_OIL_CONDUCTIVITY if thermal.conductivity is None else thermal.conductivity
+    return replace(bearing, thermal=replace(thermal, bush=bush, journal=journal, conductivity=conductivity))
 
 
 def isothermal(bearing: JournalBearing) -> JournalBearing:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from exudyn_ehd.film.lubricant.pressure_viscosity import BarusPressure
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.joint.balance.hot_oil import ROOM
 from exudyn_ehd.status import Status
 
 
@@ -14,6 +15,13 @@ def advice(status: Status, bearing: object) -> str:
             "the gap closed somewhere, most likely at an end, where an ElasticLiner carries no pressure and does not "
             "deflect: name contact=RegularisedWall(onset=...) or asperity=GreenwoodTripp(...), which press on the "
             "liner too, or reduce the load or the step size."
+        )
+    thermal = getattr(bearing, "thermal", None)
+    grows = any(getattr(getattr(thermal, side, None), "expansion", 0.0) > 0.0 for side in ("bush", "journal"))
+    if status is Status.NO_FILM and grows:
+        return (
+            "the gap closed somewhere, and the growth of bush and journal takes part in it: where the journal outgrows "
+            f"the clearance the bearing seizes; {ROOM} {status.advice}"
         )
     law = getattr(getattr(bearing, "lubricant", None), "pressure_law", None)
     if status is Status.NO_PRESSURE and law is not None:

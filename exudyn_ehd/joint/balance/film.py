@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing, MaximumGap
 from exudyn_ehd.joint.balance.advice import advice
-from exudyn_ehd.joint.balance.hot_oil import require_oil_bears
+from exudyn_ehd.joint.balance.hot_oil import require_oil_bears, seized
 from exudyn_ehd.joint.balance.temperature import settled_history
 from exudyn_ehd.joint.model.flexible import ElasticEvaluation
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
@@ -64,6 +64,8 @@ def evaluate_at(
             f"{remedy}"
         )
     require_oil_bears(evaluation.film.temperature, model.grid, where)
+    if message := seized(evaluation.film.walls):
+        raise FilmError(f"{where}: {message}")
     return evaluation, evaluation.film
 
 

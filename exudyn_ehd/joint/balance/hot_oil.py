@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.grid import FilmGrid
+from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.status import FilmError, HotFilmWarning, warn_user
 
 # K. Rules of thumb, not properties of an oil: 150 degrees Celsius, from which mineral oils oxidise fast, and what is
@@ -16,6 +17,10 @@ COOLER = (
     "surfaces (housing_conductance, bush_coefficient, journal_coefficient), or take a thinner oil, less load or speed."
 )
 NO_OIL = f"and no oil is a liquid above {HOTTEST:g} K: the bearing seizes; {COOLER}"
+ROOM = (
+    "give the journal's heat a way out (Conduction.conductance, more oil), let it warm up slowly, or take a larger "
+    "radial_clearance."
+)
 Temperature = float | np.ndarray | None
 
 
@@ -28,7 +33,7 @@ def hottest(temperature: float | np.ndarray, grid: FilmGrid) -> str:
     """Highest temperature of a film, with its place where it has a field, for messages."""
     if np.ndim(temperature) == 0:
         return f"{float(temperature):.4g} K"
-    T = np.asarray(temperature)
+    T = np.asarray(temperature)[:, : grid.z.size]  # without the walls behind it
     i, j = divmod(int(np.argmax(T)), grid.z.size)
     return f"{T[i, j]:.4g} K at theta = {grid.x[i]:.3g} rad, z = {grid.z[j] * grid.reference_length:.4g} m"
 
@@ -44,6 +49,16 @@ def hot_film(temperature: float | np.ndarray, grid: FilmGrid, where: str) -> str
     return (
         f"{where}: the film is at {hottest(temperature, grid)}, and mineral oils do not bear {HOT:g} K for long; "
         f"{COOLER}"
+    )
+
+
+def seized(walls: Walls | None) -> str:
+    """What to say where the walls have grown by the whole clearance; empty if they have not."""
+    if walls is None or walls.clearance > 0.0:
+        return ""
+    return (
+        f"the bearing seizes: bush and journal have grown by more than the radial clearance, of which "
+        f"{walls.clearance:.3g} m are left; {ROOM}"
     )
 
 

@@ -2,7 +2,9 @@
 
 Module map
 ----------
-temperature  history and balance of heat
-oil_flows    oil that enters and leaves
-power        mechanical power that film and contacts keep
+temperature   history and balance of heat
+heat_balance  energy equation of one solved film
+walls         bush and journal that conduct, store heat and grow
+oil_flows     oil that enters and leaves
+power         mechanical power that film and contacts keep
 """

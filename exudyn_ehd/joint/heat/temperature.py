@@ -10,21 +10,16 @@ import math
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.banded.assemble import assemble
-from exudyn_ehd.film.banded.lu import factor_lu
-from exudyn_ehd.film.banded.numbering import number_cells
-from exudyn_ehd.film.banded.substitution import solve_lu
-from exudyn_ehd.film.banded.workspace import PAD
-from exudyn_ehd.film.heat.energy import film_heat, transport_slopes
+from exudyn_ehd.film.heat.conduction import Walls
+from exudyn_ehd.film.heat.energy import film_heat
 from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+from exudyn_ehd.joint.heat.heat_balance import BandSolver, HeatBalance
 from exudyn_ehd.joint.heat.oil_flows import OilFlows, heat_and_leakage
 from exudyn_ehd.joint.heat.power import contact_power_loss
 from exudyn_ehd.joint.solved_film import SolvedFilm
 
-# Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
-STAGNANT = 1e-14
 # Rounding of the flow through the ends, as a share of the largest flow over a link.
 NO_FLOW = 1e-11
 # 1/K; no oil thins faster with the temperature.
@@ -45,6 +40,10 @@ class _Temperature:
 
     def _or_supply(self, temperature: float | None) -> float:
         return self.supply if temperature is None else temperature
+
+    def split(self, temperature: Field) -> tuple[Field, Walls | None]:
+        """The film's own temperature and that of walls, of which there are none."""
+        return temperature, None
 
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """mu(T) / mu at the lubricant's own temperature."""
@@ -203,7 +202,7 @@ class FilmTemperature(_Temperature):
         self.walls = (spec.bush_coefficient, float(bush)), (spec.journal_coefficient, float(journal))
         self._start: np.ndarray | None = None
         self._last: np.ndarray | None = None
-        self.number: np.ndarray | None = None
+        self.carry_over, self.band = spec.carry_over, BandSolver()
 
     def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
         """(n, m) array, K, at the start of a motion."""
@@ -227,11 +226,12 @@ class FilmTemperature(_Temperature):
 
         The heat follows the temperature, see `follows`; the fixed point is that of the heat itself.
         """
+        return self._solve(film, 0.0)[0] if self._has_way_out(film) else np.full(film.grid.shape, np.inf)
+
+    def _has_way_out(self, film: SolvedFilm) -> bool:
         flows = OilFlows(film)
         stagnant = flows.leaving <= NO_FLOW * float(np.abs(flows.x).max())
-        if self.transfer == 0.0 and stagnant and self._heat(film).max() > 0.0:
-            return np.full(film.grid.shape, np.inf)
-        return self._solve(film, 0.0)[0]
+        return not (self.transfer == 0.0 and stagnant and self._heat(film).max() > 0.0)
 
     def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
         """Heat in, convected, conducted and stored, W, of a step or a steady state that ends at ``temperature``."""
@@ -284,57 +284,10 @@ class FilmTemperature(_Temperature):
         self, film: SolvedFilm, step: float, known: np.ndarray | None = None
     ) -> tuple[np.ndarray, dict[str, float]]:
         """Temperatures (n, m) and their balance; ``known`` skips the solution and balances given ones."""
-        area, shape = film.solver.area, film.grid.shape
-        supply, old = self.supply, _field(film)
-        scale = self.flow_capacity * film.parts.flow_scale
-        heat, flows = self._heat(film), OilFlows(film)
-        leaving = np.maximum(-flows.outside, 0.0)
-        found, lost = np.maximum(flows.found, 0.0), np.maximum(-flows.found, 0.0)
-        total_found, total_lost = float(found.sum()), float(lost.sum())
-        back = min(total_found, total_lost) / total_found if total_found > 0.0 else 0.0
-        weight = lost / total_lost if total_lost > 0.0 else lost
-        store = area * flows.content / step if step > 0.0 else np.zeros(shape)
+        balance = HeatBalance(self, film, step, self._heat(film))
         transfer, wall = self._wall(film)
-        walls = transfer * area * film.grid.reference_length**2 / scale
-        follows = self.follows(old, heat / scale, store)
+        walls = transfer * film.solver.area * film.grid.reference_length**2 / balance.scale
         if known is None:
-            rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
-            diagonal = follows + store + np.maximum(flows.outside, 0.0) + found + walls + rigid
-            rhs = np.empty((2, *shape))
-            rhs[0] = heat / scale + (store + rigid + follows) * (old - supply) + walls * (wall - supply)
-            rhs[1] = back * found
-            held = store if step > 0.0 else np.full(shape, np.inf)
-            slopes = np.empty((5, area.size))
-            transport_slopes(flows.x, flows.z, diagonal, old, film.grid.link_z, held, slopes)
-            T0, T1 = self._solve_band(flows.x, flows.z, slopes, rhs)
-            mixed = float(np.sum(weight * T0)) / (1.0 - float(np.sum(weight * T1))) if back > 0.0 else 0.0
-            T = supply + T0 + mixed * T1
-        else:
-            T = known
-        rise = T - supply
-        mixed = float(np.sum(weight * rise))
-        stored = float(np.sum(store * (T - old))) if step > 0.0 else 0.0
-        convected = float(np.sum((leaving + lost) * rise)) - back * mixed * total_found
-        return T, {
-            "heat_in": float(np.sum(heat - scale * follows * (T - old))),
-            "convected": scale * convected,
-            "conducted": scale * float(np.sum(walls * (T - wall))),
-            "stored": scale * (stored + float(np.sum(area * flows.rate * rise))),
-        }
-
-    def _solve_band(self, qx: np.ndarray, qz: np.ndarray, slopes: np.ndarray, rhs: np.ndarray) -> np.ndarray:
-        """Solve the system of ``slopes`` for the fields rhs (k, n, m)."""
-        n, m = qx.shape
-        if self.number is None:
-            self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
-            _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
-            self.lower, self.upper = np.zeros((2, n * m, self.width + 1 + PAD))
-            self.inverse = np.zeros(n * m)
-        assemble(qx, qz, slopes, self.number, self.order, n * m, self.lower, self.upper)
-        x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
-        if not factor_lu(self.lower, self.upper, n * m, self.width, self.inverse):
-            return np.full(rhs.shape, np.inf)
-        solve_lu(self.lower, self.upper, self.inverse, n * m, self.width, x)
-        out = np.empty_like(x)
-        out[:, self.order] = x
-        return out.reshape(rhs.shape)
+            balance.factor(walls)
+            known = balance.temperatures(walls * (wall - self.supply))
+        return known, balance.sums(known) | {"conducted": balance.scale * float(np.sum(walls * (known - wall)))}

@@ -24,6 +24,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         surfaces = replace(surfaces, limiter=wall, contacts=(wall, *surfaces.contacts))
     return replace(
         surfaces,
+        gap_terms=surfaces.gap_terms + oil.gap_terms,
         flux=surfaces.flux + oil.flux,
         pressure_law=oil.pressure_law,
         shear_factor=shear_product(oil.shear_factor, surfaces.shear_factor),

@@ -6,7 +6,7 @@ import numpy as np
 
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.model.surfaces import worn_depth
-from exudyn_ehd.joint.solved_film import SolvedFilm
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film, JointFilm
 from exudyn_ehd.pictures.units import shown
@@ -29,6 +29,8 @@ class FilmFields(JointFilm, FilmPictures):
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         K; None for an isothermal bearing.
+    walls : Walls or None
+        Temperatures of bush and journal, and the clearance that they leave; None where none conducts.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
     contact_pressure : (n, m) array or None
@@ -72,12 +74,19 @@ def film_record(film: SolvedFilm) -> Film:
         unbroken=solver.work.active.copy(),
         fill=solver.fill.copy() if solver.closure.conserves_mass else None,
         temperature=temperature.copy() if isinstance(temperature, np.ndarray) else temperature,
+        walls=film.walls,
         bore_displacement=None if film.bore is None else film.bore.displacement * bearing.radial_clearance,
         force=film.loads.wrench[:3].copy(),
         moment=film.loads.wrench[3:].copy(),
         bearing=bearing,
         motion=film.journal.motion.copy(),
     )
+
+
+def remembered(film: Film) -> History:
+    """History with the temperatures of a film and its walls."""
+    T = film.temperature
+    return History(temperature=T if film.walls is None or T is None else film.walls.behind(T))
 
 
 def film_fields(evaluation: Evaluation, time: float, bush_displacement: np.ndarray | None = None) -> FilmFields:

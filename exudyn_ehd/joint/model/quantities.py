@@ -68,7 +68,9 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
         also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and
-        ``peak_temperature`` (K), with a liner or a flexible bore ``bore_displacement`` (m, the largest).
+        ``peak_temperature`` (K), with walls that conduct ``bush_temperature`` and ``journal_temperature`` (K, mean at
+        the film) and ``clearance`` (m, radial, with what they have grown by), with a liner or a flexible bore
+        ``bore_displacement`` (m, the largest).
     """
     p, w = film.parts, film.journal
     R = p.grid.reference_length
@@ -103,6 +105,8 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
     if film.temperature is not None:
         out["film_temperature"] = float(np.mean(film.temperature))
         out["peak_temperature"] = float(np.max(film.temperature))
+    if film.walls is not None:
+        out |= film.walls.numbers()
     if p.liner is not None:
         out["bore_displacement"] = float(np.abs(p.liner.deflection).max()) * p.bearing.radial_clearance
     return out

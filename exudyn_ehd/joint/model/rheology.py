@@ -8,6 +8,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.options import LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
+from exudyn_ehd.film.models import film_grid
 from exudyn_ehd.joint.heat.temperature import FilmTemperature, LumpedTemperature, ViscosityField
 from exudyn_ehd.joint.seams import Effects, PressureLaw, shear_product
 from exudyn_ehd.status import InputError
@@ -19,7 +20,7 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     Raises
     ------
     InputError
-        For a thermal effect whose lubricant has no temperature law.
+        For a thermal effect whose lubricant has no temperature law, or a journal's wall thicker than the journal.
     """
     oil, thermal = bearing.lubricant, bearing.thermal
     effects = Effects(pressure_law=transform_law(oil))
@@ -51,12 +52,22 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
         turbulent.field = field
     if thinning is not None:
         thinning.field = field
-    return replace(
-        effects,
-        flux=(*effects.flux, field),
-        shear_factor=shear_product(field, effects.shear_factor),
-        thermal=FilmTemperature(thermal, bearing, field),
+    effects = replace(effects, flux=(*effects.flux, field), shear_factor=shear_product(field, effects.shear_factor))
+    if thermal.journal is not None and thermal.journal.thickness > bearing.journal_radius * (1.0 + 1e-12):
+        raise InputError(
+            f"FilmEnergy.journal=Conduction(thickness={thermal.journal.thickness:g} m) is thicker than the journal, "
+            f"whose radius is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
+        )
+    if thermal.bush is None and thermal.journal is None:
+        return replace(effects, thermal=FilmTemperature(thermal, bearing, field))
+    # imported here: other films need no walls
+    from exudyn_ehd.joint.heat.walls import Growth, WalledTemperature
+
+    grid = film_grid(
+        bearing.film, bearing.journal_radius, bearing.length, start_angle=0.0, open_ring=False, supply=bearing.supply
     )
+    walled = WalledTemperature(thermal, bearing, field, grid.shape)
+    return replace(effects, thermal=walled, gap_terms=(Growth(walled),) if walled.grows else ())
 
 
 def transform_law(lubricant: Lubricant) -> PressureLaw | None:

@@ -16,6 +16,7 @@ from operator import is_
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.conduction import Walls
 from exudyn_ehd.film.reynolds.gap import add_to_gap, largest_eccentricity, rigid_gap
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
@@ -194,19 +195,19 @@ class BearingModel:
         p, s, effects = self.parts, self.solver, self.effects
         old = History() if film.history is None else film.history
         void, mass = s.stored(old.mass, film.step) if self.remembers_mass else (None, None)
-        wear = None if effects.wear is None else worn_depth(effects.wear, film)
-        if void is not None and wear is not None and old.wear is not None:
-            # the film does not see the wear before the next step
-            void += wear - old.wear
-        return History(
+        new = History(
             void=void,
             mass=mass,
             outflow=s.outflow() if self.remembers_mass else None,
-            wear=wear,
+            wear=None if effects.wear is None else worn_depth(effects.wear, film),
             deflection=p.liner.deflection if self.remembers_deflection and p.liner is not None else None,
             temperature=None if effects.thermal is None else effects.thermal.advance(film),
             density=p.compressible.rho.copy() if self.remembers_density and p.compressible is not None else None,
         )
+        if void is not None and film.history is not None:
+            for term in effects.gap_terms:  # wear and growth, which the film does not see before the next step
+                void += term.field(new) - term.field(old)
+        return new
 
     def evaluate(
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
@@ -234,7 +235,7 @@ class BearingModel:
         p, c = self.parts, self.bearing.radial_clearance
         p.evaluations.count += 1
         journal = self._journal(motion)
-        temperature = self._set_temperature(history)
+        temperature, walls = self._set_temperature(history)
         if p.supply is not None and p.supply.turn(spin):
             self.solver.refresh_fixed()
         # a sum is finite only if all its terms are
@@ -270,6 +271,7 @@ class BearingModel:
             c * smallest,
             self._bore_state(journal, oil, pressing),
             p.evaluations.count,
+            walls,
         )
         return self._result(status, journal, loads.wrench, iterations, c * smallest, film)
 
@@ -295,18 +297,16 @@ class BearingModel:
         scaled = motion[:8] * self._scale
         return JournalMotion(motion, scaled[:4], scaled[4:], float(motion[8]), float(motion[9]))
 
-    def _set_temperature(self, history: History | None) -> float | np.ndarray | None:
-        """Bring the viscosity to the temperature at the start of the step, which comes back."""
+    def _set_temperature(self, history: History | None) -> tuple[float | np.ndarray | None, Walls | None]:
+        """Bring the viscosity to the temperature at the start of the step, which comes back, with that of walls."""
         thermal = self.effects.thermal
         if thermal is None:
-            return None
-        temperature = None if history is None else history.temperature
-        if temperature is None:
+            return None, None
+        if (temperature := None if history is None else history.temperature) is None:
             temperature = thermal.initial_temperature(self.grid.shape)
-        ratio = thermal.set_viscosity(temperature)
-        if ratio != self.viscosity_ratio:
+        if (ratio := thermal.set_viscosity(temperature)) != self.viscosity_ratio:
             self._set_viscosity(ratio)
-        return temperature
+        return thermal.split(temperature)
 
     def _set_gap(
         self, journal: JournalMotion, history: History | None

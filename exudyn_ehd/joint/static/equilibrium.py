@@ -14,8 +14,9 @@ from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.fields import remembered
 from exudyn_ehd.joint.model.rigid import Evaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
 from exudyn_ehd.pictures.units import shown
@@ -112,7 +113,7 @@ class EquilibriumResult:
             return self.stiffness if self.response is None else self.response.at(0.0).real
         model = build_study_model(b, 0.0)
         step = SETTLED_STEP * max(self.film.minimum_gap, 1e-3 * b.radial_clearance)
-        near = History(temperature=self.film.temperature)
+        near = remembered(self.film)
 
         def force(shift: np.ndarray) -> np.ndarray:
             return evaluate_at(model, motion + shift, "settled_stiffness", near)[0].wrench[:2]

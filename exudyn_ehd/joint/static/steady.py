@@ -18,7 +18,7 @@ from exudyn_ehd.joint.balance.film import evaluate_at, history_at, lacks_oil
 from exudyn_ehd.joint.balance.hot_oil import warn_of_heat
 from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_overload
 from exudyn_ehd.joint.model.build import build_study_model
-from exudyn_ehd.joint.model.fields import film_record
+from exudyn_ehd.joint.model.fields import film_record, remembered
 from exudyn_ehd.joint.model.quantities import refined_peak, supply_flows
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
@@ -67,6 +67,8 @@ class SteadyResult(Film, FilmPictures):
         Film fraction; None for closures that do not conserve mass.
     temperature : (n, m) array, float or None
         Of the film, K; None for an isothermal bearing.
+    walls : Walls or None
+        Temperatures of bush and journal, and the clearance that they leave; None where none conducts.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
@@ -129,7 +131,7 @@ class SteadyResult(Film, FilmPictures):
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
         model = build_study_model(self.bearing, start)
-        near = None if self.temperature is None else History(temperature=self.temperature)
+        near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
         state = FilmState(self.motion, history_at(model, self.motion, "audit", near))

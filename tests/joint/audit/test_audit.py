@@ -13,6 +13,7 @@ from exudyn_ehd.joint.audit.audit import audit_record
 from exudyn_ehd.joint.audit.samples import RecordedSteps, intervals_at_half, squeeze_share, tilt_loss
 from exudyn_ehd.joint.audit.switches import steel_ring
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.solved_film import History
 from tests.sampling import sample
 
 C, SPEED = 20e-6, 300.0
@@ -241,6 +242,28 @@ def test_effects_that_do_not_matter_are_unneeded(effect):
     assert finding.time_share is not None and 0.0 <= finding.time_share < 1.0
     check_readable(found)
     assert f"{finding.time_share:.0%}" in str(found)
+
+
+def test_heat_into_walls():
+    """Off: what walls of steel would change. On: the shares of the heat that they take."""
+    made = bearing(thermal=ehd.FilmEnergy(supply_temperature=313.15), lubricant=ehd.oil("ISO VG 46"))
+    found = audit(made, eps=0.8)
+    walls = found["walls"]
+    check_readable(found)
+    assert walls.on is False and walls.matters and walls in found.neglected
+    steel = walls.remedy(made)
+    film = ehd.steady(steel, speed=SPEED, eccentricity_ratio=0.8)
+    found = film.audit()
+    check_readable(found)
+    thermal, model = steel.thermal, build_model(steel)
+    history = History(temperature=film.walls.behind(film.temperature))
+    balance = model.effects.thermal.balance(model.evaluate(film.motion, history).film, history.temperature)
+    given = thermal.bush.conductance * (film.walls.bush[:, -1].mean() - 313.15) + balance["journal"]
+    assert found["walls"].on and found["walls"].matters
+    assert found["walls"].value == pytest.approx(given / balance["heat_in"], rel=1e-6)
+    # given temperatures say where the heat goes
+    fixed = dataclasses.replace(made.thermal, bush_coefficient=1e3)
+    assert "walls" not in [f.effect for f in audit(dataclasses.replace(made, thermal=fixed), eps=0.5).findings]
 
 
 HARD = {

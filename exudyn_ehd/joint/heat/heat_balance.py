@@ -1,0 +1,139 @@
+"""Energy equation of one solved film, from its flows: system, solution and balance."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from exudyn_ehd.film.banded.assemble import assemble
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.heat.energy import transport_slopes
+from exudyn_ehd.joint.heat.oil_flows import OilFlows
+from exudyn_ehd.joint.solved_film import SolvedFilm
+
+# Keeps the temperature of a control volume defined that no oil enters, at this share of the largest flow.
+STAGNANT = 1e-14
+
+
+class BandSolver:
+    """Systems of one film grid; its buffers stay."""
+
+    def __init__(self) -> None:
+        self.number: np.ndarray | None = None
+
+    def factor(self, qx: np.ndarray, qz: np.ndarray, slopes: np.ndarray) -> None:
+        """Factor the system of ``slopes`` (5, n m)."""
+        n, m = qx.shape
+        if self.number is None:
+            self.number, self.order = np.zeros((n, m), dtype=np.int64), np.zeros(n * m, dtype=np.int64)
+            _, self.width = number_cells(np.ones((n, m), dtype=np.bool_), np.ones((n, m)), self.order, self.number)
+            self.lower, self.upper = np.zeros((2, n * m, self.width + 1 + PAD))
+            self.inverse = np.zeros(n * m)
+        assemble(qx, qz, slopes, self.number, self.order, n * m, self.lower, self.upper)
+        self.regular = factor_lu(self.lower, self.upper, n * m, self.width, self.inverse)
+
+    def solve(self, rhs: np.ndarray) -> np.ndarray:
+        """Fields for right-hand sides (k, n, m); inf for a singular system."""
+        x = np.ascontiguousarray(rhs.reshape(len(rhs), -1)[:, self.order])
+        if not self.regular:
+            return np.full(rhs.shape, np.inf)
+        solve_lu(self.lower, self.upper, self.inverse, self.order.size, self.width, x)
+        out = np.empty_like(x)
+        out[:, self.order] = x
+        return out.reshape(rhs.shape)
+
+
+class HeatedOil(Protocol):
+    """What the equation asks of `exudyn_ehd.joint.heat.temperature.FilmTemperature`."""
+
+    supply: float
+    flow_capacity: float
+    carry_over: float
+    band: BandSolver
+
+    def follows(self, T: np.ndarray, heat: np.ndarray, store: np.ndarray) -> float | np.ndarray:
+        """What heat loses per kelvin within a step."""
+
+
+class HeatBalance:
+    """What warms a solved film over a step, or for good with a step of 0; fields (n, m).
+
+    Attributes
+    ----------
+    scale : float
+        W/K per scaled flow, in which heat transfer to the walls is given.
+    """
+
+    def __init__(self, thermal: HeatedOil, film: SolvedFilm, step: float, heat: np.ndarray) -> None:
+        area, shape = film.solver.area, film.grid.shape
+        assert film.temperature is not None
+        self.film, self.step, self.supply, self.band = film, step, thermal.supply, thermal.band
+        self.old = np.asarray(film.temperature)
+        self.scale = thermal.flow_capacity * film.parts.flow_scale
+        self.heat, self.flows = heat, OilFlows(film)
+        self.entering, self.leaving = np.maximum(self.flows.outside, 0.0), np.maximum(-self.flows.outside, 0.0)
+        if thermal.carry_over < 1.0 and film.parts.supply is not None:
+            exchanged = (1.0 / thermal.carry_over - 1.0) * _arriving(self.flows, film.parts.supply.masks)
+            self.entering, self.leaving = self.entering + exchanged, self.leaving + exchanged
+        self.found, self.lost = np.maximum(self.flows.found, 0.0), np.maximum(-self.flows.found, 0.0)
+        self.total_found, total_lost = float(self.found.sum()), float(self.lost.sum())
+        back = min(self.total_found, total_lost) / self.total_found if self.total_found > 0.0 else 0.0
+        self.back = thermal.carry_over * back
+        self.weight = self.lost / total_lost if total_lost > 0.0 else self.lost
+        self.store = area * self.flows.content / step if step > 0.0 else np.zeros(shape)
+        self.follows = thermal.follows(self.old, heat / self.scale, self.store)
+
+    def factor(self, walls: np.ndarray) -> None:
+        """Factor the system with heat transfer ``walls`` to the surfaces, in units of ``scale``."""
+        flows, store = self.flows, self.store
+        rigid = STAGNANT * float(max(np.abs(flows.x).max(), np.abs(flows.z).max(), store.max()))
+        diagonal = self.follows + store + self.entering + self.found + walls + rigid
+        held = store if self.step > 0.0 else np.full(store.shape, np.inf)
+        slopes = np.empty((5, store.size))
+        transport_slopes(flows.x, flows.z, diagonal, self.old, self.film.grid.link_z, held, slopes)
+        self.band.factor(flows.x, flows.z, slopes)
+        self.given = self.heat / self.scale + (store + rigid + self.follows) * (self.old - self.supply)
+
+    def temperatures(self, gain: np.ndarray) -> np.ndarray:
+        """Temperatures where the surfaces give ``gain``, in K times ``scale``, to a film at the supply temperature."""
+        T0, self.returning = self.band.solve(np.array([self.given + gain, self.back * self.found]))
+        mixed = 0.0
+        if self.back > 0.0:
+            mixed = float(np.sum(self.weight * T0)) / (1.0 - float(np.sum(self.weight * self.returning)))
+        return self.supply + T0 + mixed * self.returning
+
+    def response(self, gain: np.ndarray) -> np.ndarray:
+        """Change of `temperatures`, which have been asked for, by a change of ``gain``."""
+        change = self.band.solve(gain[None])[0]
+        if self.back > 0.0:
+            mixed = float(np.sum(self.weight * change)) / (1.0 - float(np.sum(self.weight * self.returning)))
+            change += mixed * self.returning
+        return change
+
+    def sums(self, T: np.ndarray) -> dict[str, float]:
+        """Heat in, convected and stored, W, with these temperatures at the end."""
+        rise, area = T - self.supply, self.film.solver.area
+        mixed = float(np.sum(self.weight * rise))
+        stored = float(np.sum(self.store * (T - self.old))) if self.step > 0.0 else 0.0
+        convected = float(np.sum((self.leaving + self.lost) * rise)) - self.back * mixed * self.total_found
+        return {
+            "heat_in": float(np.sum(self.heat - self.scale * self.follows * (T - self.old))),
+            "convected": self.scale * convected,
+            "stored": self.scale * (stored + float(np.sum(area * self.flows.rate * rise))),
+        }
+
+
+def _arriving(flows: OilFlows, masks: list[np.ndarray]) -> np.ndarray:
+    """Flow from the film into the vertices of supply areas (n, m)."""
+    inside = np.logical_or.reduce(masks)
+    after = np.roll(inside, -1, axis=0)
+    out = np.roll(np.where(after & ~inside, np.maximum(flows.x, 0.0), 0.0), 1, axis=0)
+    out += np.where(inside & ~after, np.maximum(-flows.x, 0.0), 0.0)
+    enters, leaves = ~inside[:, :-1] & inside[:, 1:], inside[:, :-1] & ~inside[:, 1:]
+    out[:, 1:] += np.where(enters, np.maximum(flows.z[:, :-1], 0.0), 0.0)
+    out[:, :-1] += np.where(leaves, np.maximum(-flows.z[:, :-1], 0.0), 0.0)
+    return out

@@ -1,0 +1,275 @@
+"""Walls that conduct: the temperatures of bush and journal with those of the film, and what the walls grow by.
+
+A state (n, m + k) has the film's temperatures in its first m columns, behind them those of the bush's rings, from the
+bore outward, and the journal's, from its surface inward and the same in every row; K.
+
+Film, bush and journal of a step are one linear system. The walls are condensed onto their surfaces, heat that they
+take by temperature there, `exudyn_ehd.film.heat.conduction`; what the film gives there follows from its own system,
+which is factored once, and from `exudyn_ehd.film.heat.passage`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.linalg import lu_factor, lu_solve
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.heat.conduction import Rings, Walls
+from exudyn_ehd.film.heat.options import Conduction, FilmEnergy
+from exudyn_ehd.film.heat.passage import Passage
+from exudyn_ehd.joint.heat.heat_balance import HeatBalance
+from exudyn_ehd.joint.heat.temperature import FilmTemperature, ViscosityField
+from exudyn_ehd.joint.solved_film import History, SolvedFilm
+
+# Share of the heat to which what the film gives and what the walls take agree.
+AGREED = 1e-13
+
+
+class _Wall:
+    """One wall with its place among the columns of a state."""
+
+    def __init__(self, wall: Conduction, rings: Rings, supply: float, bearing: JournalBearing) -> None:
+        self.rings = rings
+        ambient, initial, clearance = (
+            supply if T is None else T
+            for T in (wall.ambient_temperature, wall.initial_temperature, wall.clearance_temperature)
+        )
+        self.ambient, self.initial, self.at_clearance = ambient, initial, clearance
+        self.expands = wall.expansion * bearing.journal_radius
+        self.columns = slice(0)
+
+    def of(self, state: np.ndarray) -> np.ndarray:
+        """Temperatures (columns, k) in a state."""
+        return state[: self.rings.columns, self.columns]
+
+    def growth(self, state: np.ndarray) -> float:
+        """Of the radius at the film, m."""
+        return self.expands * (float(np.mean(self.of(state) @ self.rings.share)) - self.at_clearance)
+
+    def heat(self, state: np.ndarray, old: np.ndarray) -> tuple[float, float]:
+        """Given off to the ambient and stored, W, by a step to ``state``."""
+        T = self.of(state)
+        stored = float(np.sum(self.rings.store * (T - self.of(old))))
+        return float(np.sum(self.rings.loss * (T - self.ambient))), stored
+
+
+class WalledTemperature(FilmTemperature):
+    """`FilmEnergy` with a bush or journal that conducts, of one bearing model.
+
+    Parameters
+    ----------
+    spec, bearing, field
+        As for `FilmTemperature`.
+    shape : (int, int)
+        Of the film's grid.
+    """
+
+    def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]):
+        super().__init__(spec, bearing, field)
+        self.shape, self.clearance = shape, bearing.radial_clearance
+        R, L = bearing.journal_radius, bearing.length
+        self.sides: list[_Wall | None] = [None, None]
+        end = shape[1]
+        for side, wall in enumerate((spec.bush, spec.journal)):
+            if wall is not None:
+                rings = Rings(wall, R, L, shape[0] if side == 0 else 1, inward=side == 1)
+                self.sides[side] = known = _Wall(wall, rings, self.supply, bearing)
+                known.columns = slice(end, end + rings.radii.size)
+                end = known.columns.stop
+                self.transfer += wall.conductance  # more than nothing: a way out for the heat
+        self.conducting = [wall for wall in self.sides if wall is not None]
+        self.size, self.unknowns = end, sum(wall.rings.columns for wall in self.conducting)
+        self.grows = any(wall.expands > 0.0 for wall in self.conducting)
+        self._last_state: np.ndarray | None = None
+
+    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
+        """(n, m + k) state, K, at the start of a motion."""
+        if self._start is None:
+            self._start = np.full((shape[0], self.size), float(self.initial))
+            for wall in self.conducting:
+                self._start[:, wall.columns] = wall.initial
+        return self._start
+
+    def split(self, temperature: float | np.ndarray) -> tuple[np.ndarray, Walls]:
+        """The film's own temperatures (n, m) of a state, and its walls."""
+        if temperature is not self._last_state:
+            self._last_state = T = np.asarray(temperature)
+            (bush, journal), m = self.sides, self.shape[1]
+            walls = Walls(
+                None if bush is None else bush.of(T),
+                None if journal is None else journal.of(T)[0],
+                None if bush is None else bush.rings.radii,
+                None if journal is None else journal.rings.radii,
+                self.clearance + self.opening(T),
+            )
+            self._parts = np.ascontiguousarray(T[:, :m]), walls
+        return self._parts
+
+    def opening(self, temperature: np.ndarray) -> float:
+        """What the walls' growth adds to the radial clearance, m."""
+        bush, journal = (0.0 if wall is None else wall.growth(temperature) for wall in self.sides)
+        return bush - journal
+
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """As for a film alone."""
+        return super().set_viscosity(self.split(temperature)[0])
+
+    def advance(self, film: SolvedFilm) -> np.ndarray:
+        """State at the end of a solved film's step."""
+        old = self._old(film)
+        return old if film.step <= 0.0 else self._settled(film, film.step, old)
+
+    def steady_temperature(self, film: SolvedFilm) -> np.ndarray:
+        """State in balance with the heat of a solved film; not finite without a way out for the heat."""
+        if not self._has_way_out(film):
+            return np.full((self.shape[0], self.size), np.inf)
+        return self._settled(film, 0.0, self._old(film))
+
+    def balance(self, film: SolvedFilm, temperature: np.ndarray) -> dict[str, float]:
+        """Heat in, convected, conducted to ambient or given walls, and stored, W, of a step that ends at a state.
+
+        Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them.
+        """
+        T, old = temperature[:, : self.shape[1]], self._old(film)
+        out = HeatBalance(self, film, film.step, self._heat(film)).sums(T)
+        q = self._passage(film).heat(T, [self._surface(side, temperature) for side in (0, 1)])
+        out["conducted"] = 0.0
+        for wall, heat in zip(self.sides, q, strict=True):
+            if wall is None:
+                out["conducted"] += float(heat.sum())
+                continue
+            wall.rings.bring_to(film.step)
+            lost, stored = wall.heat(temperature, old)
+            out["conducted"] += lost
+            out["stored"] += stored
+        return out | {"bush": float(q[0].sum()), "journal": float(q[1].sum())}
+
+    def _old(self, film: SolvedFilm) -> np.ndarray:
+        known = None if film.history is None else film.history.temperature
+        return self.initial_temperature(self.shape) if known is None else np.asarray(known)
+
+    def _surface(self, side: int, state: np.ndarray) -> np.ndarray:
+        """Temperature that a side presents to the film (n, 1) or (1, 1), K."""
+        wall = self.sides[side]
+        return np.full((1, 1), self.walls[side][1]) if wall is None else wall.of(state)[:, :1]
+
+    def _settled(self, film: SolvedFilm, step: float, old: np.ndarray) -> np.ndarray:
+        """State at the end of a step."""
+        for wall in self.conducting:
+            wall.rings.bring_to(step)
+        balance, passage = HeatBalance(self, film, step, self._heat(film)), self._passage(film)
+        balance.factor(passage.transfer / balance.scale)
+        at = [self._surface(side, old) for side in (0, 1)]
+        first = balance.temperatures(self._gain(passage, balance, at, self.supply))
+        change = self._surfaces_change(balance, passage, old, passage.heat(first, at))
+        at = [a + c for a, c in zip(at, self._spread(change), strict=True)]
+        state = np.empty((self.shape[0], self.size))
+        state[:, : self.shape[1]] = balance.temperatures(self._gain(passage, balance, at, self.supply))
+        for side, surface in zip(self.sides, at, strict=True):
+            if side is not None:
+                rise = side.rings.behind(surface.ravel() - side.ambient, side.of(old) - side.ambient)
+                state[:, side.columns] = rise + side.ambient
+        return state
+
+    def _surfaces_change(
+        self, balance: HeatBalance, passage: Passage, old: np.ndarray, heat: list[np.ndarray]
+    ) -> np.ndarray:
+        """Change (k,) of the walls' surface temperatures from ``old``, at which the film gives ``heat``, W, to where
+        the walls take what it gives.
+
+        By GMRES, led by the walls and the film's passage at its mean temperature.
+        """
+        stiff, missing, at = np.zeros((self.unknowns, self.unknowns)), np.zeros(self.unknowns), 0
+        for wall in self.conducting:
+            part = slice(at, at + wall.rings.columns)
+            at, rise = part.stop, wall.of(old) - wall.ambient
+            stiff[part, part] = wall.rings.matrix()
+            missing[part] = wall.rings.remembered(rise) - stiff[part, part] @ rise[:, 0]
+        given = self._gather(heat)
+        lead = lu_factor(stiff + self._held(passage))
+
+        def led(w: np.ndarray) -> np.ndarray:
+            at = self._spread(w)
+            T = balance.response(self._gain(passage, balance, at, 0.0))
+            return lu_solve(lead, stiff @ w - self._gather(passage.heat(T, at)))
+
+        enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
+        return _krylov(led, lu_solve(lead, missing + given), enough)
+
+    def _passage(self, film: SolvedFilm) -> Passage:
+        assert self.spec.conductivity is not None
+        kappa = self.spec.conductivity / (self.clearance * film.solver.H)
+        area = film.solver.area * film.grid.reference_length**2
+        bush, journal = (U if wall is None else None for wall, (U, _) in zip(self.sides, self.walls, strict=True))
+        return Passage(kappa, area, (bush, journal))
+
+    def _gain(self, passage: Passage, balance: HeatBalance, at: list[np.ndarray], zero: float) -> np.ndarray:
+        """What the surfaces give to a film at ``zero``, K, in the balance's units (n, m)."""
+        return passage.gain([a - zero for a in at]) / balance.scale
+
+    def _spread(self, w: np.ndarray) -> list[np.ndarray]:
+        """Values (k,) at the surfaces of walls that conduct as (n, 1) or (1, 1) of both sides, the others' zero."""
+        columns = [0 if wall is None else wall.rings.columns for wall in self.sides]
+        parts = np.split(w, columns[:1])
+        return [part[:, None] if part.size else np.zeros((1, 1)) for part in parts]
+
+    def _gather(self, heat: list[np.ndarray]) -> np.ndarray:
+        """Sums (k,) of fields (n, m) of both sides over what each column of a wall that conducts takes."""
+        rows = [
+            h.sum(axis=1).reshape(wall.rings.columns, -1).sum(axis=1)
+            for wall, h in zip(self.sides, heat, strict=True)
+            if wall is not None
+        ]
+        return np.concatenate(rows)
+
+    def _held(self, passage: Passage) -> np.ndarray:
+        """What the walls give per kelvin of their surfaces to a film of held temperatures (k, k), W/K."""
+        parts = [[by.sum(axis=1) for by in row] for row in passage.by]
+        (bush, both), (_, journal) = parts
+        if self.sides[1] is None:
+            return np.diag(bush)
+        if self.sides[0] is None:
+            return journal.sum(keepdims=True)[None]
+        return np.block([[np.diag(bush), both[:, None]], [both, journal.sum()]])
+
+
+def _krylov(apply: Callable[[np.ndarray], np.ndarray], rhs: np.ndarray, enough: float) -> np.ndarray:
+    """x (k,) with ``apply(x) = rhs`` to ``enough``, by GMRES."""
+    size, x = float(np.linalg.norm(rhs)), np.zeros_like(rhs)
+    if size <= enough:
+        return x
+    basis, table = rhs[None] / size, np.zeros((rhs.size + 1, rhs.size))
+    for k in range(rhs.size):
+        image = apply(basis[k])
+        for _ in range(2):  # orthogonal to rounding
+            part = basis @ image
+            table[: k + 1, k] += part
+            image = image - part @ basis
+        table[k + 1, k] = norm = float(np.linalg.norm(image))
+        target = np.zeros(k + 2)
+        target[0] = size
+        known = table[: k + 2, : k + 1]
+        weights = np.linalg.lstsq(known, target, rcond=None)[0]
+        x = weights @ basis
+        if np.linalg.norm(target - known @ weights) <= enough or norm == 0.0:
+            break
+        basis = np.vstack((basis, image / norm))
+    return x
+
+
+class Growth:
+    """What the walls grow by, as a gap term: the same everywhere, with the temperatures at the start of a step."""
+
+    def __init__(self, thermal: WalledTemperature) -> None:
+        self.thermal, self.last = thermal, np.full(thermal.shape, np.nan)
+
+    def field(self, history: History | None) -> np.ndarray:
+        """Scaled addition to the gap (n, m)."""
+        known = None if history is None else history.temperature
+        state = self.thermal.initial_temperature(self.thermal.shape) if known is None else np.asarray(known)
+        opening = self.thermal.opening(state) / self.thermal.clearance
+        if self.last[0, 0] != opening:
+            self.last = np.full(self.thermal.shape, opening)
+        return self.last
