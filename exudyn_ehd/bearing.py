@@ -45,6 +45,7 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+    from exudyn_ehd.solid.journal.description import ElasticJournal
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -121,6 +122,8 @@ class JournalBearing:
         Temperature of the film; None: isothermal.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
         What deflects under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
+    journal : ElasticJournal or None
+        A pin that deflects, with a rigid bore or a `ModalBush` around it. None: a rigid journal.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -161,6 +164,7 @@ class JournalBearing:
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
     bush: ElasticLiner | ModalBush | ANCFBush | FEBore | ReducedBore | None = None
+    journal: ElasticJournal | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -184,13 +188,15 @@ class JournalBearing:
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
-        check_line(self.film, self.cavitation, self.bush, self.lubricant)
+        check_line(self.film, self.cavitation, self.yielding, self.lubricant)
         _check_turbulence(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
         if self.bush is not None and not isinstance(self.bush, ElasticLiner):
             _check_bush(self)
+        if self.journal is not None:
+            _check_journal(self)
 
     def _check_sizes(self) -> None:
         radius, clearance = self.journal_radius, self.radial_clearance
@@ -279,6 +285,11 @@ class JournalBearing:
         return self.profile if isinstance(self.profile, tuple) else (self.profile,)
 
     @property
+    def yielding(self) -> object | None:
+        """The bush, or the elastic journal without one; None between rigid surfaces."""
+        return self.journal if self.bush is None else self.bush
+
+    @property
     def clearance_ratio(self) -> float:
         """psi = c/R."""
         return self.radial_clearance / self.journal_radius
@@ -296,7 +307,7 @@ class JournalBearing:
     @property
     def closure(self) -> Cavitation:
         """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
-        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.bush, self.lubricant))
+        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.yielding, self.lubricant))
 
     def reference_force(self, speed: float) -> float:
         """L D mu |omega| / psi^2, the unit of the Sommerfeld number.
@@ -394,3 +405,24 @@ def _check_bush(bearing: JournalBearing) -> None:
             f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m about its mid-plane, got "
             f"a bore from {ends[0]:g} to {ends[1]:g} m."
         )
+
+
+def _check_journal(bearing: JournalBearing) -> None:
+    """Refuse what is no elastic journal, one that is not the film's, or one that a bush does not know."""
+    # imported here: a rigid bearing needs no solid
+    from exudyn_ehd.solid.bush import ModalBush
+    from exudyn_ehd.solid.journal.description import ElasticJournal
+
+    journal = bearing.journal
+    require_type("JournalBearing.journal", journal, ElasticJournal, type(None))
+    assert journal is not None
+    bush, film = bearing.bush, type(bearing.film).__name__
+    if not isinstance(bearing.film, FiniteLength | ShortBearing):
+        raise InputError(f"JournalBearing.journal needs film=FiniteLength(...) or ShortBearing(...), got {film}(...).")
+    if bush is not None and (not isinstance(bush, ModalBush) or bush.dynamics):
+        kind = "ModalBush(dynamics=True)" if isinstance(bush, ModalBush) else f"{type(bush).__name__}(...)"
+        raise InputError(
+            f"JournalBearing.journal=ElasticJournal(...) goes with a rigid bore or a quasi-static ModalBush(...), got "
+            f"bush={kind}: its modes have no mass, and follow those of a ModalBush; take one, or leave one out."
+        )
+    journal.require_fit(bearing.journal_radius, bearing.length)
