@@ -131,6 +131,9 @@ _LAZY = {  # imported only when asked for: film studies need neither Exudyn nor 
     "BoreModesReport": "solid.fe_bore",
     "FEBore": "solid.fe_bore",
     "add_bore_modes": "solid.fe_bore",
+    "ElasticJournal": "solid.journal.description",
+    "HeldBands": "solid.journal.description",
+    "HeldEnds": "solid.journal.description",
     "FollowerPressure": "solid.loads",
     "HollowCylinder": "solid.mesh",
     "Gravity": "solid.loads",
@@ -185,6 +188,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
+    from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
     from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
     from exudyn_ehd.solid.mesh_files import mesh_from_file
@@ -230,6 +234,7 @@ __all__ = [
     "DowsonHigginson",
     "EHDError",
     "EdgeRelief",
+    "ElasticJournal",
     "ElasticLiner",
     "ElrodAdams",
     "EquilibriumPoint",
@@ -254,6 +259,8 @@ __all__ = [
     "GreenwoodTripp",
     "Gumbel",
     "Held",
+    "HeldBands",
+    "HeldEnds",
     "Hirs",
     "Hole",
     "HollowCylinder",

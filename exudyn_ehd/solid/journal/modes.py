@@ -93,7 +93,17 @@ def journal_modes(journal: ElasticJournal, radius: float, length: float) -> Jour
         If the tolerance takes more waves than the search allows.
     """
     described = (FORMAT, journal.material.lame, journal.span, repr(journal.held), journal.inner_radius)
-    choice = (journal.tolerance, journal.tilted, radius, length, FINE, COARSE, COARSE_FROM, GROWTH_INWARDS, GROWTH_OUTWARDS)
+    choice = (
+        journal.tolerance,
+        journal.tilted,
+        radius,
+        length,
+        FINE,
+        COARSE,
+        COARSE_FROM,
+        GROWTH_INWARDS,
+        GROWTH_OUTWARDS,
+    )
     search = (ANGLES, static.LARGEST_AXIAL, static.DEPENDENT, static.AXIAL_FROM, HELD_SHAPE)
     samples = (static.SAMPLE_ECCENTRICITIES, static.SAMPLE_DIRECTIONS, static.SAMPLE_TILTS, static.SAMPLE_DECAY)
     shapes = {"waves": ("k",), "phases": ("k",), "profiles": ("k", "m"), "stiffness": ("k",), "error": ()}
