@@ -1,9 +1,10 @@
 """The film element on a flexible bore: a third block of coordinates besides those of housing and journal.
 
-Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame, those of an elastic
-journal behind those of the bore. Their force is ``Q - K q``; their mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves
-coupled with it (`modal_inertia`). The film's wrench on the housing stays the opposite of the journal's, since the
-modes' forces are internal to the bush: force and moment on journal and housing cancel exactly.
+Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame, those of an
+elastic journal behind those of the bore. Their force is ``Q - K q``; their mass, if the bush has ``dynamics``, is the
+mass matrix of Exudyn's object, on a housing that moves coupled with it (`modal_inertia`). The film's wrench on the
+housing stays the opposite of the journal's, since the modes' forces are internal to bush and journal: force and moment
+on journal and housing cancel exactly.
 """
 
 from __future__ import annotations
@@ -207,7 +208,7 @@ class ModalFilmElement(BoreFilmElement):
         return whole
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
-        """Displacement (k, 3) of the bush's mesh at the last trial; None without one, also of a body, which shows itself."""
+        """Displacement (k, 3) of the bush's mesh at the last trial; None without one: a body shows itself."""
         if not isinstance(self.modes, BoreModes):
             return None
         return np.tensordot(self._evaluation(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)

@@ -86,6 +86,9 @@ class Bore(Protocol):
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
 
+    def of_journal(self, q: np.ndarray) -> np.ndarray | float:
+        """What an elastic journal's part of q opens the gap by (n, m)."""
+
     def end_shapes(self) -> np.ndarray:
         """What S is for linear pressures that vanish at one end, (2, k): the first at L/2, the second at -L/2.
 
@@ -235,7 +238,7 @@ class ModalBore:
         return np.concatenate(parts, axis=1)
 
     def of_journal(self, q: np.ndarray) -> np.ndarray:
-        """What the journal alone opens the gap by (n, m)."""
+        """What the journal's part of q opens the gap by (n, m)."""
         return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
 
     def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
@@ -339,6 +342,10 @@ class NodalBore:
         if not len(places):
             stencil = 0, stencil[1][:0], stencil[2][:0]
         project_columns(self.columns, stencil, fields, direct, out)
+
+    def of_journal(self, q: np.ndarray) -> float:
+        """Nothing: it is rigid."""
+        return 0.0
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
