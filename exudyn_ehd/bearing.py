@@ -193,10 +193,8 @@ class JournalBearing:
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
-        if self.bush is not None and not isinstance(self.bush, ElasticLiner):
-            _check_bush(self)
-        if self.journal is not None:
-            _check_journal(self)
+        if self.journal is not None or not isinstance(self.bush, ElasticLiner | None):
+            _check_elastic(self)
 
     def _check_sizes(self) -> None:
         radius, clearance = self.journal_radius, self.radial_clearance
@@ -372,20 +370,24 @@ def _check_temperatures(bearing: JournalBearing) -> None:
             )
 
 
-def _check_bush(bearing: JournalBearing) -> None:
-    """Refuse what is no bush, or one whose bore is not the film's."""
+def _check_elastic(bearing: JournalBearing) -> None:
+    """Refuse what is no bush or journal, or one whose surface is not the film's."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+    from exudyn_ehd.solid.journal.description import ElasticJournal
     from exudyn_ehd.solid.mesh import HollowCylinder
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)
+    require_type("JournalBearing.journal", bearing.journal, ElasticJournal, type(None))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
-            "JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got "
-            f"{type(bearing.film).__name__}(...)."
+            f"JournalBearing.{'bush' if bearing.journal is None else 'journal'} needs film=FiniteLength(...) or "
+            f"ShortBearing(...), got {type(bearing.film).__name__}(...)."
         )
+    if bearing.journal is not None:
+        bearing.journal.require_fit(bearing.journal_radius, bearing.length, bearing.bush)
     if not isinstance(bearing.bush, ModalBush | ANCFBush):
         return
     mesh, radius = bearing.bush.mesh, bearing.journal_radius + bearing.radial_clearance
@@ -405,24 +407,3 @@ def _check_bush(bearing: JournalBearing) -> None:
             f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m about its mid-plane, got "
             f"a bore from {ends[0]:g} to {ends[1]:g} m."
         )
-
-
-def _check_journal(bearing: JournalBearing) -> None:
-    """Refuse what is no elastic journal, one that is not the film's, or one that a bush does not know."""
-    # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.bush import ModalBush
-    from exudyn_ehd.solid.journal.description import ElasticJournal
-
-    journal = bearing.journal
-    require_type("JournalBearing.journal", journal, ElasticJournal, type(None))
-    assert journal is not None
-    bush, film = bearing.bush, type(bearing.film).__name__
-    if not isinstance(bearing.film, FiniteLength | ShortBearing):
-        raise InputError(f"JournalBearing.journal needs film=FiniteLength(...) or ShortBearing(...), got {film}(...).")
-    if bush is not None and (not isinstance(bush, ModalBush) or bush.dynamics):
-        kind = "ModalBush(dynamics=True)" if isinstance(bush, ModalBush) else f"{type(bush).__name__}(...)"
-        raise InputError(
-            f"JournalBearing.journal=ElasticJournal(...) goes with a rigid bore or a quasi-static ModalBush(...), got "
-            f"bush={kind}: its modes have no mass, and follow those of a ModalBush; take one, or leave one out."
-        )
-    journal.require_fit(bearing.journal_radius, bearing.length)

@@ -108,6 +108,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "JournalBearing.journal_radius",
         "SphericalBearing.ball_radius",
         "HollowCylinder.inner_radius",
+        "ElasticJournal.inner_radius",
         "HollowCylinder.thickness",
         "mesh_from_arrays.bore_radius",
         "mesh_from_fem.bore_radius",
@@ -130,6 +131,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "place along z": (
         "CircumferentialGroove.z",
+        "ElasticJournal.span",
+        "HeldBands.bands",
         "Hole.z",
         "Pocket.z",
         "AxialProfile.positions",

@@ -115,7 +115,8 @@ class Comparison:
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
         # the temperature is held where both have one: what else changes it is of second order
         held = mine.history if other.effects.thermal is not None and self.model.effects.thermal is not None else None
-        if other.flexible and other.bearing.bush is self.model.bearing.bush:
+        own = self.model.bearing
+        if other.flexible and other.bearing.bush is own.bush and other.bearing.journal is own.journal:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
         load = _load_at(search, mine.motion[:MOTION_SIZE])

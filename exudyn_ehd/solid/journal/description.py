@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from exudyn_ehd.solid.bush import require_tolerance
+from exudyn_ehd.solid.bush import ModalBush, require_tolerance
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff
 from exudyn_ehd.status import InputError, require_bool, require_number, require_type, require_vector
 
@@ -121,9 +121,15 @@ class ElasticJournal:
         """Where its cylinder is held, [m]."""
         return self.held.bands if isinstance(self.held, HeldBands) else ()
 
-    def require_fit(self, radius: float, length: float) -> None:
-        """Refuse a journal of ``radius`` that does not carry a film of ``length`` about z = 0."""
+    def require_fit(self, radius: float, length: float, bush: object) -> None:
+        """Refuse a journal of ``radius`` that does not carry a film of ``length`` about z = 0, or go with its bush."""
         half, (low, high) = 0.5 * length * (1.0 - 1e-9), self.span
+        if bush is not None and (not isinstance(bush, ModalBush) or bush.dynamics):
+            kind = "ModalBush(dynamics=True)" if isinstance(bush, ModalBush) else f"{type(bush).__name__}(...)"
+            raise InputError(
+                "JournalBearing.journal=ElasticJournal(...) goes with a rigid bore or a ModalBush(dynamics=False), got "
+                f"bush={kind}: its modes follow those of such a bush and have no mass; take one, or leave one out."
+            )
         if not self.inner_radius <= THINNEST * radius:
             raise InputError(
                 f"ElasticJournal.inner_radius must be at most {THINNEST:g} of the journal radius {radius:g} m, got "
