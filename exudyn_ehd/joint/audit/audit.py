@@ -48,7 +48,7 @@ class Audit:
 
     >>> audit = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8).audit()
     >>> [finding.effect for finding in audit.neglected]
-    ['elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
+    ['elasticity', 'journal elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
     >>> better = audit.improved(bearing)
     """
 
