@@ -110,6 +110,7 @@ _LAZY = {
         "joint.spherical.steady": "SphericalBearing SphericalResult steady_spherical",
         "solid.bush": "ANCFBush ModalBush Rayleigh",
         "solid.fe_bore": "BoreModesReport FEBore add_bore_modes",
+        "solid.journal.description": "ElasticJournal HeldBands HeldEnds",
         "solid.loads": "DeadPressure FollowerPressure Gravity LineLoad SurfaceLoad",
         "solid.mesh": "BushMesh HollowCylinder",
         "solid.mesh_files": "mesh_from_file",
@@ -152,6 +153,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
+    from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
     from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
     from exudyn_ehd.solid.mesh_files import mesh_from_file
@@ -198,6 +200,7 @@ __all__ = [
     "DowsonHigginson",
     "EHDError",
     "EdgeRelief",
+    "ElasticJournal",
     "ElasticLiner",
     "ElrodAdams",
     "EquilibriumPoint",
@@ -222,6 +225,8 @@ __all__ = [
     "GreenwoodTripp",
     "Gumbel",
     "Held",
+    "HeldBands",
+    "HeldEnds",
     "Hirs",
     "Hole",
     "HollowCylinder",

@@ -45,6 +45,7 @@ from exudyn_ehd.status import (
 if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+    from exudyn_ehd.solid.journal.description import ElasticJournal
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -121,6 +122,8 @@ class JournalBearing:
         Temperature of the film; None: isothermal.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
         What deflects under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
+    journal : ElasticJournal or None
+        A pin that deflects, with a rigid bore or a `ModalBush` around it. None: a rigid journal.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -161,6 +164,7 @@ class JournalBearing:
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
     bush: ElasticLiner | ModalBush | ANCFBush | FEBore | ReducedBore | None = None
+    journal: ElasticJournal | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -184,13 +188,13 @@ class JournalBearing:
         check_film(self.film, self.cavitation, self.supply, open_ring, self.end_pressures)
         if isinstance(self.film, ImpedanceMap):
             self._check_plain()
-        check_line(self.film, self.cavitation, self.bush, self.lubricant)
+        check_line(self.film, self.cavitation, self.yielding, self.lubricant)
         _check_turbulence(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
-        if self.bush is not None and not isinstance(self.bush, ElasticLiner):
-            _check_bush(self)
+        if self.journal is not None or not isinstance(self.bush, ElasticLiner | None):
+            _check_elastic(self)
 
     def _check_sizes(self) -> None:
         radius, clearance = self.journal_radius, self.radial_clearance
@@ -279,6 +283,11 @@ class JournalBearing:
         return self.profile if isinstance(self.profile, tuple) else (self.profile,)
 
     @property
+    def yielding(self) -> object | None:
+        """The bush, or the elastic journal without one; None between rigid surfaces."""
+        return self.journal if self.bush is None else self.bush
+
+    @property
     def clearance_ratio(self) -> float:
         """psi = c/R."""
         return self.radial_clearance / self.journal_radius
@@ -296,7 +305,7 @@ class JournalBearing:
     @property
     def closure(self) -> Cavitation:
         """``cavitation`` with its rupture line inside the cells of the grid or on its vertices, where that is open."""
-        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.bush, self.lubricant))
+        return place_line(self.cavitation, goes_in_cells(self.film, self.cavitation, self.yielding, self.lubricant))
 
     def reference_force(self, speed: float) -> float:
         """L D mu |omega| / psi^2, the unit of the Sommerfeld number.
@@ -361,20 +370,24 @@ def _check_temperatures(bearing: JournalBearing) -> None:
             )
 
 
-def _check_bush(bearing: JournalBearing) -> None:
-    """Refuse what is no bush, or one whose bore is not the film's."""
+def _check_elastic(bearing: JournalBearing) -> None:
+    """Refuse what is no bush or journal, or one whose surface is not the film's."""
     # imported here: a rigid bearing needs no solid
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+    from exudyn_ehd.solid.journal.description import ElasticJournal
     from exudyn_ehd.solid.mesh import HollowCylinder
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)
+    require_type("JournalBearing.journal", bearing.journal, ElasticJournal, type(None))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
-            "JournalBearing.bush needs film=FiniteLength(...) or ShortBearing(...), got "
-            f"{type(bearing.film).__name__}(...)."
+            f"JournalBearing.{'bush' if bearing.journal is None else 'journal'} needs film=FiniteLength(...) or "
+            f"ShortBearing(...), got {type(bearing.film).__name__}(...)."
         )
+    if bearing.journal is not None:
+        bearing.journal.require_fit(bearing.journal_radius, bearing.length, bearing.bush)
     if not isinstance(bearing.bush, ModalBush | ANCFBush):
         return
     mesh, radius = bearing.bush.mesh, bearing.journal_radius + bearing.radial_clearance

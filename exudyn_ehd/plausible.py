@@ -110,6 +110,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "JournalBearing.journal_radius",
         "SphericalBearing.ball_radius",
         "HollowCylinder.inner_radius",
+        "ElasticJournal.inner_radius",
         "HollowCylinder.thickness",
         "Conduction.thickness",
         "mesh_from_arrays.bore_radius",
@@ -133,6 +134,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "place along z": (
         "CircumferentialGroove.z",
+        "ElasticJournal.span",
+        "HeldBands.bands",
         "Hole.z",
         "Pocket.z",
         "AxialProfile.positions",

@@ -392,3 +392,22 @@ def test_rotating_journal_over_all_stiffnesses(example):
                 modal, nodal = (cases[closure, name, f"{material}, {kind}"] for kind in ("modal", "nodal"))
                 for key in ("peak_MPa", "minimum_film_thickness_um"):
                     assert modal[key] == pytest.approx(nodal[key], rel=0.01), (closure, name, material, key)
+
+
+@pytest.mark.slow
+def test_elastic_gudgeon_pin(example, tmp_path):
+    cases = example("elastic_gudgeon_pin").main(quick=True, results=tmp_path)
+    assert cases.pop("picture").stat().st_size > 10_000
+    rigid, pin, both = (cases[name] for name in ("rigid", "elastic pin", "elastic pin and eye"))
+    # bent, the pin comes next to its bosses to half of the film that a rigid one has, under little more than half of
+    # its peak; the eye yields by a tenth of what the pin does
+    assert pin["minimum_film_thickness_um"] == pytest.approx(0.48 * rigid["minimum_film_thickness_um"], rel=0.05)
+    assert pin["peak_MPa"] == pytest.approx(0.57 * rigid["peak_MPa"], rel=0.05)
+    assert 0.9 < both["minimum_film_thickness_um"] / pin["minimum_film_thickness_um"] < 1.0
+    assert 0.9 < both["peak_MPa"] / pin["peak_MPa"] < 0.97
+    assert both["largest_deflection_um"] == pytest.approx(1.13 * pin["largest_deflection_um"], rel=0.03)
+    # the thinnest film is at an end, at its middle the bent pin is further away than the rigid one
+    films = [case["film"].gap for case in (rigid, pin)]
+    rows = [gap[np.unravel_index(gap.argmin(), gap.shape)[0]] for gap in films]
+    assert all(row.argmin() == row.size - 1 for row in rows)
+    assert rows[1][rows[1].size // 2] > 1.8 * rows[0][rows[0].size // 2]

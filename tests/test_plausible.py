@@ -27,7 +27,7 @@ PURE = {
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
     "GreenwoodTripp.roughness_radius_ratio", "GreenwoodTripp.friction_coefficient", "GreenwoodTripp.residual_film",
     "Gumbel.cavity_shear", "ImpedanceMap.stretch", "ImpedanceMap.largest_eccentricity_ratio",
-    "LubricatedJoint.export_vtk.magnification", "ModalBush.tolerance", "PatirCheng.pattern",
+    "LubricatedJoint.export_vtk.magnification", "ModalBush.tolerance", "ElasticJournal.tolerance", "PatirCheng.pattern",
     "PatirCheng.journal_share", "RegularisedWall.residual", "SaintVenantKirchhoff.poisson_ratio",
     "ShortBearing.stretch", "StepControl.largest_gap_change", "StepControl.error", "SurfaceLoad.distribution",
     "SwiftStieber.cavity_shear",

@@ -287,7 +287,7 @@ def no_line_with(film: Film, closure: Closure, bush: object, oil: Lubricant) -> 
         kinds += (ShortBearing if clips else ImpedanceMap,)
     others = {
         f"film={type(film).__name__}(...)": not isinstance(film, kinds),
-        "a bush": rigid and bush is not None,
+        "a bush or an elastic journal": rigid and bush is not None,
         "Lubricant.density_law": rigid and oil.density_law is not None,
         "Lubricant.shear_law": rigid and oil.shear_law is not None,
     }

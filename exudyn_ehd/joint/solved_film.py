@@ -209,13 +209,15 @@ class ExtraGap(NamedTuple):
 class BoreState(NamedTuple):
     """A flexible bore.
 
-    Coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film.
+    Coordinates (k,) and rates, its scaled displacement (n, m), and the loads (k,) on it, N, nan without a film. With an
+    elastic journal the displacement is what both surfaces open the gap by, ``of_journal`` the part of the journal.
     """
 
     coordinates: np.ndarray
     rates: np.ndarray
     displacement: np.ndarray
     load: np.ndarray
+    of_journal: np.ndarray | float = 0.0
 
 
 class OilFields(NamedTuple):

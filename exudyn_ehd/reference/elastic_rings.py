@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 
 def lame_stresses(inner: float, outer: float, pressure: float, r: float) -> tuple[float, float]:
     """Radial and hoop stress in Pa at radius r of a cylinder (radii in m) under inner ``pressure`` (Pa)."""
@@ -61,3 +63,38 @@ def diametral_lengthening(force: float, radius: float, bending_stiffness: float)
 def moment_under_load(force: float, radius: float) -> float:
     """Bending moment under the force, Nm (or N)."""
     return force * radius / math.pi
+
+
+def cylinder_yielding(n: int, inner: float, outer: float, poisson_ratio: float) -> float:
+    """Radial displacement of a cylinder's outer surface under a pressure p cos(n theta) on it, over p outer / E.
+
+    Inwards, in plane strain, with a free bore; ``inner`` = 0 is a solid cylinder, which for n > 1 gives
+
+        (1 + nu) [n / (2 (n - 1)) + (kappa - n - 1) / (2 (n + 1))],   kappa = 3 - 4 nu,
+
+    and (1 + nu) (1 - 2 nu) for n = 0. From the terms of J. H. Michell's stress function in r^n, r^(n+2), r^-n, r^(2-n)
+    that leave both surfaces without shear (Barber, Elasticity, table 8.1 and 9.1); n = 1 is no balance of forces.
+
+    Parameters
+    ----------
+    n : int
+        0, or 2 and more.
+    inner, outer : float
+        Radii, m.
+    poisson_ratio : float
+    """
+    nu, kappa = poisson_ratio, 3.0 - 4.0 * poisson_ratio
+    ratio = inner / outer
+    if n == 0:
+        return (1.0 + nu) * (1.0 - 2.0 * nu + ratio**2) / (1.0 - ratio**2)
+    if inner == 0.0:
+        return (1.0 + nu) * (0.5 * n / (n - 1.0) + 0.5 * (kappa - n - 1.0) / (n + 1.0))
+    # powers of r over the outer radius, which are 1 on it; those that fall are scaled by the inner radius
+    powers = np.array([n, n + 2, -n, 2 - n])
+    at_bore = ratio ** np.array([n - 2.0, n, 0.0, 0.0])
+    at_rim = ratio ** np.array([0.0, 0.0, n + 2.0, n])
+    normal, shear = powers - n**2.0, n * (powers - 1.0)
+    rows = np.array([normal * at_bore, shear * at_bore, normal * at_rim, shear * at_rim])
+    amounts = np.linalg.solve(rows, [0.0, 0.0, -1.0, 0.0])
+    displaced = np.array([-n, kappa - n - 1.0, n, kappa + n - 1.0]) * at_rim
+    return float(-(1.0 + nu) * displaced @ amounts)

@@ -218,7 +218,7 @@ def _speed(bearing: JournalBearing, speed: float | None) -> float:
         return require_number("recommend: speed", speed, "rad/s")
     oil, closure = bearing.lubricant, bearing.cavitation
     own = {
-        "a bush": bearing.bush,
+        "a bush or an elastic journal": bearing.yielding,
         "supply": bearing.supply,
         "end_pressures": any(bearing.end_pressures),
         "thermal": bearing.thermal,

@@ -71,8 +71,8 @@ def attach_bush(
         return _attach_nodes(mbs, model, items[0], sides, place, name, show, gravity), {}
     if gravity is not None:
         raise InputError(
-            f"CreateLubricatedJoint.bushGravity: mass and weight of the {type(model.bearing.bush).__name__} of joint "
-            f"'{name}' are its housing's; leave it out, and let the housing's mass and loads contain them."
+            f"CreateLubricatedJoint.bushGravity: mass and weight of the {type(model.bearing.yielding).__name__} of "
+            f"joint '{name}' are its body's; leave it out, and let the body's mass and loads contain them."
         )
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes

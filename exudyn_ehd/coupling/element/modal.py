@@ -1,9 +1,10 @@
 """The film element on a flexible bore: a third block of coordinates besides those of housing and journal.
 
-Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame. Their force is
-``Q - K q``; their mass, if the bush has ``dynamics``, is the mass matrix of Exudyn's object, on a housing that moves
-coupled with it (`modal_inertia`). The film's wrench on the housing stays the opposite of the journal's, since the
-modes' forces are internal to the bush: force and moment on journal and housing cancel exactly.
+Modal bush: one NodeGenericODE2 holds the coordinates q of static modes in the housing's joint frame, those of an
+elastic journal behind those of the bore. Their force is ``Q - K q``; their mass, if the bush has ``dynamics``, is the
+mass matrix of Exudyn's object, on a housing that moves coupled with it (`modal_inertia`). The film's wrench on the
+housing stays the opposite of the journal's, since the modes' forces are internal to bush and journal: force and moment
+on journal and housing cancel exactly.
 """
 
 from __future__ import annotations
@@ -19,7 +20,6 @@ from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
-from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.modes.static import BoreModes
 
 # An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.
@@ -99,7 +99,8 @@ class ModalFilmElement(BoreFilmElement):
 
     Attributes
     ----------
-    modes : BoreModes or ReducedBore
+    modes : BoreModes, ReducedBore or None
+        Of the bore; those of an elastic journal follow.
     stiffness : (k,) array
         Modal stiffness, N/m.
     inertia : ModalInertia or None
@@ -116,7 +117,7 @@ class ModalFilmElement(BoreFilmElement):
         bore: ModalBore,
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
-        self.modes = bore.modes
+        self.bore, self.modes = bore, bore.modes
         self.stiffness = bore.stiffness
         self.inertia: ModalInertia | None = None
         self._weighed = False
@@ -207,7 +208,7 @@ class ModalFilmElement(BoreFilmElement):
         return whole
 
     def bush_displacement(self, trial: Trial, configuration: exu.ConfigurationType) -> np.ndarray | None:
-        """Displacement (k, 3) of the bush's mesh at the last trial; None for the bore of a body, which shows itself."""
-        if isinstance(self.modes, ReducedBore):
+        """Displacement (k, 3) of the bush's mesh at the last trial; None without one: a body shows itself."""
+        if not isinstance(self.modes, BoreModes):
             return None
-        return np.tensordot(self._evaluation(trial).bore.coordinates, self.modes.displacements, 1)
+        return np.tensordot(self._evaluation(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)

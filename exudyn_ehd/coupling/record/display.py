@@ -70,11 +70,11 @@ class FilmDisplay:
         self.gap = film.solver.H * clearance
         if film.bore is None:
             return
-        self.bore = film.bore.displacement * clearance
-        self.largest = max(self.largest, float(np.abs(self.bore).max()))
+        self.bore = (film.bore.displacement - film.bore.of_journal) * clearance
+        self.largest = max(self.largest, float(np.abs(film.bore.displacement).max()) * clearance)
         modes = getattr(model.bore, "modes", None)
         if modes is not None:
-            self.bush = np.tensordot(film.bore.coordinates, modes.displacements, 1)
+            self.bush = np.tensordot(film.bore.coordinates[: modes.count], modes.displacements, 1)
 
     def graphics(self, mbs: exu.MainSystem, itemNumber: int) -> list[Data]:
         """User function of Exudyn: graphics data of the state that the renderer shows, global coordinates."""

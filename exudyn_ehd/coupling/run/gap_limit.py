@@ -112,7 +112,7 @@ class GapLimit:
     def _allowed_at_end(self, film: Film, last: Trial, after: np.ndarray) -> float:
         """Part of a step from in front of the end of a film's law that goes half of the way back behind it."""
         bearing = film.model.bearing
-        if last.status == Status.NO_PRESSURE and bearing.bush is None:
+        if last.status == Status.NO_PRESSURE and bearing.yielding is None:
             self.behind[film] = last.bodies
         elif film in self.behind:
             return _allowed_towards(self.behind[film], last.bodies, after, 0.5 * bearing.length)

@@ -111,7 +111,7 @@ def bore_modes_of(element: FilmElement) -> np.ndarray | None:
     if not isinstance(element, ModalFilmElement):
         return None
     places = element.model.bearing.length * _PLACES
-    return np.vstack((element.modes.radial(_ANGLES, places).reshape(-1, element.stiffness.size), element.stiffness))
+    return np.vstack((element.bore.radial(_ANGLES, places).reshape(-1, element.stiffness.size), element.stiffness))
 
 
 def check_owner(joint: Joint, state: JointState) -> None:

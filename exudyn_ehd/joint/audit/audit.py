@@ -10,6 +10,8 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
@@ -19,6 +21,7 @@ from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps, recorded_states, take_samples
 from exudyn_ehd.joint.audit.switches import turbulent, two_dimensional
 from exudyn_ehd.joint.model.build import build_study_model
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import FilmError, InputError, Status, require_type
@@ -45,7 +48,7 @@ class Audit:
 
     >>> audit = ehd.steady(bearing, speed=314.0, eccentricity_ratio=0.8).audit()
     >>> [finding.effect for finding in audit.neglected]
-    ['elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
+    ['elasticity', 'journal elasticity', 'piezoviscosity', 'heating', 'shear thinning', 'mass conservation']
     >>> better = audit.improved(bearing)
     """
 
@@ -208,9 +211,8 @@ def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[Film
     """Share of the time of evaluations with tangent that goes into an effect; None if no film does without it."""
     assert indicator.without is not None
     plain = build_study_model(indicator.without(model.bearing), float(model.grid.x[0]))
-    # a history serves both: a model without an effect does not read what belongs to it; a rigid bore has no coordinates
-    rigid = not plain.flexible
-    pairs = [(s, replace(s, motion=s.motion[:MOTION_SIZE]) if rigid else s) for s in states]
+    # a history serves both: a model without an effect does not read what belongs to it
+    pairs = [(s, replace(s, motion=_known_to(plain, s.motion))) for s in states]
     both = [(s, t) for s, t in pairs if s.evaluate(model).status is t.evaluate(plain).status is Status.CONVERGED]
     if not both:
         return None
@@ -219,6 +221,14 @@ def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[Film
         with_it = min(with_it, sum(_seconds(model, state) for state, _ in both))
         without_it = min(without_it, sum(_seconds(plain, state) for _, state in both))
     return max(0.0, 1.0 - without_it / with_it)
+
+
+def _known_to(model: BearingModel, motion: np.ndarray) -> np.ndarray:
+    """A motion without the coordinates and rates of bore or journal that ``model`` does not have."""
+    q, q_t = np.split(motion[MOTION_SIZE:], 2)
+    size = model.bore.size if isinstance(model, ElasticBearingModel) else 0
+    kept = slice(size) if model.bearing.bush is not None else slice(q.size - size, None)
+    return np.concatenate((motion[:MOTION_SIZE], q[kept], q_t[kept]))
 
 
 def _seconds(model: BearingModel, state: FilmState) -> float:

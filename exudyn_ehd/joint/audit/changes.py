@@ -114,9 +114,10 @@ class Comparison:
             motion = its.motion[:MOTION_SIZE]
             return _same_motion(other.evaluate_steady(motion, its.history, its.step, its.spin), force, q)
         # the temperature is held where both have the same: what else changes it is of second order
-        same = other.bearing.thermal is not None and other.bearing.thermal == self.model.bearing.thermal
+        own = self.model.bearing
+        same = other.bearing.thermal is not None and other.bearing.thermal == own.thermal
         held = mine.history if same else None
-        if other.flexible and other.bearing.bush is self.model.bearing.bush:
+        if other.flexible and other.bearing.bush is own.bush and other.bearing.journal is own.journal:
             other.evaluate(mine.motion, held)  # the search for its bore's shape starts from this one's
         search = LoadSearch(other, -force, "audit", EFFORT) if held is None else _HeldSearch(other, -force, held)
         load = _load_at(search, mine.motion[:MOTION_SIZE])

@@ -30,6 +30,7 @@ class Limit(NamedTuple):
 LIMITS = {
     "misalignment": Limit(0.1, "of the mid-plane gap: that much of the minimum film thickness, 1 % of the peak"),
     "elasticity": Limit(0.1, "of the minimum film thickness: 6 % of the peak pressure at the same position"),
+    "journal elasticity": Limit(0.1, "of the minimum film thickness, as for elasticity"),
     "profile": Limit(0.1, "of the minimum film thickness, as for elasticity"),
     "piezoviscosity": Limit(0.1, "alpha p_max: 3 % of the load, 5 % of the peak pressure"),
     "heating": Limit(0.1, "change of the viscosity"),
@@ -59,6 +60,7 @@ LIMITS = {
 # Values beyond which an effect is plainly nothing, so that no other film is solved for it.
 PLAINLY_NOTHING = {
     "elasticity": 0.01,
+    "journal elasticity": 0.01,
     "profile": 0.01,
     "piezoviscosity": 0.01,
     "heating": 0.01,
@@ -72,7 +74,7 @@ PLAINLY_NOTHING = {
 }
 # From here on effects plainly matter, heating if it is on; the search for the film without them is long. Oil that has
 # warmed by so much is half as viscous.
-PLAINLY_MUCH = {"elasticity": 5.0}
+PLAINLY_MUCH = {"elasticity": 5.0, "journal elasticity": 5.0}
 PLAINLY_MUCH_ON = PLAINLY_MUCH | {"heating": 0.7}
 
 

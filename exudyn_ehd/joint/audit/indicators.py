@@ -17,6 +17,7 @@ from exudyn_ehd.joint.audit.switches import (
     mass_conserving,
     newtonian,
     rigid,
+    rigid_journal,
     smooth,
     swift_stieber,
     two_dimensional,
@@ -105,6 +106,7 @@ def mass_conservation(case: Case) -> Finding | None:
 INDICATORS = (
     Indicator(misalignment),
     Indicator(surfaces.elasticity, rigid),
+    Indicator(surfaces.journal_elasticity, rigid_journal),
     Indicator(surfaces.shape, partial(replace, profile=None)),
     Indicator(oil.piezoviscosity, isoviscous),
     Indicator(oil.heating, partial(replace, thermal=None)),

@@ -7,40 +7,39 @@ from functools import partial
 
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.findings import LIMITS, PLAINLY_NOTHING, Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.samples import Sample
 from exudyn_ehd.joint.audit.switches import (
     STEEL,
+    coarse_pin,
     coarse_ring,
     rigid,
+    rigid_journal,
     rough,
     roughness_height,
     smooth,
+    steel_pin,
     steel_ring,
     touching,
     untouching,
     unworn,
 )
 
-# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one.
-RING_COMPLIANCE = 0.7
+# Radial deflection of a steel ring under the peak pressure, over R p / E; half of it under a uniform one. Of a free
+# steel pin likewise.
+RING_COMPLIANCE, PIN_COMPLIANCE = 0.7, 0.6
 
 
 def elasticity(case: Case) -> Finding:
     """Deflection of the bore: as it is, of a liner that is only asked about, or of a steel ring."""
     b, liner = case.bearing, case.liner
-
-    def gap(s: Sample) -> float:
-        # surfaces that touch count as a thousandth of the clearance apart
-        return max(s.minimum_gap, 1e-3 * b.radial_clearance)
-
     if b.bush is not None:
-        value = max(s.deflection / gap(s) for s in case.samples)
         return judged(
             case,
             "elasticity",
-            "deflection / minimum film thickness",
-            value,
+            f"{_deflecting(b)} / minimum film thickness",
+            max(s.deflection / _gap(b, s) for s in case.samples),
             True,
             rigid,
             needless="the bush is stiff enough to be rigid: bush=None.",
@@ -51,13 +50,51 @@ def elasticity(case: Case) -> Finding:
         case,
         "elasticity",
         f"deflection of {'a steel ring' if liner is None else 'the liner'} / minimum film thickness",
-        max(compliance * s.peak_pressure / gap(s) for s in case.samples),
+        max(compliance * s.peak_pressure / _gap(b, s) for s in case.samples),
         False,
         steel_ring if liner is None else partial(replace, bush=liner),
         probe=coarse_ring if liner is None else None,
         mattering="even steel gives way: give the bearing bush=ModalBush(...) of its housing."
         if liner is None
         else "give the bearing bush=ElasticLiner(...), or a bush with a mesh.",
+    )
+
+
+def _gap(bearing: JournalBearing, s: Sample) -> float:
+    """Minimum film thickness; surfaces that touch count as a thousandth of the clearance apart."""
+    return max(s.minimum_gap, 1e-3 * bearing.radial_clearance)
+
+
+def _deflecting(bearing: JournalBearing) -> str:
+    both = bearing.bush is not None and bearing.journal is not None
+    return "deflection of bush and journal" if both else "deflection"
+
+
+def journal_elasticity(case: Case) -> Finding | None:
+    """Deflection of the journal: as it is, or of a steel pin that nothing holds; None where it could not have one."""
+    b = case.bearing
+    if b.journal is not None:
+        return judged(
+            case,
+            "journal elasticity",
+            f"{_deflecting(b)} / minimum film thickness",
+            max(s.deflection / _gap(b, s) for s in case.samples),
+            True,
+            rigid_journal,
+            needless="the journal is stiff enough to be rigid: journal=None.",
+        )
+    if b.bush is not None and getattr(b.bush, "dynamics", True):
+        return None
+    compliance = PIN_COMPLIANCE * b.journal_radius / STEEL["youngs_modulus"]
+    return judged(
+        case,
+        "journal elasticity",
+        "deflection of a solid steel pin / minimum film thickness",
+        max(compliance * s.peak_pressure / _gap(b, s) for s in case.samples),
+        False,
+        steel_pin,
+        probe=coarse_pin,
+        mattering="even solid steel gives way: give the bearing journal=ElasticJournal(...), held as it is.",
     )
 
 

@@ -72,9 +72,11 @@ def evaluate_at(
 def _without_a_shape(evaluation: ElasticEvaluation) -> str:
     """Why no shape of a flexible bore has a film, and what to do."""
     bearing, last = evaluation.model.bearing, evaluation.closing
+    kind = type(bearing.yielding).__name__
     if evaluation.model.elasticity.failure:
-        return f"{type(bearing.bush).__name__}: {evaluation.model.elasticity.failure}"
-    missing = f"no shape of the {type(bearing.bush).__name__}'s bore was found in balance with a film"
+        return f"{kind}: {evaluation.model.elasticity.failure}"
+    surface = "surface" if bearing.bush is None else "bore"
+    missing = f"no shape of the {kind}'s {surface} was found in balance with a film"
     if last is None or last.gap > CLOSED * bearing.radial_clearance or evaluation.model.effects.contacts:
         return (
             f"{missing}, neither by Newton's method nor on the way of a viscous bore from its undeformed shape; "

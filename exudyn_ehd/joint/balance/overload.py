@@ -36,7 +36,7 @@ def warn_of_overload(bearing: JournalBearing, peak: float, force: float, where: 
 
 def refuse_pressed_through(bearing: JournalBearing, gap: float, where: str) -> None:
     """Refuse in the name of ``where`` a journal so deep in a rigid bore, ``gap`` in m, that no contact explains it."""
-    if getattr(bearing, "bush", None) is None and math.isfinite(gap) and gap < -DEEPEST * bearing.radial_clearance:
+    if getattr(bearing, "yielding", None) is None and math.isfinite(gap) and gap < -DEEPEST * bearing.radial_clearance:
         raise FilmError(
             f"{where}: {PRESSED_THROUGH}, minimum film thickness {gap:.3g} m; check load, eccentricity and units, or "
             "give the contact more stiffness (RegularisedWall.pressure)."

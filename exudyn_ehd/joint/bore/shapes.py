@@ -32,8 +32,9 @@ from exudyn_ehd.joint.bore.columns import (
     project_columns,
     put_sparse,
 )
-from exudyn_ehd.joint.bore.transfer import end_means, vertex_means
+from exudyn_ehd.joint.bore.transfer import end_means, separate_means, vertex_means
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.modes import JournalModes
 from exudyn_ehd.solid.mesh import Surface, directed
 from exudyn_ehd.solid.modes.static import BoreModes
 
@@ -85,6 +86,9 @@ class Bore(Protocol):
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""
 
+    def of_journal(self, q: np.ndarray) -> np.ndarray | float:
+        """What an elastic journal's part of q opens the gap by (n, m)."""
+
     def end_shapes(self) -> np.ndarray:
         """What S is for linear pressures that vanish at one end, (2, k): the first at L/2, the second at -L/2.
 
@@ -104,37 +108,51 @@ def _centres(grid: FilmGrid) -> np.ndarray:
 
 
 class ModalBore:
-    """Bore that moves in modes.
+    """Bore that moves in modes, journal that does, or both: what either opens the gap by adds up.
 
-    Modes of a bush that is symmetric about its mid-plane are even or odd in z; their products then take half the rows
-    (see `exudyn_ehd.film.sensitivity.mirror_symmetry`).
+    ``S = [S_bore, S_journal]``, ``q`` likewise. Modes of a bush that is symmetric about its mid-plane are even or odd
+    in z; their products then take half the rows (see `exudyn_ehd.film.sensitivity.mirror_symmetry`).
 
     Parameters
     ----------
-    modes : BoreModes or ReducedBore
+    modes : BoreModes, ReducedBore or None
     grid : FilmGrid
+    journal : JournalModes or None
+        Its modes follow those of the bore.
 
     Attributes
     ----------
     stiffness : (k,) array
         Modal stiffness, N/m.
-    modes : BoreModes or ReducedBore
+    modes : BoreModes, ReducedBore or None
+    journal : JournalModes or None
+    own : int
+        Number of the bore's modes.
     order : (k,) int array
         Modes in the sequence of `fill_rows`: the even ones first.
     mirrored : int
         Rows of every column in theta that mirror others; 0 if some mode is neither even nor odd.
     """
 
-    def __init__(self, modes: BoreModes | ReducedBore, grid: FilmGrid) -> None:
-        self.modes, self.grid = modes, grid
+    def __init__(
+        self, modes: BoreModes | ReducedBore | None, grid: FilmGrid, journal: JournalModes | None = None
+    ) -> None:
+        self.modes, self.grid, self.journal = modes, grid, journal
         self.grid_shape = grid.shape
-        self.stiffness = modes.stiffness
-        places = _on_lines(grid, grid.z)
-        whole = modes.radial_of(vertex_means(modes.faces, grid), *places).reshape(*grid.shape, modes.count)
+        self.stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
+        self.own = 0 if modes is None else modes.count
+        shapes = []
+        if modes is not None:
+            places = _on_lines(grid, grid.z)
+            shapes.append(modes.radial_of(vertex_means(modes.faces, grid), *places).reshape(*grid.shape, modes.count))
+        if journal is not None:
+            theta, around, z, along, _ = separate_means(grid, journal.edges)
+            shapes.append((around @ journal.around(theta))[:, None] * (along @ journal.along(z)))
+        whole = np.concatenate(shapes, axis=2) if len(shapes) > 1 else shapes[0]
         is_even = _snap_parity(whole)
         n, m = grid.shape
         self.mirrored = 0 if is_even is None else m // 2
-        is_even = np.ones(modes.count, dtype=bool) if is_even is None else is_even
+        is_even = np.ones(self.size, dtype=bool) if is_even is None else is_even
         self.order = np.concatenate((np.flatnonzero(is_even), np.flatnonzero(~is_even)))
         even, odd = whole[:, : m - self.mirrored, is_even], whole[:, : self.mirrored, ~is_even]
         self._even = np.ascontiguousarray(even).reshape(n * (m - self.mirrored), np.count_nonzero(is_even))
@@ -209,9 +227,25 @@ class ModalBore:
 
     def end_shapes(self) -> np.ndarray:
         """S for linear pressures (2, k)."""
-        places = _on_lines(self.grid, _centres(self.grid))
-        shapes = self.modes.radial_of(end_means(self.modes.faces, self.grid), *places)
-        return shapes.reshape(-1, 2, self.size).mean(axis=0)
+        parts = []
+        if self.modes is not None:
+            places = _on_lines(self.grid, _centres(self.grid))
+            shapes = self.modes.radial_of(end_means(self.modes.faces, self.grid), *places)
+            parts.append(shapes.reshape(-1, 2, self.own).mean(axis=0))
+        if self.journal is not None:
+            _, _, z, _, courses = separate_means(self.grid, self.journal.edges)
+            parts.append((courses @ self.journal.along(z)) * (self.journal.waves == 0.0))
+        return np.concatenate(parts, axis=1)
+
+    def of_journal(self, q: np.ndarray) -> np.ndarray:
+        """What the journal's part of q opens the gap by (n, m)."""
+        return self.displacement(np.where(np.arange(self.size) < self.own, 0.0, q))
+
+    def radial(self, theta: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """What unit coordinates open the gap by on the grid theta x z, m, (len(theta), len(z), k)."""
+        return np.concatenate(
+            [part.radial(theta, z) for part in (self.modes, self.journal) if part is not None], axis=2
+        )
 
 
 def _snap_parity(shapes: np.ndarray) -> np.ndarray | None:
@@ -308,6 +342,10 @@ class NodalBore:
         if not len(places):
             stencil = 0, stencil[1][:0], stencil[2][:0]
         project_columns(self.columns, stencil, fields, direct, out)
+
+    def of_journal(self, q: np.ndarray) -> float:
+        """Nothing: it is rigid."""
+        return 0.0
 
     def product(self, field: np.ndarray) -> np.ndarray:
         """S^T diag(f) S (k, k)."""

@@ -86,9 +86,26 @@ def end_means(faces: Faces, grid: FilmGrid) -> csr_matrix:
     """
     z, _, weight = _along(grid, faces.cuts[1] / grid.reference_length)
     theta, around = _around(grid, faces.cuts[0])
+    courses = csr_matrix(_end_courses(z, weight))
+    return _pruned(kron(around, courses, format="csr") @ _values(faces, grid, theta, z))
+
+
+def separate_means(
+    grid: FilmGrid, edges: np.ndarray
+) -> tuple[np.ndarray, csr_matrix, np.ndarray, np.ndarray, np.ndarray]:
+    """The means of shapes that are a wave around times a profile along, smooth but for edges (e,) of the profile, m.
+
+    Returns angles (p,) and the means (n, p) around; places (q,), m, and the means (m, q) along; those (2, q) of
+    `end_means`.
+    """
+    z, along, weight = _along(grid, edges / grid.reference_length)
+    theta, around = _around(grid, np.zeros(0))
+    return theta, around, grid.reference_length * z, along, _end_courses(z, weight)
+
+
+def _end_courses(z: np.ndarray, weight: np.ndarray) -> np.ndarray:
     half = 0.5 * float(weight.sum())
-    courses = 0.5 * np.stack([1.0 - z / half, 1.0 + z / half]) * weight / half
-    return _pruned(kron(around, csr_matrix(courses), format="csr") @ _values(faces, grid, theta, z))
+    return np.asarray(0.5 * np.stack([1.0 - z / half, 1.0 + z / half]) * weight / half)
 
 
 def _values(

@@ -37,7 +37,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
 def build_study_model(bearing: JournalBearing, start_angle: float) -> BearingModel:
     """Model of a bearing for one prescribed position; ``start_angle`` is where a film with `MaximumGap` starts, rad."""
     effects = collect_effects(bearing, start_angle)
-    if bearing.bush is None or effects.liner is not None:
+    if (bearing.bush is None and bearing.journal is None) or effects.liner is not None:
         model = BearingModel(bearing, start_angle=start_angle, effects=effects)
     else:
         # imported here: a rigid bearing needs no solid

@@ -1,4 +1,4 @@
-"""From a bush's description to a bearing model with a flexible bore."""
+"""From the description of a bush, of an elastic journal or of both to a bearing model with flexible surfaces."""
 
 from __future__ import annotations
 
@@ -15,12 +15,13 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+from exudyn_ehd.solid.journal.modes import journal_modes
 from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.status import InputError
 
 
 def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
-    """Model of a bearing whose ``bush`` is not None."""
+    """Model of a bearing with a ``bush`` or a ``journal``."""
     bush = bearing.bush
     if isinstance(bush, FEBore):
         raise InputError(
@@ -28,15 +29,18 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
             "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
             "itself, take a ModalBush(...)."
         )
-    bore, elasticity = _bore_and_elasticity(bush)
+    bore, elasticity = _bore_and_elasticity(bearing)
     return ElasticBearingModel(bearing, bore, elasticity=elasticity, start_angle=start_angle, effects=effects)
 
 
-def _bore_and_elasticity(bush: object) -> tuple[Callable[[FilmGrid], Bore], Elasticity]:
+def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], Bore], Elasticity]:
     """A function that makes the bore on a film's grid, and what resists its coordinates."""
-    if isinstance(bush, ModalBush):
-        modes = bore_modes(bush)
-        return lambda grid: ModalBore(modes, grid), Elasticity(lambda: np.diag(modes.stiffness))
+    bush, pin = bearing.bush, bearing.journal
+    if isinstance(bush, ModalBush | None):
+        modes = None if bush is None else bore_modes(bush)
+        journal = None if pin is None else journal_modes(pin, bearing.journal_radius, bearing.length)
+        stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
+        return lambda grid: ModalBore(modes, grid, journal), Elasticity(lambda: np.diag(stiffness))
     if isinstance(bush, ReducedBore):
         return lambda grid: ModalBore(bush, grid), Elasticity(lambda: bush.stiffness_matrix)
     assert isinstance(bush, ANCFBush)

@@ -1,4 +1,4 @@
-"""A bearing whose bore is flexible: the rigid surfaces' model with ``delta = S q`` in the gap.
+"""A bearing whose bore, journal or both are flexible: the rigid surfaces' model with ``delta = S q`` in the gap.
 
 The motion (10,) of the rigid surfaces is followed by the bore's coordinates and rates,
 
@@ -6,6 +6,11 @@ The motion (10,) of the rigid surfaces is followed by the bore's coordinates and
 
 the wrench on the journal is accompanied by the generalised loads Q = S^T (p A) on q. The bush resists q outside of
 this model; only `evaluate_steady` knows its `Elasticity` and finds the q with K q = Q, or the balance of a solid.
+
+An elastic journal's coordinates follow the bore's: what its surface recedes by opens the gap alike, S = [S_bore,
+S_journal]. A body of revolution answers a pressure that stands by a displacement that stands, whatever its spin: its
+modes do not turn, and the gap changes by ``S q_t`` alone. Nor has the pressure a torque on its deflection,
+``int p d(C p)/d theta dA = 0`` for a compliance C that turns with p, so that friction is the shear's alone.
 """
 
 from __future__ import annotations
@@ -249,10 +254,10 @@ class ElasticBearingModel(BearingModel):
             load = self.bore.load(self._pressure_field(oil, pressing))
             if self._end_load is not None:
                 load += self._end_load
-        motion = journal.motion
-        return BoreState(
-            motion[MOTION_SIZE : MOTION_SIZE + k], motion[MOTION_SIZE + k :], self._term.displacement, load
-        )
+        q, q_t = journal.motion[MOTION_SIZE : MOTION_SIZE + k], journal.motion[MOTION_SIZE + k :]
+        whole, own = self._term.displacement, self.bearing.journal is not None
+        part = self.bore.of_journal(q / self.bearing.radial_clearance) if own else 0.0
+        return BoreState(q, q_t, whole, load, part)
 
     def _pressure_field(self, oil: OilFields, pressing: ContactFields | None) -> np.ndarray:
         """Force of film and contact on the bore at every vertex (n, m), N, outward."""

@@ -233,7 +233,7 @@ def _warn_of_strain(film: SolvedFilm, where: str) -> None:
         else getattr(mesh, "thickness", None)
         or np.hypot(*mesh.outer.positions[:, :2].T).min() - film.grid.reference_length
     )
-    share = 0.0 if film.bore is None else c * float(np.abs(film.bore.displacement).max()) / wall
+    share = 0.0 if film.bore is None else c * float(np.abs(film.bore.displacement - film.bore.of_journal).max()) / wall
     if share > LARGEST_STRAIN:
         warn_user(
             f"{where}: the bore yields by {share:.1%} of the bush's wall, and a ModalBush is linear: its displacement "
