@@ -59,6 +59,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit, Finding
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -152,6 +153,7 @@ _LAZY = {  # imported only when asked for: film studies need neither Exudyn nor 
     "EquilibriumPoint": "studies.parameters",
     "StudyTable": "studies.parameters",
     "parameter_study": "studies.parameters",
+    "ThrustResult": "joint.static.thrust",
     "varied": "studies.parameters",
 }
 
@@ -183,6 +185,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
     from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
+    from exudyn_ehd.joint.static.thrust import ThrustResult
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
@@ -312,6 +315,7 @@ __all__ = [
     "Status",
     "SteadyResult",
     "StepControl",
+    "StepLand",
     "StepRecommendation",
     "StrainWarning",
     "StribeckResult",
@@ -320,7 +324,10 @@ __all__ = [
     "SurfaceLoad",
     "SwiftStieber",
     "SystemState",
+    "TaperLand",
     "ThinFilmWarning",
+    "ThrustFaces",
+    "ThrustResult",
     "UntilPeriodic",
     "VogelTemperature",
     "WaltherTemperature",

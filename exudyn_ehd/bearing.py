@@ -33,6 +33,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.status import (
     InputError,
     PlausibilityWarning,
@@ -131,6 +132,8 @@ class JournalBearing:
         Wear of the bore by the asperity contact.
     turbulence : NgPan, Hirs or None
         Turbulent film by the local Reynolds number; None: laminar.
+    thrust : ThrustFaces or None
+        Films on the two end faces, which carry axial load; None: the joint has no axial force but the film's drag.
 
     Raises
     ------
@@ -166,6 +169,7 @@ class JournalBearing:
     profile: Profile | tuple[Profile, ...] | None = None
     wear: ArchardWear | None = None
     turbulence: NgPan | Hirs | None = None
+    thrust: ThrustFaces | None = None
 
     def __post_init__(self) -> None:
         self._check_sizes()
@@ -186,6 +190,7 @@ class JournalBearing:
             self._check_plain()
         check_line(self.film, self.cavitation, self.bush, self.lubricant)
         _check_turbulence(self)
+        _check_thrust(self)
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -340,7 +345,38 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "roughness": (PatirCheng, type(None)),
     "wear": (ArchardWear, type(None)),
     "turbulence": (NgPan, Hirs, type(None)),
+    "thrust": (ThrustFaces, type(None)),
 }
+
+
+def _check_thrust(bearing: JournalBearing) -> None:
+    """Refuse faces that do not fit the bearing, and what their films would leave out."""
+    faces, closure = bearing.thrust, bearing.cavitation
+    if faces is None:
+        return
+    oil, laws = bearing.lubricant, ("pressure_law", "density_law", "shear_law")
+    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
+    own = ("thermal", "turbulence", "roughness", "asperity")
+    others += [f"JournalBearing.{name}" for name in own if getattr(bearing, name) is not None]
+    others += ["JournalBearing.cavitation=ElrodAdams(...)"] if closure.conserves_mass else []
+    if others:
+        raise InputError(
+            f"JournalBearing.thrust=ThrustFaces(...) does not go with {', '.join(others)}: its films have the "
+            "lubricant's constant viscosity, smooth surfaces and cavities without a memory; leave one out, or take "
+            "two joints, one of them with the faces."
+        )
+    if faces.inner_radius < bearing.journal_radius:
+        raise InputError(
+            f"ThrustFaces.inner_radius must be at least the journal's radius {bearing.journal_radius:g} m, got "
+            f"{faces.inner_radius:g} m; the faces lie around the bore."
+        )
+    inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
+    lowest = min(*inner, *faces.outer_pressures)
+    if closure.cavity_pressure > lowest:
+        raise InputError(
+            f"{type(closure).__name__}.cavity_pressure must not exceed the pressures at the edges of the thrust faces, "
+            f"{lowest:g} Pa, got {closure.cavity_pressure:g} Pa; all are gauge pressures, lower the cavity pressure."
+        )
 
 
 def _check_temperatures(bearing: JournalBearing) -> None:
