@@ -39,6 +39,13 @@ _SCALARS = (
     "peak_angle",
     "bore_displacement",
     "stored_power",
+    "axial_position",
+    "thrust_force",
+    "thrust_minimum_gap",
+    "thrust_peak_pressure",
+    "thrust_torque",
+    "thrust_power_loss",
+    "thrust_contact_load",
 )
 TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
 FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
@@ -47,7 +54,7 @@ _BLOCKS = BLOCKS.ravel()
 # Places in a row.
 MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
 FORCE = slice(_WRENCH, _WRENCH + 3)
-FORMAT = "exudyn_ehd JointHistory 4"
+FORMAT = "exudyn_ehd JointHistory 5"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
     "motion": ("x", "y", "bx", "by", "x_t", "y_t", "bx_t", "by_t", "omega", "w"),
@@ -90,6 +97,13 @@ class Quantity(enum.Enum):
     PEAK_ANGLE = "peak_angle"
     BORE_DISPLACEMENT = "bore_displacement"
     STORED_POWER = "stored_power"
+    AXIAL_POSITION = "axial_position"
+    THRUST_FORCE = "thrust_force"
+    THRUST_MINIMUM_GAP = "thrust_minimum_gap"
+    THRUST_PEAK_PRESSURE = "thrust_peak_pressure"
+    THRUST_TORQUE = "thrust_torque"
+    THRUST_POWER_LOSS = "thrust_power_loss"
+    THRUST_CONTACT_LOAD = "thrust_contact_load"
 
 
 COLUMNS: dict[str, int | slice] = {
@@ -135,7 +149,7 @@ class JointHistory(History, HistoryPictures):
     largest_eccentricity_ratio : ndarray (n,)
         The largest along the length, at one of the ends.
     force, moment : ndarray (n, 3)
-        [N], [N m].
+        [N], [N m], of the journal's film and contact; the films on the end faces are apart.
     minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
         Minimum film thickness [m], [Pa], [N m], [W], [m3/s], [N].
     contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
@@ -146,6 +160,11 @@ class JointHistory(History, HistoryPictures):
         Largest displacement of a liner or of a flexible bore [m].
     stored_power : ndarray (n,)
         Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
+    axial_position, thrust_force, thrust_torque : ndarray (n,)
+        Of a joint with ``thrust``, else nan as all ``thrust_...``: place of the journal between its faces [m], axial
+        force of their films [N] and torque about the bearing's axis [N m] on the journal.
+    thrust_minimum_gap, thrust_peak_pressure, thrust_power_loss, thrust_contact_load : ndarray (n,)
+        Smallest film thickness [m], highest pressure [Pa], loss [W] and load carried by contact [N] of all faces.
     step_error : ndarray (n,)
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -189,6 +208,13 @@ class JointHistory(History, HistoryPictures):
     peak_angle: np.ndarray
     bore_displacement: np.ndarray
     stored_power: np.ndarray
+    axial_position: np.ndarray
+    thrust_force: np.ndarray
+    thrust_minimum_gap: np.ndarray
+    thrust_peak_pressure: np.ndarray
+    thrust_torque: np.ndarray
+    thrust_power_loss: np.ndarray
+    thrust_contact_load: np.ndarray
     step_error: np.ndarray
     step_count: np.ndarray
     journal_radius: float
