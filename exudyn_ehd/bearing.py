@@ -33,7 +33,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.film.thrust.options import ThrustFaces
+from exudyn_ehd.film.thrust.options import ThrustFaces, check_faces
 from exudyn_ehd.status import (
     InputError,
     PlausibilityWarning,
@@ -351,32 +351,14 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
 
 def _check_thrust(bearing: JournalBearing) -> None:
     """Refuse faces that do not fit the bearing, and what their films would leave out."""
-    faces, closure = bearing.thrust, bearing.cavitation
+    faces, oil, closure = bearing.thrust, bearing.lubricant, bearing.cavitation
     if faces is None:
         return
-    oil, laws = bearing.lubricant, ("pressure_law", "density_law", "shear_law")
+    laws, own = ("pressure_law", "density_law", "shear_law"), ("thermal", "turbulence", "roughness", "asperity")
     others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
-    own = ("thermal", "turbulence", "roughness", "asperity")
     others += [f"JournalBearing.{name}" for name in own if getattr(bearing, name) is not None]
     others += ["JournalBearing.cavitation=ElrodAdams(...)"] if closure.conserves_mass else []
-    if others:
-        raise InputError(
-            f"JournalBearing.thrust=ThrustFaces(...) does not go with {', '.join(others)}: its films have the "
-            "lubricant's constant viscosity, smooth surfaces and cavities without a memory; leave one out, or take "
-            "two joints, one of them with the faces."
-        )
-    if faces.inner_radius < bearing.journal_radius:
-        raise InputError(
-            f"ThrustFaces.inner_radius must be at least the journal's radius {bearing.journal_radius:g} m, got "
-            f"{faces.inner_radius:g} m; the faces lie around the bore."
-        )
-    inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
-    lowest = min(*inner, *faces.outer_pressures)
-    if closure.cavity_pressure > lowest:
-        raise InputError(
-            f"{type(closure).__name__}.cavity_pressure must not exceed the pressures at the edges of the thrust faces, "
-            f"{lowest:g} Pa, got {closure.cavity_pressure:g} Pa; all are gauge pressures, lower the cavity pressure."
-        )
+    check_faces(faces, bearing.journal_radius, bearing.end_pressures, closure.cavity_pressure, others)
 
 
 def _check_temperatures(bearing: JournalBearing) -> None:

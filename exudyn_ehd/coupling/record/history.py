@@ -23,37 +23,6 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_SCALARS = (
-    "minimum_gap",
-    "peak_pressure",
-    "friction_torque",
-    "power_loss",
-    "leakage",
-    "contact_load",
-    "contact_torque",
-    "supply_flow",
-    "film_temperature",
-    "peak_temperature",
-    "minimum_gap_angle",
-    "minimum_gap_z",
-    "peak_angle",
-    "bore_displacement",
-    "stored_power",
-    "axial_position",
-    "thrust_force",
-    "thrust_minimum_gap",
-    "thrust_peak_pressure",
-    "thrust_torque",
-    "thrust_power_loss",
-    "thrust_contact_load",
-)
-TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
-FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-WIDTH = FIRST_BLOCK + BLOCKS.size
-_BLOCKS = BLOCKS.ravel()
-# Places in a row.
-MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
-FORCE = slice(_WRENCH, _WRENCH + 3)
 FORMAT = "exudyn_ehd JointHistory 5"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
@@ -106,6 +75,15 @@ class Quantity(enum.Enum):
     THRUST_CONTACT_LOAD = "thrust_contact_load"
 
 
+# Of the film's quantities those behind motion, eccentricities and loads.
+_SCALARS = tuple(member.value for member in Quantity)[6:]
+TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
+FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
+WIDTH = FIRST_BLOCK + BLOCKS.size
+_BLOCKS = BLOCKS.ravel()
+# Places in a row.
+MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
+FORCE = slice(_WRENCH, _WRENCH + 3)
 COLUMNS: dict[str, int | slice] = {
     "time": TIME,
     "motion": slice(_MOTION, _MOTION + 10),

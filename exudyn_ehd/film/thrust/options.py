@@ -178,3 +178,35 @@ class ThrustFaces:
                 f"ThrustFaces.n_theta must be at least 8 columns a pad, {8 * self.profile.pads} for "
                 f"{self.profile.pads} pads, got {self.n_theta}; give a multiple of the number of pads."
             )
+
+
+def check_faces(
+    faces: ThrustFaces, radius: float, ends: tuple[float, float], cavity_pressure: float, others: list[str]
+) -> None:
+    """Refuse faces that do not fit the bearing around them.
+
+    Parameters
+    ----------
+    faces : ThrustFaces
+    radius, ends, cavity_pressure : float, (float, float), float
+        The journal's radius, m, and the bearing's end and cavity pressures, Pa.
+    others : list of str
+        Options of the bearing that films on faces do not have.
+    """
+    if others:
+        raise InputError(
+            f"JournalBearing.thrust=ThrustFaces(...) does not go with {', '.join(others)}: its films have the "
+            "lubricant's constant viscosity, smooth surfaces and cavities without a memory; leave one out, or take "
+            "two joints, one of them with the faces."
+        )
+    if faces.inner_radius < radius:
+        raise InputError(
+            f"ThrustFaces.inner_radius must be at least the journal's radius {radius:g} m, got "
+            f"{faces.inner_radius:g} m; the faces lie around the bore."
+        )
+    lowest = min(*(ends if faces.inner_pressures is None else faces.inner_pressures), *faces.outer_pressures)
+    if cavity_pressure > lowest:
+        raise InputError(
+            f"JournalBearing.cavitation: the cavity_pressure must not exceed the pressures at the edges of the thrust "
+            f"faces, {lowest:g} Pa, got {cavity_pressure:g} Pa; all are gauge pressures, lower the cavity pressure."
+        )

@@ -35,6 +35,8 @@ class RecordedSteps:
         m, Pa, W, m3/s, N, K, m.
     step_error : (n,) array
         Estimated error of the gap that the time steps have made, over the minimum film thickness.
+    thrust_power_loss : (n,) array
+        W, of films on the end faces.
     """
 
     time: np.ndarray
@@ -48,6 +50,7 @@ class RecordedSteps:
     film_temperature: np.ndarray
     bore_displacement: np.ndarray
     step_error: np.ndarray
+    thrust_power_loss: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
         """Steps, sorted, in which something is worst.

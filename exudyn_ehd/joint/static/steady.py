@@ -136,7 +136,7 @@ class SteadyResult(Film, FilmPictures):
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        model = build_study_model(self.bearing, start)
+        model = build_study_model(replace(self.bearing, thrust=None), start)
         near = None if self.temperature is None else History(temperature=self.temperature)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's

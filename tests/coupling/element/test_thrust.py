@@ -155,6 +155,23 @@ def test_impact_settles():
     assert impulse == pytest.approx(300.0 * (history.motion[-1, 9] - 0.25), rel=0.01)
 
 
+def test_audit():
+    """A row says what the faces take; advice about the journal's film is given as without them."""
+    mbs, joint, _ = _rotor(
+        _bearing(0.05, profile=ehd.TaperLand(pads=4, depth=3e-5)), omega=500.0, load=(50.0, 0.0, 500.0)
+    )
+    _run(mbs, 1e-3, 20)
+    audit, history = joint.audit(), joint.history
+    loss = history.thrust_power_loss.mean()
+    assert audit["thrust faces"].value == pytest.approx(loss / (loss + history.power_loss.mean()))
+    assert audit["thrust faces"].on and audit["thrust faces"].matters
+    assert audit["heat of thrust faces"].matters
+    assert "isothermal" in audit["heat of thrust faces"].advice
+    film = ehd.steady(joint.bearing, speed=500.0, eccentricity_ratio=0.5)
+    with pytest.raises(KeyError):
+        film.audit()["thrust faces"]
+
+
 def test_forces_of_the_joint_and_momentum():
     """What Exudyn's sensors call the joint's force is that of journal film and faces; two free bodies keep momentum."""
     bearing = _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5))
