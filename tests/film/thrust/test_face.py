@@ -143,7 +143,7 @@ def extrapolated(*arguments, n, m, **options):
     return fine + (fine - coarse) / 3
 
 
-@pytest.mark.parametrize("closure", ("full", "swift", "swift_in_cells"))
+@pytest.mark.parametrize("closure", ("full", pytest.param("swift", marks=pytest.mark.slow), "swift_in_cells"))
 @pytest.mark.parametrize(("share", "error"), ((0.4, 1.4e-3), (0.8, 6e-3)))
 def test_tilted_face(closure, share, error):
     """Wedge of a tilted collar that turns, sinks and tilts on: the default grid against an independent film."""
@@ -169,6 +169,7 @@ def test_tilted_face(closure, share, error):
     assert found[2:] == pytest.approx(expected, rel=error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("shape", "error"), ((ehd.TaperLand, 8e-3), (ehd.StepLand, 3e-3)))
 def test_pads(shape, error):
     """Pads on the default grid against an independent film, with cavities behind the steps; order two."""
