@@ -190,7 +190,7 @@ class JournalBearing:
             self._check_plain()
         check_line(self.film, self.cavitation, self.bush, self.lubricant)
         _check_turbulence(self)
-        _check_thrust(self)
+        check_faces(vars(self))
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -347,18 +347,6 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "turbulence": (NgPan, Hirs, type(None)),
     "thrust": (ThrustFaces, type(None)),
 }
-
-
-def _check_thrust(bearing: JournalBearing) -> None:
-    """Refuse faces that do not fit the bearing, and what their films would leave out."""
-    faces, oil, closure = bearing.thrust, bearing.lubricant, bearing.cavitation
-    if faces is None:
-        return
-    laws, own = ("pressure_law", "density_law", "shear_law"), ("thermal", "turbulence", "roughness", "asperity")
-    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
-    others += [f"JournalBearing.{name}" for name in own if getattr(bearing, name) is not None]
-    others += ["JournalBearing.cavitation=ElrodAdams(...)"] if closure.conserves_mass else []
-    check_faces(faces, bearing.journal_radius, bearing.end_pressures, closure.cavity_pressure, others)
 
 
 def _check_temperatures(bearing: JournalBearing) -> None:

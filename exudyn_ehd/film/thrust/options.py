@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -180,19 +182,22 @@ class ThrustFaces:
             )
 
 
-def check_faces(
-    faces: ThrustFaces, radius: float, ends: tuple[float, float], cavity_pressure: float, others: list[str]
-) -> None:
-    """Refuse faces that do not fit the bearing around them.
+def check_faces(bearing: Mapping[str, Any]) -> None:
+    """Refuse faces that do not fit the bearing around them, and what their films would leave out.
 
     Parameters
     ----------
-    faces : ThrustFaces
-    radius, ends, cavity_pressure : float, (float, float), float
-        The journal's radius, m, and the bearing's end and cavity pressures, Pa.
-    others : list of str
-        Options of the bearing that films on faces do not have.
+    bearing : mapping
+        Attributes of the `JournalBearing`.
     """
+    faces = bearing["thrust"]
+    if faces is None:
+        return
+    oil, closure, radius = bearing["lubricant"], bearing["cavitation"], bearing["journal_radius"]
+    laws, own = ("pressure_law", "density_law", "shear_law"), ("thermal", "turbulence", "roughness", "asperity")
+    others = [f"Lubricant.{law}" for law in laws if getattr(oil, law) is not None]
+    others += [f"JournalBearing.{name}" for name in own if bearing[name] is not None]
+    others += ["JournalBearing.cavitation=ElrodAdams(...)"] if closure.conserves_mass else []
     if others:
         raise InputError(
             f"JournalBearing.thrust=ThrustFaces(...) does not go with {', '.join(others)}: its films have the "
@@ -204,7 +209,8 @@ def check_faces(
             f"ThrustFaces.inner_radius must be at least the journal's radius {radius:g} m, got "
             f"{faces.inner_radius:g} m; the faces lie around the bore."
         )
-    lowest = min(*(ends if faces.inner_pressures is None else faces.inner_pressures), *faces.outer_pressures)
+    inner = bearing["end_pressures"] if faces.inner_pressures is None else faces.inner_pressures
+    lowest, cavity_pressure = min(*inner, *faces.outer_pressures), closure.cavity_pressure
     if cavity_pressure > lowest:
         raise InputError(
             f"JournalBearing.cavitation: the cavity_pressure must not exceed the pressures at the edges of the thrust "
