@@ -47,8 +47,8 @@ class Annulus:
         Of integrals over the area.
     square : (m,) array
         See the module.
-    slopes, link_slopes : (2, n, m) arrays
-        x and y at the vertices and on the links i -> i+1.
+    moments, link_moments : (3, n, m), (4, n, m) arrays
+        1, x and y at the vertices; 1, x, y and r^2 on the links i -> i+1.
     along, across : (3, n, m) arrays
         Of links in theta and s: ``sum along h (p_i - p_i+1) + across h (p_j - p_j+1) = -int h u . grad p dA`` with
         the velocities u of a turn about the axis and of shifts along x and y.
@@ -66,8 +66,9 @@ class Annulus:
         self.square = r**2
         self.square[1:-1] = 0.25 * np.diff(np.diff(r**2) / np.diff(s)) / width[1:-1]
         cos_x, sin_x, cos_f, sin_f, _ = self.grid.directions
-        self.slopes = np.array([np.outer(cos_x, r), np.outer(sin_x, r)])
-        self.link_slopes = np.array([np.outer(cos_f, r), np.outer(sin_f, r)])
+        flat = np.ones(self.grid.shape)
+        self.moments = np.array([flat, np.outer(cos_x, r), np.outer(sin_x, r)])
+        self.link_moments = np.array([flat, np.outer(cos_f, r), np.outer(sin_f, r), flat * r**2])
         turn = np.broadcast_to(self.square * width, self.grid.shape)
         self.along = np.array([turn, -np.outer(sin_f, r * width), np.outer(cos_f, r * width)])
         around = self.grid.width_x
@@ -91,6 +92,11 @@ class Annulus:
         cell[:, :, :-1] += half
         cell[:, :, 1:] += half
         return cell, self.along * (P - np.roll(P, -1, axis=0))
+
+
+def products(fields: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Sums (k, l) over the grid of all products of fields (k, n, m) with others (l, n, m)."""
+    return np.asarray(fields.reshape(len(fields), -1) @ others.reshape(len(others), -1).T)
 
 
 def _between_rows(H: np.ndarray) -> np.ndarray:

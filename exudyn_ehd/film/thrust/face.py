@@ -32,7 +32,7 @@ from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
-from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products
 from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.status import Status
 
@@ -117,9 +117,8 @@ class FaceFilm:
         # u . grad d / 2 for the shifts along x and y
         self.shifted = 0.5 * np.array([-around * np.sin(grid.x)[:, None], around * np.cos(grid.x)[:, None]])
         # derivatives of the scaled gap to (zeta / c, bx R / c, by R / c)
-        flat = np.ones((1, *shape))
-        self.shape = side * np.concatenate((flat, -a.slopes))
-        self.link_shape = side * np.concatenate((flat, -a.link_slopes))
+        sign = side * np.array([1.0, -1.0, -1.0])[:, None, None]
+        self.shape, self.link_shape = sign * a.moments, sign * a.link_moments[:3]
         self.slope, self.bend, self.face_slope = np.ones(shape), np.zeros(shape), np.ones(shape)
         self.contact, self.contact_slope = np.zeros(shape), np.zeros(shape)
         self.limited = False
@@ -183,24 +182,23 @@ class FaceFilm:
     def _integrate(self, motion: np.ndarray) -> None:
         """Integrals of the last solution: N, X, Y (3,) and E (3,), scaled; shear matrix (3, 3) in SI units."""
         s, k, a = self.solver, self.scales, self.annulus
-        moments = np.concatenate((np.ones((1, *a.grid.shape)), a.slopes))
         pressed = a.weight * (s.pressure + self.contact / k.pressure)
-        self.loads = np.tensordot(moments, pressed, 2)
-        rows = a.link_rows(s.H, s.HF)
-        self.carried = np.tensordot(rows, s.pressure, 2)
+        self.loads = products(a.moments, pressed[None])[:, 0]
+        self.rows = a.link_rows(s.H, s.HF)
+        self.carried = products(self.rows, s.pressure[None])[:, 0]
         share = np.where(s.work.active | a.grid.fixed, 1.0, self.closure.cavity_shear)
         # on the links, whose gaps lie on one side of a step
         self.sheared = a.weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
-        self.shear = self._shear_matrix(self.sheared)
+        self.shear = self._shear_matrices(self.sheared[None])[0]
 
-    def _shear_matrix(self, density: np.ndarray) -> np.ndarray:
-        """``int u_k . u_l density dA`` (3, 3) in N s/m and R for the velocities of `Annulus`."""
-        R, a = self.scales.R, self.annulus
-        whole, (x, y) = density.sum(), np.tensordot(a.link_slopes, density, 2)
-        turn = float((density * a.r**2).sum())
-        out = np.array([[turn, -y, x], [-y, whole, 0.0], [x, 0.0, whole]])
-        length = np.array([R, 1.0, 1.0])
-        return np.asarray(self.scales.shear * out * np.outer(length, length))
+    def _shear_matrices(self, densities: np.ndarray) -> np.ndarray:
+        """``int u_k . u_l density dA`` (k, 3, 3) of densities (k, n, m), SI units, for the velocities of `Annulus`."""
+        R, out = self.scales.R, np.zeros((len(densities), 3, 3))
+        whole, x, y, turn = products(self.annulus.link_moments, densities)
+        out[:, 0, 0], out[:, 1, 1], out[:, 2, 2] = R**2 * turn, whole, whole
+        out[:, 0, 1], out[:, 0, 2] = -R * y, R * x
+        out[:, 1:, 0] = out[:, 0, 1:]
+        return np.asarray(self.scales.shear * out)
 
     def _weights(self) -> np.ndarray:
         """Weights (6, 6) of N, X, Y and E in the wrench without its shear, SI units."""
@@ -239,17 +237,14 @@ class FaceFilm:
         out[rows, 6:] -= self.shear
         scale = np.array([1.0, R, R]) / k.c
         thinner = -self.sheared * self.face_slope / self.solver.HF
-        for q in range(3):
-            out[rows, q] -= scale[q] * (self._shear_matrix(thinner * self.link_shape[q]) @ sliding)
+        out[rows, :3] -= (self._shear_matrices(thinner * self.link_shape) @ sliding).T * scale
         return np.asarray(out)
 
     def _gradients(self) -> np.ndarray:
         """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included."""
         s, a, k, w = self.solver, self.annulus, self.scales, self.solver.work
-        moments = np.concatenate((np.ones((1, *a.grid.shape)), a.slopes))
-        fields = np.concatenate((moments * a.weight, a.link_rows(s.H, s.HF)))
-        unknown = w.order[: w.count]
-        rows = np.ascontiguousarray((fields * w.active).reshape(6, -1)[:, unknown])
+        fields, unknown = np.concatenate((a.moments * a.weight, self.rows)), w.order[: w.count]
+        rows = fields.reshape(6, -1)[:, unknown] * w.active.reshape(-1)[unknown]
         y = s.system
         if self.closure.clips and self.closure.line_in_cells:
             rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
@@ -262,13 +257,12 @@ class FaceFilm:
             sens.cell[:] = sens.cell * self.slope + rate * self.bend
             sens.face[:] *= self.face_slope
             rate *= self.slope
-            sens.cell[:3] += moments * a.weight * self.contact_slope / k.pressure
-        axes = ([1, 2], [1, 2])
-        pose = np.tensordot(sens.cell, self.shape, axes) + np.tensordot(sens.face, self.link_shape, axes)
-        through, whole = np.tensordot(rate, self.shape, axes), rate.sum(axis=(1, 2))
+            sens.cell[:3] += a.moments * a.weight * self.contact_slope / k.pressure
+        pose = products(sens.cell, self.shape) + products(sens.face, self.link_shape)
+        through, whole = products(rate, self.shape), rate.sum(axis=(1, 2))
         # the shift's rate -side u . b / 2 in scaled tilt and shift
         pose[:, 1:] -= 0.5 * self.side * np.outer(whole, self.shift)
-        shift = np.tensordot(rate, self.shifted, axes) - 0.5 * self.side * np.outer(whole, self.pose[1:])
+        shift = products(rate, self.shifted) - 0.5 * self.side * np.outer(whole, self.pose[1:])
         scale = np.array([1.0, k.R, k.R]) / k.c
         return np.concatenate(
             (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1

@@ -245,7 +245,7 @@ def test_work_becomes_heat(closure):
         if closure != "full":
             continue
         a, p, h = film.annulus, film.pressure, film.gap
-        r, x, y = a.scale * a.r, a.scale * a.slopes[0], a.scale * a.slopes[1]
+        r, (_, x, y) = a.scale * a.r, a.scale * a.moments
         shear = MU * ((ux - omega * y) ** 2 + (uy + omega * x) ** 2) / h
         around = np.gradient(np.vstack((p[-1:], p, p[:1])), 2 * math.pi / 128, axis=0)[1:-1]
         outward = np.gradient(p, a.grid.z, axis=1)
