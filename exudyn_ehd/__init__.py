@@ -59,6 +59,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit, Finding
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -108,6 +109,7 @@ _LAZY = {
         "coupling.watch.periodic": "LastCycle UntilPeriodic",
         "coupling.watch.step_control": "StepControl",
         "joint.spherical.steady": "SphericalBearing SphericalResult steady_spherical",
+        "joint.static.thrust": "ThrustResult",
         "solid.bush": "ANCFBush ModalBush Rayleigh",
         "solid.fe_bore": "BoreModesReport FEBore add_bore_modes",
         "solid.journal.description": "ElasticJournal HeldBands HeldEnds",
@@ -151,6 +153,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.watch.periodic import LastCycle, UntilPeriodic
     from exudyn_ehd.coupling.watch.step_control import StepControl
     from exudyn_ehd.joint.spherical.steady import SphericalBearing, SphericalResult, steady_spherical
+    from exudyn_ehd.joint.static.thrust import ThrustResult
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
     from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
@@ -285,6 +288,7 @@ __all__ = [
     "Status",
     "SteadyResult",
     "StepControl",
+    "StepLand",
     "StepRecommendation",
     "StrainWarning",
     "StribeckResult",
@@ -293,7 +297,10 @@ __all__ = [
     "SurfaceLoad",
     "SwiftStieber",
     "SystemState",
+    "TaperLand",
     "ThinFilmWarning",
+    "ThrustFaces",
+    "ThrustResult",
     "UntilPeriodic",
     "VogelTemperature",
     "WaltherTemperature",

@@ -33,6 +33,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import Profile
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
+from exudyn_ehd.film.thrust.options import ThrustFaces, check_faces
 from exudyn_ehd.status import (
     InputError,
     PlausibilityWarning,
@@ -134,6 +135,8 @@ class JournalBearing:
         Wear of the bore by the asperity contact.
     turbulence : NgPan, Hirs or None
         Turbulent film by the local Reynolds number; None: laminar.
+    thrust : ThrustFaces or None
+        Films on the two end faces, which carry axial load; None: the joint has no axial force but the film's drag.
 
     Raises
     ------
@@ -170,6 +173,7 @@ class JournalBearing:
     profile: Profile | tuple[Profile, ...] | None = None
     wear: ArchardWear | None = None
     turbulence: NgPan | Hirs | None = None
+    thrust: ThrustFaces | None = None
 
     def __post_init__(self) -> None:
         self._check_sizes()
@@ -190,6 +194,7 @@ class JournalBearing:
             self._check_plain()
         check_line(self.film, self.cavitation, self.yielding, self.lubricant)
         _check_turbulence(self)
+        check_faces(vars(self))
         self._check_supply()
         self._check_pressures()
         self._check_clearance()
@@ -349,6 +354,7 @@ _OPTIONS: dict[str, tuple[type, ...]] = {
     "roughness": (PatirCheng, type(None)),
     "wear": (ArchardWear, type(None)),
     "turbulence": (NgPan, Hirs, type(None)),
+    "thrust": (ThrustFaces, type(None)),
 }
 
 

@@ -109,6 +109,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "size": (
         "JournalBearing.journal_radius",
         "SphericalBearing.ball_radius",
+        "ThrustFaces.inner_radius",
+        "ThrustFaces.outer_radius",
         "HollowCylinder.inner_radius",
         "ElasticJournal.inner_radius",
         "HollowCylinder.thickness",
@@ -149,8 +151,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "mesh_from_arrays.origin",
         "OnPlane.point",
     ),
-    "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance"),
-    "gap": ("solve_film.gap", "solve_film.history", "steady_spherical.place"),
+    "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance", "ThrustFaces.clearance"),
+    "gap": ("solve_film.gap", "solve_film.history", "steady_spherical.place", "steady.axial_position"),
     "form": (
         "OutOfRound.amplitude",
         "OnPlane.tolerance",
@@ -158,6 +160,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "EdgeRelief.drop",
         "AxialProfile.depths",
         "ProfileTable.depths",
+        "TaperLand.depth",
+        "StepLand.depth",
     ),
     "roughness": ("GreenwoodTripp.composite_roughness", "PatirCheng.composite_roughness"),
     "wall": ("RegularisedWall.onset",),
@@ -207,6 +211,8 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     ),
     "pressure": (
         "JournalBearing.end_pressures",
+        "ThrustFaces.inner_pressures",
+        "ThrustFaces.outer_pressures",
         "AxialGroove.pressure",
         "CircumferentialGroove.pressure",
         "Hole.pressure",

@@ -346,6 +346,18 @@ def test_cold_start(example, tmp_path):
     assert math.isnan(rows["50 um: seizes after [s]"])
 
 
+def test_thrust_reversal(example, tmp_path):
+    rows = example("thrust_reversal").main(quick=True, output=tmp_path)
+    assert (tmp_path / "thrust_reversal.png").stat().st_size > 10_000
+    steady = rows["taper lands: steady position [um]"]
+    # the governed spin is 0.2 % below the speed of the steady film, the steps are 1 ms
+    assert rows["taper lands: position before the reversal [um]"] == pytest.approx(steady, rel=0.01)
+    assert rows["taper lands: position at the end [um]"] == pytest.approx(-steady, rel=0.01)
+    assert rows["taper lands: largest contact load [N]"] == 0.0
+    assert rows["plane faces: position at the end [um]"] < 1.2 * rows["taper lands: position at the end [um]"]
+    assert rows["plane faces: thinnest film on the faces [um]"] < rows["taper lands: thinnest film on the faces [um]"]
+
+
 def test_reading_results(example, tmp_path):
     found = example("reading_results").main(quick=True, results=tmp_path)
     assert [path.name for path in found["files"]] == [

@@ -37,7 +37,7 @@ PURE = {
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
     "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
-    "NgPan.onset",
+    "NgPan.onset", "StepLand.share", "TaperLand.share",
 }  # fmt: skip
 # Judged by what they are handed to; nodes by the bore radius that they must have.
 HANDED_ON = {
@@ -64,7 +64,7 @@ RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
     "SphericalHistory", "SphericalResult",
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
-    "StribeckResult", "StudyTable", "SystemState",
+    "StribeckResult", "StudyTable", "SystemState", "ThrustResult",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}

@@ -170,7 +170,7 @@ def CreateLubricatedJoint(
         default x is the local x of the housing item, projected normal to the axis (its local y, if x is parallel to
         the axis). Every angle of the film counts from x about z.
     axial : Free or Held
-        Whether the journal may slide along the axis.
+        Whether the journal may slide along the axis; with ``bearing.thrust`` films on its end faces hold a free one.
     tilt : Free or Held
         Free: the film alone carries tilting moments, by its length. Held: journal and bore stay parallel and a
         constraint carries them, where one joint of a model stands for a shaft's several bearings.
@@ -384,6 +384,11 @@ def attach(
             **more,
         )
     )
+    if getattr(model.bearing, "thrust", None) is not None:
+        # imported here: a bearing without faces needs none of it
+        from exudyn_ehd.coupling.element.thrust import attach_faces
+
+        element.faces = attach_faces(mbs, element, (housing, journal), points, rotation)
     constraint = hold(mbs, name, housing, journal, points, rotation, **kept) if any(kept.values()) else None
     element.presence = Presence(mbs, name, element, number, sides)
     make = functools.partial(LubricatedJoint, name=name, element=element, display=display, numbers=(number, constraint))

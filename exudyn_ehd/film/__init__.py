@@ -15,4 +15,5 @@ banded       factors of banded matrices and their right-hand sides
 solvers      from gap and rates to pressure and fill
 sensitivity  derivatives of loads with respect to pose and bore
 heat         temperature of the film
+thrust       films on the end faces of a joint
 """

@@ -9,6 +9,7 @@ seams        what an effect must offer to take part
 bore         shapes of an elastic bore and their balance
 tangent      derivatives of the wrench
 heat         temperature over time
+thrust       films on both end faces
 model        from a bearing's description to its evaluation
 balance      steady films: their temperature, their position under a load
 spherical    a ball in its socket

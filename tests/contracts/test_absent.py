@@ -14,6 +14,7 @@ import pytest
 
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
+from exudyn_ehd.joint.thrust import ThrustModel
 from tests.descriptions import LAWS, options_of
 
 C = 25e-6
@@ -119,6 +120,10 @@ EFFECTS = {
         ("film.supply.cuts", "film.supply.holes"),
         {"supply": (ehd.Hole(angle=1.0, diameter=6e-3, pressure=1e5),)},
     ),
+    "thrust": (
+        ("film.thrust.annulus", "film.thrust.face", "joint.thrust"),
+        {"thrust": ehd.ThrustFaces(inner_radius=0.026, outer_radius=0.05, clearance=4e-5, n_theta=16, n_r=6)},
+    ),
     "mass conservation": (
         ("film.cavitation.elrod_adams", "film.cavitation.cavity_adjoint"),
         {"cavitation": CLOSURES["elrod"]},
@@ -166,6 +171,7 @@ SHARED = {
     "surfaces.contact",
     "surfaces.elastic_liner",
     "reynolds.balance",
+    "thrust.options",
     "banded.assemble",
     "peak",
 }
@@ -235,6 +241,9 @@ def use(made):
         evaluation = model.evaluate(motion, history, STEP)
         out += [evaluation.wrench, evaluation.tangent(), np.array(list(evaluation.quantities().values()))]
         history = evaluation.history()
+    if made.thrust is not None:
+        faces = ThrustModel(made).evaluate(motion, 0.0)
+        out += [faces.wrench, faces.tangent(), np.array(list(faces.quantities().values()))]
     return out
 
 

@@ -12,4 +12,5 @@ failures        messages of films that can't go on
 modal           bore by modes
 modal_inertia   inertia of the modes
 nodal           bore by nodes
+thrust          films on the end faces, an element of their own
 """

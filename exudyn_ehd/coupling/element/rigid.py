@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import ModuleType
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -27,12 +27,23 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
+
+
+class Faces(Protocol):
+    """Films on the end faces of a joint, as records ask for them."""
+
+    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
+        """Scalars at a motion (10,), to which the sides' arrays belong."""
+
+    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
+        """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""
 
 
 class FilmElement:
@@ -52,6 +63,8 @@ class FilmElement:
     steps : AcceptedSteps
     presence : Presence
         Set once the element is in a system.
+    faces : Faces or None
+        Films on the end faces, an element of their own.
     failures : Failures
     is_massless : bool
         Whether it has coordinates of its own whose mass is a numerical one.
@@ -80,6 +93,7 @@ class FilmElement:
         self.crew: SideBySide | None = None
         self.steps = AcceptedSteps(self)
         self.presence: Presence
+        self.faces: Faces | None = None
         self._bound = False
         self._loads = np.zeros((4, 3))
 
@@ -341,6 +355,8 @@ class FilmElement:
         bearing = self.model.bearing
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
         quantities = self._quantities(trial.evaluation)
+        if self.faces is not None:
+            quantities = {**quantities, **self.faces.quantities(self.sides, trial.bodies[:MOTION_SIZE], time)}
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, self.steps.tangent)
 
     def fields(
@@ -357,6 +373,10 @@ class FilmElement:
     def _quantities(self, evaluation: Evaluation) -> Mapping[str, float]:
         """Scalars of an evaluation, to which the sides' arrays belong."""
         return evaluation.quantities()
+
+    def faces_wrench(self) -> np.ndarray:
+        """What the end faces do to the journal (6,) at the state to which the sides' arrays belong; zero without."""
+        return np.zeros(6) if self.faces is None else self.faces.wrench(self.sides)
 
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""

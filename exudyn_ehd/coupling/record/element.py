@@ -53,6 +53,9 @@ class Element(Protocol):
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""
 
+    def faces_wrench(self) -> np.ndarray:
+        """What films on the end faces do to the journal (6,), joint frame, at the state that was looked at last."""
+
     def current_row(self, mbs: exu.MainSystem) -> np.ndarray | None:
         """Row of the record for Exudyn's current state, None if the film can't be evaluated there."""
 

@@ -23,33 +23,6 @@ from exudyn_ehd.tables import data_frame, write_csv
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-_SCALARS = (
-    "minimum_gap",
-    "peak_pressure",
-    "friction_torque",
-    "power_loss",
-    "leakage",
-    "contact_load",
-    "contact_torque",
-    "supply_flow",
-    "film_temperature",
-    "peak_temperature",
-    "minimum_gap_angle",
-    "minimum_gap_z",
-    "peak_angle",
-    "bore_displacement",
-    "stored_power",
-    "bush_temperature",
-    "journal_temperature",
-    "clearance",
-)
-TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
-FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
-WIDTH = FIRST_BLOCK + BLOCKS.size
-_BLOCKS = BLOCKS.ravel()
-# Places in a row.
-MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
-FORCE = slice(_WRENCH, _WRENCH + 3)
 FORMAT = "exudyn_ehd JointHistory 5"
 DIMENSIONS = ("radial_clearance", "journal_radius", "length")
 _PARTS = {
@@ -96,8 +69,24 @@ class Quantity(enum.Enum):
     BUSH_TEMPERATURE = "bush_temperature"
     JOURNAL_TEMPERATURE = "journal_temperature"
     CLEARANCE = "clearance"
+    AXIAL_POSITION = "axial_position"
+    THRUST_FORCE = "thrust_force"
+    THRUST_MINIMUM_GAP = "thrust_minimum_gap"
+    THRUST_PEAK_PRESSURE = "thrust_peak_pressure"
+    THRUST_TORQUE = "thrust_torque"
+    THRUST_POWER_LOSS = "thrust_power_loss"
+    THRUST_CONTACT_LOAD = "thrust_contact_load"
 
 
+# Of the film's quantities those behind motion, eccentricities and loads.
+_SCALARS = tuple(member.value for member in Quantity)[6:]
+TIME, _MOTION, _ECCENTRICITY, _RATIO, _RATIO_MAX, _WRENCH, _FIRST_SCALAR = 0, 1, 11, 13, 14, 15, 21
+FIRST_BLOCK = _FIRST_SCALAR + len(_SCALARS)
+WIDTH = FIRST_BLOCK + BLOCKS.size
+_BLOCKS = BLOCKS.ravel()
+# Places in a row.
+MINIMUM_GAP, PEAK_PRESSURE = (_FIRST_SCALAR + _SCALARS.index(name) for name in ("minimum_gap", "peak_pressure"))
+FORCE = slice(_WRENCH, _WRENCH + 3)
 COLUMNS: dict[str, int | slice] = {
     "time": TIME,
     "motion": slice(_MOTION, _MOTION + 10),
@@ -141,7 +130,7 @@ class JointHistory(History, HistoryPictures):
     largest_eccentricity_ratio : ndarray (n,)
         The largest along the length, at one of the ends.
     force, moment : ndarray (n, 3)
-        [N], [N m].
+        [N], [N m], of the journal's film and contact; the films on the end faces are apart.
     minimum_gap, peak_pressure, friction_torque, power_loss, leakage, contact_load : ndarray (n,)
         Minimum film thickness [m], [Pa], [N m], [W], [m3/s], [N].
     contact_torque, supply_flow, film_temperature, peak_temperature : ndarray (n,)
@@ -154,6 +143,11 @@ class JointHistory(History, HistoryPictures):
         Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
     bush_temperature, journal_temperature, clearance : ndarray (n,)
         Mean temperatures at the film of walls that conduct [K], and the radial clearance that they leave [m].
+    axial_position, thrust_force, thrust_torque : ndarray (n,)
+        Of a joint with ``thrust``, else nan as all ``thrust_...``: place of the journal between its faces [m], axial
+        force of their films [N] and torque about the bearing's axis [N m] on the journal.
+    thrust_minimum_gap, thrust_peak_pressure, thrust_power_loss, thrust_contact_load : ndarray (n,)
+        Smallest film thickness [m], highest pressure [Pa], loss [W] and load carried by contact [N] of all faces.
     step_error : ndarray (n,)
         Estimated error of the gap that the time steps have made, over the minimum film thickness of the step; of
         implicit solvers, from the third step on, else nan (`exudyn_ehd.joint.step_error`).
@@ -200,6 +194,13 @@ class JointHistory(History, HistoryPictures):
     bush_temperature: np.ndarray
     journal_temperature: np.ndarray
     clearance: np.ndarray
+    axial_position: np.ndarray
+    thrust_force: np.ndarray
+    thrust_minimum_gap: np.ndarray
+    thrust_peak_pressure: np.ndarray
+    thrust_torque: np.ndarray
+    thrust_power_loss: np.ndarray
+    thrust_contact_load: np.ndarray
     step_error: np.ndarray
     step_count: np.ndarray
     journal_radius: float

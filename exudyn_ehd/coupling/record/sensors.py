@@ -2,8 +2,9 @@
 
 The latter are those of a joint whose first marker is on the housing and whose second is on the journal: what is local
 is in the housing's joint frame A0, loads are those that the journal hands on to the housing (minus those on the
-journal), of film and constraint together. Torques are vectors about the bearing's centre, as Exudyn's spring-dampers
-have them; ``TorqueLocal`` of its ideal joints holds multipliers, of ``CreateRevoluteJoint`` (-M_y, M_x).
+journal), of films, thrust faces and constraint together. Torques are vectors about the bearing's centre, as Exudyn's
+spring-dampers have them; ``TorqueLocal`` of its ideal joints holds multipliers, of ``CreateRevoluteJoint``
+(-M_y, M_x).
 """
 
 from __future__ import annotations
@@ -100,7 +101,7 @@ def reader(
 def _state(mbs: exu.MainSystem, element: Element, constraint: Index | None) -> _State:
     """State of the joint; its sides are there once the film was asked."""
     row = element.current_row(mbs)
-    load = np.full(6, np.nan) if row is None else -row[FORCE.start : FORCE.start + 6]
+    load = np.full(6, np.nan) if row is None else -row[FORCE.start : FORCE.start + 6] - element.faces_wrench()
     if constraint is not None:
         output = exu.OutputVariableType
         load[:3] += mbs.GetObjectOutput(constraint, output.ForceLocal)

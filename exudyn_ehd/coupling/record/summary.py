@@ -74,6 +74,7 @@ def line(name: str, bearing: JournalBearing, history: JointHistory, *, in_time: 
     for title, values, worst, factor, unit in (
         ("minimum film thickness", h.minimum_gap, np.nanargmin, 1e6, "um"),
         ("peak pressure", h.peak_pressure, np.nanargmax, 1e-6, "MPa"),
+        ("minimum film thickness of its thrust faces", h.thrust_minimum_gap, np.nanargmin, 1e6, "um"),
     ):
         if np.any(np.isfinite(values)):
             k = int(worst(values))

@@ -7,6 +7,7 @@ findings     what is said about an effect; the limits from which on each matters
 indicators   dimensionless numbers of the worst films, one per effect
 surfaces     those of elasticity, profile, roughness and contact
 oil          those of its viscosity
+faces        those of films on the end faces
 changes      films with and without an effect at the same load
 switches     effects added to a description, with typical numbers, and taken away
 assumptions  the same of laminar flow, grid and time step

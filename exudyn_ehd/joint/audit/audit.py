@@ -15,6 +15,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.joint.audit.changes import Comparison
 from exudyn_ehd.joint.audit.findings import Case, Finding
 from exudyn_ehd.joint.audit.indicators import INDICATORS, Indicator
@@ -156,6 +157,7 @@ def audit_states(
     *,
     record: RecordedSteps | None = None,
     liner: ElasticLiner | None = None,
+    faces: ThrustFaces | None = None,
     measure_time: bool = False,
 ) -> Audit:
     """Audit a bearing by its films at some states.
@@ -168,6 +170,8 @@ def audit_states(
         Where the states come from: adds how often contacts acted, mean heating and the time step.
     liner : ElasticLiner, optional
         Of which to say whether it would matter; for bearings without one.
+    faces : ThrustFaces, optional
+        Of whose films the record is.
     measure_time : bool
         Measure the share of the time that every effect takes which is on and can be left out.
 
@@ -183,7 +187,7 @@ def audit_states(
             "audit: none of the states has a film that can be evaluated; audit a joint after its run, or a result "
             "of `steady`."
         )
-    case = Case(model.bearing, samples, Comparison(model, states, record), record, liner)
+    case = Case(model.bearing, samples, Comparison(model, states, record), record, liner, faces)
     findings = []
     for indicator in INDICATORS:
         finding = indicator.find(case)
@@ -202,9 +206,10 @@ def audit_record(
 
     Films that remember are run again over up to 60 recorded steps before such a state.
     """
-    model = build_study_model(bearing, 0.0)
-    states = recorded_states(model, record)
-    return audit_states(model, states, record=record, liner=liner, measure_time=measure_time)
+    # what faces do not go with may well act in the journal's film
+    model = build_study_model(replace(bearing, thrust=None), 0.0)
+    states, faces = recorded_states(model, record), bearing.thrust
+    return audit_states(model, states, record=record, liner=liner, faces=faces, measure_time=measure_time)
 
 
 def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[FilmState]) -> float | None:

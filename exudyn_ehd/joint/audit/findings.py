@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.surfaces.elastic_liner import ElasticLiner
+from exudyn_ehd.film.thrust.options import ThrustFaces
 from exudyn_ehd.joint.audit.changes import MATTERS, NOTHING, Change, Comparison
 from exudyn_ehd.joint.audit.ringing import LIMIT
 from exudyn_ehd.joint.audit.samples import RecordedSteps, Sample
@@ -46,6 +47,8 @@ LIMITS = {
     "cavitation": Limit(0.01, "of the bore"),
     "rupture": Limit(0.01, "of the bore"),
     "mass conservation": Limit(0.05, "of the bore, moving or refilled"),
+    "thrust faces": Limit(0.03, "of the joint's loss"),
+    "heat of thrust faces": Limit(0.1, "change of the viscosity, as for heating"),
     "Taylor vortices": Limit(41.2, "concentric journal: G. I. Taylor, Phil. Trans. R. Soc. A 223 (1923) 289"),
     "turbulence": Limit(2000.0, "rho U c / mu of a Couette flow"),
     "fluid inertia": Limit(1.0, "rho U c^2 / (mu R): inertia and viscous forces of one size"),
@@ -141,8 +144,8 @@ class Finding:
 class Case:
     """What is audited.
 
-    Worst films, those of other bearings to compare with, the record they come from if there is one, and a liner that
-    the bearing does not have.
+    Worst films, those of other bearings to compare with, the record they come from if there is one, a liner that the
+    bearing does not have, and the faces of which the record is; the bearing is that of the journal's film alone.
     """
 
     bearing: JournalBearing
@@ -150,6 +153,7 @@ class Case:
     films: Comparison
     record: RecordedSteps | None = None
     liner: ElasticLiner | None = None
+    faces: ThrustFaces | None = None
 
     def largest(self, name: str) -> float:
         """Largest value of a number of the samples."""

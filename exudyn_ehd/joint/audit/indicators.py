@@ -9,7 +9,7 @@ from functools import partial
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.cavitation.closures import FullSommerfeld
 from exudyn_ehd.film.solvers.impedance_map import ImpedanceMap
-from exudyn_ehd.joint.audit import assumptions, oil, surfaces
+from exudyn_ehd.joint.audit import assumptions, faces, oil, surfaces
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding, judged
 from exudyn_ehd.joint.audit.switches import (
     cavity_pressure,
@@ -120,6 +120,8 @@ INDICATORS = (
     Indicator(cavitation),
     Indicator(rupture),
     Indicator(mass_conservation, swift_stieber),
+    Indicator(faces.share),
+    Indicator(faces.heat),
     Indicator(assumptions.vortices),
     Indicator(assumptions.turbulence, partial(replace, turbulence=None)),
     Indicator(assumptions.inertia),

@@ -37,6 +37,8 @@ class RecordedSteps:
         K, K, m.
     step_error : (n,) array
         Estimated error of the gap that the time steps have made, over the minimum film thickness.
+    thrust_power_loss : (n,) array
+        W, of films on the end faces.
     """
 
     time: np.ndarray
@@ -52,6 +54,7 @@ class RecordedSteps:
     journal_temperature: np.ndarray
     bore_displacement: np.ndarray
     step_error: np.ndarray
+    thrust_power_loss: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
         """Steps, sorted, in which something is worst.

@@ -30,6 +30,7 @@ _BESIDE = {
     "cavitation",
     "end_pressures",
     "contact",
+    "thrust",
 }
 
 

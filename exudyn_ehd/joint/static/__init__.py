@@ -4,6 +4,7 @@ Module map
 ----------
 solve_film          film in any gap
 steady              prescribed position
+thrust              films on the end faces there
 equilibrium         position under a load, stiffness and damping
 dynamic_stiffness   both at any frequency, for films that remember their oil
 stribeck            friction over speed

@@ -6,7 +6,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, Status, StrainWarning, require_number, require_size, require_vector, warn_user
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.static.thrust import ThrustResult
 
 # Of a linear bush, displacement over thickness: above, its displacement is off by more than one per cent.
 LARGEST_STRAIN = 0.01
@@ -73,6 +77,9 @@ class SteadyResult(Film, FilmPictures):
         Of a flexible bore, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None
         Of a flexible bore, m.
+    faces : ThrustResult or None
+        Films on the end faces, which the other values leave out; None without ``bearing.thrust``, and in an
+        `equilibrium`.
     bearing : JournalBearing
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
@@ -107,6 +114,7 @@ class SteadyResult(Film, FilmPictures):
     status: Status
     iterations: int
     bore_coordinates: np.ndarray | None = None
+    faces: ThrustResult | None = None
 
     def __repr__(self) -> str:
         load = shown("force", float(np.hypot(*self.force[:2])))
@@ -130,7 +138,7 @@ class SteadyResult(Film, FilmPictures):
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        model = build_study_model(self.bearing, start)
+        model = build_study_model(replace(self.bearing, thrust=None), start)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -147,6 +155,7 @@ def steady(
     tilt: tuple[float, float] = (0.0, 0.0),
     velocity: tuple[float, float] = (0.0, 0.0),
     axial_speed: float = 0.0,
+    axial_position: float = 0.0,
 ) -> SteadyResult:
     """Film at a prescribed position.
 
@@ -170,6 +179,8 @@ def steady(
         this velocity, so that full parts are squeezed at once and cavities keep their oil content.
     axial_speed : float
         w, m/s.
+    axial_position : float
+        Of the journal between the faces of ``bearing.thrust``, m; 0 without them.
 
     Returns
     -------
@@ -197,13 +208,21 @@ def steady(
     omega = require_number("steady: speed", speed, "rad/s")
     w = require_number("steady: axial_speed", axial_speed, "m/s")
     require_size("steady: speed", omega * bearing.journal_radius, "m/s at the surface", **SPEEDS)
+    place = require_number("steady: axial_position", axial_position, "m")
     require_size("steady: velocity", v, "m/s", **SPEEDS)
     require_size("steady: axial_speed", w, "m/s", **SPEEDS)
     require_oil(bearing, "steady", w)
     position = e * math.cos(angle), e * math.sin(angle)
     start = angle + math.pi if isinstance(bearing.inlet, MaximumGap) else 0.0
     model = build_study_model(bearing, start)
-    return result_at(model, np.array([*position, *b, *v, 0.0, 0.0, omega, w]), "steady")
+    motion = np.array([*position, *b, *v, 0.0, 0.0, omega, w])
+    if bearing.thrust is None and place == 0.0:
+        return result_at(model, motion, "steady")
+    # imported here: a bearing without faces needs none of it
+    from exudyn_ehd.joint.static.thrust import thrust_result
+
+    faces = thrust_result(bearing, motion, place, "steady")
+    return replace(result_at(model, motion, "steady"), faces=faces)
 
 
 def require_oil(bearing: JournalBearing, where: str, axial_speed: float = 0.0) -> None:

@@ -1,0 +1,225 @@
+"""The films on the end faces as an element of their own, an ObjectGenericODE2 beside that of the journal's film.
+
+It has no mass, no memory and no record: on the nodes of the same two sides it adds the force and the exact Jacobian of
+`exudyn_ehd.joint.thrust`, whose wrench on the journal the housing gets with opposite sign about the same point, also
+where a bush yields under the journal's film. Besides the motion (10,) it needs the journal's place along the axis,
+
+    z = e_z . (p_J - p_H) - z_0 a_z,
+
+with the bearing's axis e_z, the journal's axis a_z in its direction, and the distance z_0 of both joint points in the
+reference configuration. It does not depend on where along the axis the journal's joint point lies, and its rate is w,
+to second order in the tilt. Rates are the velocities.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import exudyn as exu
+import exudyn.itemInterface as eii
+import numpy as np
+
+from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.element.rigid import FilmElement
+from exudyn_ehd.coupling.items.carrier import initial_frame
+from exudyn_ehd.coupling.items.item import Item
+from exudyn_ehd.coupling.kinematics import relative
+from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
+from exudyn_ehd.coupling.kinematics.sides import bind
+from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.joint.balance.overload import DEEPEST
+from exudyn_ehd.joint.model.compile import MESSAGE
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.joint.thrust import ADVICE, ThrustEvaluation, ThrustModel
+from exudyn_ehd.progress import announced
+from exudyn_ehd.status import FilmError, InputError, Status
+
+_CURRENT = exu.ConfigurationType.Current
+
+
+class ThrustElement:
+    """Films on the end faces between two sides.
+
+    Parameters
+    ----------
+    film : FilmElement
+        Of the journal's film, which keeps the record.
+    sides : pair of Side
+        Housing and journal, not those of ``film``.
+    offset : float
+        z_0, m.
+    """
+
+    def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
+        self.model = ThrustModel(film.model.bearing)
+        self.steps, self.name, self._failures = film.steps, film.failures.name, film.failures
+        self.sides, self.offset = sides, offset
+        self._last: tuple[list[float], list[float], ThrustEvaluation] | None = None
+        self._loads, self._bound = np.zeros((4, 3)), False
+
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
+        """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
+        found, out = self._evaluate(mbs, q, q_t), np.full(len(q), np.nan)
+        if self._has_film(t, found):
+            frames, jacobians = self._arrays()
+            relative.global_loads(*frames, found.wrench, self._loads)
+            relative.generalized_force(*jacobians, self._loads, out)
+        return out
+
+    def jacobian(
+        self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
+    ) -> np.ndarray:
+        """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
+        found, n = self._evaluate(mbs, q, q_t), len(q)
+        if not self._has_film(t, found):
+            return np.full((n, n), np.nan)
+        (housing, journal), n_h, (frames, jacobians) = self.sides, self.sides[0].size, self._arrays()
+        state, rates, tangent, loads = np.array(q), np.array(q_t), found.tangent(), self._loads
+        relative.global_loads(*frames, found.wrench, loads)
+        housing.vary(mbs, state[:n_h], rates[:n_h])
+        journal.vary(mbs, state[n_h:], rates[n_h:])
+        by_q, by_rate, turned = np.empty((MOTION_SIZE, n)), np.empty((MOTION_SIZE, n)), np.empty((n, 6))
+        relative.motion_variation(*frames, *jacobians, by_q, by_rate)
+        relative.wrench_map(*frames, *jacobians, turned)
+        stiffness, damping = np.zeros((n, n)), np.empty((n, n))
+        housing.geometric(mbs, state[:n_h], loads[0], loads[1], stiffness[:n_h, :n_h])
+        journal.geometric(mbs, state[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
+        own = np.ascontiguousarray(tangent[:, :MOTION_SIZE])
+        relative.tangent_matrices(*frames, *jacobians, loads, own, by_q, by_rate, stiffness, damping)
+        stiffness += np.outer(turned @ tangent[:, MOTION_SIZE], self._position_change(found.motion, by_q))
+        return np.asarray(-(f_q * stiffness + f_qt * damping))
+
+    def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> ThrustEvaluation:
+        """The films at frames (3, 6) of housing and journal, of the motion (10,)."""
+        return self.model.evaluate(motion, self._position(frames, motion))
+
+    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
+        """Force and moment about O (6,) on the journal at the state to which the arrays of ``sides`` belong."""
+        frames, motion = (sides[0].frame, sides[1].frame), np.empty(MOTION_SIZE)
+        relative.relative_motion(*frames, motion)
+        return self.at(frames, motion).wrench
+
+    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
+        """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong.
+
+        Raises
+        ------
+        FilmError
+            If a collar is pressed through its contact by more than any explains, or with what no steel bears.
+        """
+        values = self.at((sides[0].frame, sides[1].frame), motion).quantities()
+        faces, gap = self.model.bearing.thrust, values["thrust_minimum_gap"]
+        if faces is not None and gap < -DEEPEST * faces.clearance:
+            raise FilmError(
+                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: a collar is pressed through its thrust face, "
+                f"smallest gap {gap:.4g} m; check load, mass and units, give ThrustFaces.contact more stiffness "
+                "(RegularisedWall.pressure), or take smaller steps."
+            )
+        if (peak := values["thrust_peak_pressure"]) > self._failures.largest_pressure:
+            raise FilmError(
+                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: its thrust faces have a film that neither oil nor "
+                f"steel bears: peak pressure {peak:.4g} Pa, axial force {values['thrust_force']:.4g} N, smallest gap "
+                f"{gap:.4g} m; check masses, loads and units, take more steps, or name ThrustFaces.contact; "
+                "joint.stop_at(pressure=...) allows more."
+            )
+        return values
+
+    def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        housing, journal = self.sides
+        return (housing.frame, journal.frame), (housing.jac, journal.jac)
+
+    def _evaluate(self, mbs: exu.MainSystem, q: list[float], q_t: list[float]) -> ThrustEvaluation:
+        """The films at a state, to which the sides' frames and Jp, Jr are brought."""
+        q, q_t, last = list(q), list(q_t), self._last
+        if last is not None and last[0] == q and last[1] == q_t and last[2].serial == self.model.serial:
+            return last[2]
+        self._last = None
+        if not self._bound:
+            bind(mbs, *self.sides)
+            self._bound = True
+        (housing, journal), n, motion = self.sides, self.sides[0].size, np.empty(MOTION_SIZE)
+        state, rates = np.array(q), np.array(q_t)
+        housing.update(mbs, state[:n], rates[:n], _CURRENT)
+        journal.update(mbs, state[n:], rates[n:], _CURRENT)
+        relative.relative_motion(housing.frame, journal.frame, motion)
+        found = self.at((housing.frame, journal.frame), motion)
+        self._last = q, q_t, found
+        return found
+
+    def _position(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> float:
+        housing, journal = frames
+        along = float(housing[:, 2] @ (journal[:, PLACE] - housing[:, PLACE]))
+        return along - self.offset / math.sqrt(1.0 + float(motion[2:4] @ motion[2:4]))
+
+    def _position_change(self, motion: np.ndarray, by_q: np.ndarray) -> np.ndarray:
+        """Derivative (n,) of the position to q, with that of the motion (10, n)."""
+        (housing, journal), tilt = self.sides, motion[2:4]
+        axis = housing.frame[:, 2]
+        turning = np.cross(axis, journal.frame[:, PLACE] - housing.frame[:, PLACE])
+        along = np.concatenate((turning @ housing.jac[1] - axis @ housing.jac[0], axis @ journal.jac[0]))
+        return np.asarray(along + self.offset * (1.0 + tilt @ tilt) ** -1.5 * (tilt @ by_q[2:4]))
+
+    def _has_film(self, time: float, found: ThrustEvaluation) -> bool:
+        """Whether there are films; raise `FilmError` if there are none and the solver can't repeat the step."""
+        if found.status is Status.CONVERGED:
+            return True
+        if not solver_state.can_reject_step(self.steps.solver):
+            gap = min(state.minimum_gap for state in found.states)
+            raise FilmError(
+                f"LubricatedJoint '{self.name}' can't be evaluated at t = {time:.9g} s: {found.status.name} on a "
+                f"thrust face, axial position {found.position:.6g} m, smallest gap {gap:.6g} m; {ADVICE}"
+            )
+        return False
+
+
+def attach_faces(
+    mbs: exu.MainSystem,
+    film: FilmElement,
+    items: tuple[Item, Item],
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+) -> ThrustElement:
+    """Add the films on the end faces of a joint.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    film : FilmElement
+        Of the journal's film.
+    items : pair of Item
+        Housing and journal.
+    points, rotation : pair of (3,) arrays, (3, 3) array
+        Joint points and joint frame in the reference configuration.
+
+    Raises
+    ------
+    InputError
+        If the journal starts outside its faces.
+    """
+    housing, journal = (item.side(point, rotation) for item, point in zip(items, points, strict=True))
+    offset = float(rotation[:, 2] @ (points[1] - points[0]))
+    element = ThrustElement(film, (housing, journal), offset)
+    frames = initial_frame(mbs, items[0], housing), initial_frame(mbs, items[1], journal)
+    motion = np.empty(MOTION_SIZE)
+    relative.relative_motion(*frames, motion)
+    with announced(MESSAGE):
+        start = element.at(frames, motion)
+        start.tangent()
+    if start.status is not Status.CONVERGED:
+        raise InputError(
+            f"CreateLubricatedJoint: the journal is outside the thrust faces of '{element.name}' in the initial "
+            f"configuration: axial position {start.position:.6g} m, tilt ({motion[2]:.3g}, {motion[3]:.3g}), smallest "
+            f"gap {min(state.minimum_gap for state in start.states):.6g} m; check the initial positions, and whether "
+            "ThrustFaces.clearance is that of one face."
+        )
+    mbs.AddObject(
+        eii.ObjectGenericODE2(
+            name=f"{element.name} thrust faces",
+            nodeNumbers=[node for side in (housing, journal) for node in side.nodes],
+            forceUserFunction=element.force,
+            jacobianUserFunction=element.jacobian,
+            visualization=eii.VObjectGenericODE2(show=False),
+        )
+    )
+    return element

@@ -1,0 +1,144 @@
+"""Grid of an annulus in the logarithm of its radius.
+
+With s = ln(r / R), R = sqrt(r_i r_o), Reynolds' equation of a face, times r^2,
+
+    d/dtheta (h^3 dp/dtheta) + d/ds (h^3 dp/ds) = 12 mu r^2 (omega / 2 dh/dtheta + dh/dt),
+
+is that of a bearing's unrolled film: links conduct the same, and what moves the oil has the weight r^2. So the annulus
+is a `FilmGrid` of theta and s, its Couette flows go through `AnnularFlow`, and rates of the gap are handed to the
+solver with the weights ``square`` (m,), in place of r^2 at the vertices: of one row
+
+    square_j width_j = (D (r^2)_j+1/2 - D (r^2)_j-1/2) / 4,    D difference over distance in s,
+
+with which pressures in proportion to r^2, ln r and 1, those of a squeezed washer, are exact at the vertices. Weights of
+integrals over s are corrected so that the loads of these three, and the torque of a plane film, are exact too.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from exudyn_ehd.film.grid import FilmGrid, axial_vertices, bearing_grid
+from exudyn_ehd.film.reynolds.links import FluxEffect, LinkFlux
+
+STRETCH = 0.75
+
+
+class Annulus:
+    """Grid of an annulus with its weights; lengths over R.
+
+    Parameters
+    ----------
+    inner, outer : float
+        Radii, m.
+    n_theta, n_r : int
+        Vertices around, intervals across.
+
+    Attributes
+    ----------
+    scale : float
+        R, m.
+    grid : FilmGrid
+    r : (m,) array
+        Radii of the rows.
+    weight : (n, m) array
+        Of integrals over the area.
+    square : (m,) array
+        See the module.
+    moments, link_moments : (3, n, m), (4, n, m) arrays
+        1, x and y at the vertices; 1, x, y and r^2 on the links i -> i+1.
+    along, across : (3, n, m) arrays
+        Of links in theta and s: ``sum along h (p_i - p_i+1) + across h (p_j - p_j+1) = -int h u . grad p dA`` with
+        the velocities u of a turn about the axis and of shifts along x and y.
+    """
+
+    def __init__(self, inner: float, outer: float, n_theta: int, n_r: int) -> None:
+        length = math.log(outer / inner)
+        self.scale = R = math.sqrt(inner * outer)
+        s, weight = axial_vertices(n_r, 0.5 * length, STRETCH)
+        r = np.exp(s)
+        weight = _exact_load(r, s, weight)
+        self.grid: FilmGrid = bearing_grid(R, R * length, n_theta, n_r, rows=(s, weight))
+        self.r, width = r, self.grid.width_z
+        self.weight = self.grid.weight * r**2
+        self.square = r**2
+        self.square[1:-1] = 0.25 * np.diff(np.diff(r**2) / np.diff(s)) / width[1:-1]
+        cos_x, sin_x, cos_f, sin_f, _ = self.grid.directions
+        flat = np.ones(self.grid.shape)
+        self.moments = np.array([flat, np.outer(cos_x, r), np.outer(sin_x, r)])
+        self.link_moments = np.array([flat, np.outer(cos_f, r), np.outer(sin_f, r), flat * r**2])
+        turn = np.broadcast_to(self.square * width, self.grid.shape)
+        self.along = np.array([turn, -np.outer(sin_f, r * width), np.outer(cos_f, r * width)])
+        around = self.grid.width_x
+        # radii of the links in s with which an even pressure pulls at no vertex of an even gap
+        grown = np.cumsum(r * width)[:-1] - r[0] * width[0]
+        between = np.append(0.5 * (r[0] + r[1]) + grown * 2.0 * math.sin(0.5 * around[0]) / around[0], 0.0)
+        outward = np.array([np.zeros_like(around), cos_x * around, sin_x * around])
+        self.across = outward[:, :, None] * between
+
+    def link_rows(self, H: np.ndarray, HF: np.ndarray) -> np.ndarray:
+        """Weights (3, n, m) of the pressures in the sums of ``along`` and ``across`` for the gaps (n, m)."""
+        x, z = self.along * HF, self.across * _between_rows(H)
+        out = x - np.roll(x, 1, axis=1) + z
+        out[:, :, 1:] -= z[:, :, :-1]
+        return out
+
+    def link_gradients(self, P: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives (3, n, m) of these sums to the gaps at the vertices and on the links for pressures P (n, m)."""
+        cell = np.zeros_like(self.across)
+        half = 0.5 * self.across[:, :, :-1] * (P[:, :-1] - P[:, 1:])
+        cell[:, :, :-1] += half
+        cell[:, :, 1:] += half
+        return cell, self.along * (P - np.roll(P, -1, axis=0))
+
+
+def products(fields: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Sums (k, l) over the grid of all products of fields (k, n, m) with others (l, n, m)."""
+    return np.asarray(fields.reshape(len(fields), -1) @ others.reshape(len(others), -1).T)
+
+
+def _between_rows(H: np.ndarray) -> np.ndarray:
+    """Gap of the links in s; of the last row nothing."""
+    out = np.zeros_like(H)
+    out[:, :-1] = 0.5 * (H[:, 1:] + H[:, :-1])
+    return out
+
+
+def _exact_load(r: np.ndarray, s: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Weights (m,) over s with the smallest relative change that integrates r^2 times 1, r^2 and ln r exactly."""
+    a, b = s[0], s[-1]
+    moments = np.array([r**2, r**4, r**2 * s])
+    two, four = 0.5 * (r[-1] ** 2 - r[0] ** 2), 0.25 * (r[-1] ** 4 - r[0] ** 4)
+    logarithm = 0.5 * (b * r[-1] ** 2 - a * r[0] ** 2) - 0.5 * two
+    missing = np.array([two, four, logarithm]) - moments @ weight
+    return np.asarray(weight * (1.0 + moments.T @ np.linalg.solve((moments * weight) @ moments.T, missing)))
+
+
+class AnnularFlow(FluxEffect):
+    """What the links of an annulus with a profile carry.
+
+    Couette flows around it have the weight r^2. A column on the edge of a step, whose gap h is the mean of h + e and
+    h - e on its sides, conducts ``((h + e)^3 + (h - e)^3) / 2 = h^3 + 3 h e^2`` along the radius.
+
+    Parameters
+    ----------
+    square : (m,) array
+        Of `Annulus`.
+    edge : (n, 1) array
+        e of every column, scaled as gaps.
+    """
+
+    changes_carriers = True
+    depends_on_speed = False
+
+    def __init__(self, square: np.ndarray, edge: np.ndarray) -> None:
+        self.square, self.edges = square, 3.0 * edge**2
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Weigh the carriers in theta, and add to the conductances along the radius, with their derivatives."""
+        flux.cx[:] = gap_x * self.square
+        flux.cx_h[:] = self.square
+        flux.gz[:] += gap_z * self.edges
+        flux.gz_h[:] += self.edges

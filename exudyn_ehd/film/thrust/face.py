@@ -1,0 +1,269 @@
+"""The film on one end face between a bush and the collar of its journal: wrench and exact tangent.
+
+In the joint frame, with s = 1 for the upper face at z = L/2 and -1 for the lower one, the collar is a plane whose place
+on the bearing's axis is zeta from the middle of its play. At the point r = (X, Y) of the face
+
+    h = c + s (zeta - bx X - by Y) + d(theta),        dh/dt = s (zeta_t - bx_t X - by_t Y),
+
+and the collar slides past with U = omega e_z x r + u, u the velocity of its point on the axis. Reynolds' equation
+
+    div(h^3 / (12 mu) grad p) = U . grad h / 2 + dh/dt,          p given at r_i and r_o,
+
+takes the turn through its links (`exudyn_ehd.film.thrust.annulus`) and the shift u, which is smaller by clearance over
+radius, as a rate ``u . grad h / 2``. Normals are fixed in the housing. On the collar act p along s e_z and, in the
+plane, the shear and the pressure on the collar's own slope,
+
+    f = -mu U / h - h/2 grad p - p grad(h - d),
+
+and the opposite on the bush, so that force and moment of both cancel exactly. Work is heat:
+``-int f . U - int s p v_z = int mu U^2 / h + h^3 / (12 mu) |grad p|^2`` for p = 0 at the edges.
+
+Motion of a face: m = (zeta, bx, by, zeta_t, bx_t, by_t, omega, u_x, u_y). Integrals: N, X, Y of the pressure times 1, x
+and y; E = -int h u . grad p for the turn and the shifts along x and y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.film.cavitation.active_set import rows_of_linear
+from exudyn_ehd.film.solvers.closure import Closure
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.film.surfaces.wall import WallContact
+from exudyn_ehd.film.thrust.annulus import AnnularFlow, Annulus, products
+from exudyn_ehd.film.thrust.options import ThrustFaces
+from exudyn_ehd.status import Status
+
+FACE_SIZE = 9
+
+
+class Scales:
+    """SI units of the scaled integrals: of pressure, N, and shear, N s / m, times lengths R; clearance and R in m."""
+
+    def __init__(self, viscosity: float, clearance: float, radius: float) -> None:
+        self.c, self.R = clearance, radius
+        self.pressure = 12.0 * viscosity * radius**2 / clearance**2
+        self.force = self.pressure * radius**2
+        self.shear = viscosity * radius**2 / clearance
+
+
+@dataclass(frozen=True, eq=False)
+class FaceState:
+    """One evaluation of a face.
+
+    Attributes
+    ----------
+    status : Status
+    wrench : (6,) array
+        On the journal, moment about the face's centre, N and Nm; nan without a film.
+    minimum_gap, peak_pressure, power_loss, inflow, outflow, contact_load : float
+        m; Pa; W that film and contact turn into heat, or work on the oil that they press out; m3/s in at the inner
+        radius and out at the outer one; N.
+    """
+
+    status: Status
+    wrench: np.ndarray
+    minimum_gap: float
+    peak_pressure: float = np.nan
+    power_loss: float = np.nan
+    inflow: float = np.nan
+    outflow: float = np.nan
+    contact_load: float = np.nan
+
+
+class FaceFilm:
+    """Film on one face; the tangent is that of the last evaluation.
+
+    Parameters
+    ----------
+    faces : ThrustFaces
+    side : int
+        1 for the upper face, -1 for the lower one.
+    closure : Closure
+        One that does not conserve mass.
+    viscosity : float
+        Pa s.
+    pressures : (float, float)
+        At the inner and the outer radius, Pa.
+    squeeze : bool
+        False leaves out the rate of the gap.
+    """
+
+    def __init__(
+        self,
+        faces: ThrustFaces,
+        side: int,
+        closure: Closure,
+        viscosity: float,
+        pressures: tuple[float, float],
+        squeeze: bool = True,
+    ) -> None:
+        self.side, self.closure, self.squeeze = side, closure, float(squeeze)
+        self.annulus = a = Annulus(faces.inner_radius, faces.outer_radius, faces.n_theta, faces.n_r)
+        self.scales = Scales(viscosity, faces.clearance, a.scale)
+        self.wall = None if faces.contact is None else WallContact(faces.contact, faces.clearance)
+        self.known = np.array([*pressures, closure.cavity_pressure]) / self.scales.pressure
+        shape, grid = a.grid.shape, a.grid
+        link = np.zeros((shape[0], 1))
+        if faces.profile is not None:
+            link += faces.profile.depth_at(grid.x_face)[:, None] / faces.clearance
+        # of steps the vertices on their edges are the mean of both sides
+        jump = link - np.roll(link, 1, axis=0)
+        self.link_depth, self.depth = link, link - 0.5 * jump
+        self.solver = FilmSolver(grid, closure, flux_effects=(AnnularFlow(a.square, 0.5 * jump),))
+        around = jump / grid.width_x[:, None] / a.r
+        # u . grad d / 2 for the shifts along x and y
+        self.shifted = 0.5 * np.array([-around * np.sin(grid.x)[:, None], around * np.cos(grid.x)[:, None]])
+        # derivatives of the scaled gap to (zeta / c, bx R / c, by R / c)
+        sign = side * np.array([1.0, -1.0, -1.0])[:, None, None]
+        self.shape, self.link_shape = sign * a.moments, sign * a.link_moments[:3]
+        self.slope, self.bend, self.face_slope = np.ones(shape), np.zeros(shape), np.ones(shape)
+        self.contact, self.contact_slope = np.zeros(shape), np.zeros(shape)
+        self.limited = False
+
+    def evaluate(self, motion: np.ndarray) -> FaceState:
+        """The film at a motion (9,), SI units."""
+        s, k = self.solver, self.scales
+        smallest = k.c * self._set_gap(motion)
+        if smallest <= 0.0 and self.wall is None:
+            return FaceState(Status.NO_FILM, np.full(6, np.nan), smallest)
+        s.pressure[:, 0], s.pressure[:, -1] = self.known[:2]
+        status, _ = s.solve(0.5 * motion[6], 0.0, float(self.known[2]))
+        if status is not Status.CONVERGED:
+            return FaceState(status, np.full(6, np.nan), smallest)
+        self._integrate(motion)
+        flows = k.c * k.R**2 * s.inflow().sum(axis=0)
+        return FaceState(
+            status,
+            self._wrench(),
+            smallest,
+            float(s.pressure.max()) * k.pressure,
+            self._power(),
+            float(flows[0]),
+            -float(flows[-1]),
+            float((self.annulus.weight * self.contact).sum()) * k.R**2,
+        )
+
+    @property
+    def pressure(self) -> np.ndarray:
+        """Of the last solution (n, m), Pa."""
+        return self.solver.pressure * self.scales.pressure
+
+    @property
+    def gap(self) -> np.ndarray:
+        """That the film of the last solution has (n, m), m."""
+        return self.solver.H * self.scales.c
+
+    def _set_gap(self, motion: np.ndarray) -> float:
+        """Gaps and the weighed rate into the solver's buffers; the smallest scaled gap of the surfaces."""
+        s, k, a = self.solver, self.scales, self.annulus
+        scale = np.array([1.0, k.R, k.R]) / k.c
+        self.motion = motion
+        self.pose, self.rate, self.shift = motion[:3] * scale, self.squeeze * motion[3:6] * scale, motion[7:] / k.R
+        s.H[:] = 1.0 + self.depth + np.tensordot(self.pose, self.shape, 1)
+        s.HF[:] = 1.0 + self.link_depth + np.tensordot(self.pose, self.link_shape, 1)
+        s.H_t[:] = np.tensordot(self.rate, self.shape, 1)
+        self.true_rate = s.H_t.copy()
+        s.H_t += np.tensordot(self.shift, self.shifted, 1) - 0.5 * self.side * float(self.shift @ self.pose[1:])
+        smallest = min(float(s.H.min()), float(s.HF.min()))
+        self.limited = self.wall is not None and smallest < self.wall.onset
+        if self.wall is not None and self.limited:
+            self.wall.pressure(s.H, self.contact, self.contact_slope)
+            self.wall.limit(s.H, s.HF, s.H_t, self.slope, self.bend, self.face_slope)
+            self.true_rate *= self.slope
+        elif self.wall is not None:
+            self.contact[:] = self.contact_slope[:] = self.bend[:] = 0.0
+            self.slope[:] = self.face_slope[:] = 1.0
+        s.H_t *= a.square
+        return smallest
+
+    def _integrate(self, motion: np.ndarray) -> None:
+        """Integrals of the last solution: N, X, Y (3,) and E (3,), scaled; shear matrix (3, 3) in SI units."""
+        s, k, a = self.solver, self.scales, self.annulus
+        pressed = a.weight * (s.pressure + self.contact / k.pressure)
+        self.loads = products(a.moments, pressed[None])[:, 0]
+        self.rows = a.link_rows(s.H, s.HF)
+        self.carried = products(self.rows, s.pressure[None])[:, 0]
+        share = np.where(s.work.active | a.grid.fixed, 1.0, self.closure.cavity_shear)
+        # on the links, whose gaps lie on one side of a step
+        self.sheared = a.weight * 0.5 * (share + np.roll(share, -1, axis=0)) / s.HF
+        self.shear = self._shear_matrices(self.sheared[None])[0]
+
+    def _shear_matrices(self, densities: np.ndarray) -> np.ndarray:
+        """``int u_k . u_l density dA`` (k, 3, 3) of densities (k, n, m), SI units, for the velocities of `Annulus`."""
+        R, out = self.scales.R, np.zeros((len(densities), 3, 3))
+        whole, x, y, turn = products(self.annulus.link_moments, densities)
+        out[:, 0, 0], out[:, 1, 1], out[:, 2, 2] = R**2 * turn, whole, whole
+        out[:, 0, 1], out[:, 0, 2] = -R * y, R * x
+        out[:, 1:, 0] = out[:, 0, 1:]
+        return np.asarray(self.scales.shear * out)
+
+    def _weights(self) -> np.ndarray:
+        """Weights (6, 6) of N, X, Y and E in the wrench without its shear, SI units."""
+        k, s, (bx, by) = self.scales, self.side, self.motion[1:3]
+        out, half = np.zeros((6, 6)), 0.5 * k.pressure * k.c * k.R
+        out[0, 0], out[1, 0], out[2, 0] = s * bx * k.force, s * by * k.force, s * k.force
+        out[3, 2], out[4, 1] = s * k.force * k.R, -s * k.force * k.R
+        out[5, 1], out[5, 2] = s * by * k.force * k.R, -s * bx * k.force * k.R
+        out[0, 4] = out[1, 5] = half
+        out[5, 3] = half * k.R
+        return out
+
+    def _wrench(self) -> np.ndarray:
+        out = self._weights() @ np.concatenate((self.loads, self.carried))
+        out[[5, 0, 1]] -= self.shear @ self.motion[6:]
+        return np.asarray(out)
+
+    def _power(self) -> float:
+        s, k, sliding = self.solver, self.scales, self.motion[6:]
+        half = 0.5 * k.pressure * k.c * k.R * np.array([k.R, 1.0, 1.0])
+        squeezed = k.force * k.c * float((self.annulus.weight * s.pressure * self.true_rate).sum())
+        return float(sliding @ self.shear @ sliding - sliding @ (half * self.carried)) - squeezed
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d motion (6, 9) of the last evaluation, exact for its active set."""
+        k, n, R = self.scales, self.side, self.scales.R
+        gradient = self._gradients()
+        out = self._weights() @ gradient
+        N, X, Y = (k.force * self.loads * np.array([1.0, R, R])).tolist()
+        # the weights' own dependence on the tilt
+        out[0, 1] += n * N
+        out[1, 2] += n * N
+        out[5, 1] -= n * Y
+        out[5, 2] += n * X
+        rows, sliding = [5, 0, 1], self.motion[6:]
+        out[rows, 6:] -= self.shear
+        scale = np.array([1.0, R, R]) / k.c
+        thinner = -self.sheared * self.face_slope / self.solver.HF
+        out[rows, :3] -= (self._shear_matrices(thinner * self.link_shape) @ sliding).T * scale
+        return np.asarray(out)
+
+    def _gradients(self) -> np.ndarray:
+        """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included."""
+        s, a, k, w = self.solver, self.annulus, self.scales, self.solver.work
+        fields, unknown = np.concatenate((a.moments * a.weight, self.rows)), w.order[: w.count]
+        rows = fields.reshape(6, -1)[:, unknown] * w.active.reshape(-1)[unknown]
+        y = s.system
+        if self.closure.clips and self.closure.line_in_cells:
+            rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        sens = s.sensitivities(s.adjoint(rows))
+        cell, face = a.link_gradients(s.pressure)
+        sens.cell[3:] += cell
+        sens.face[3:] += face
+        rate = sens.rate * a.square
+        if self.limited:
+            sens.cell[:] = sens.cell * self.slope + rate * self.bend
+            sens.face[:] *= self.face_slope
+            rate *= self.slope
+            sens.cell[:3] += a.moments * a.weight * self.contact_slope / k.pressure
+        pose = products(sens.cell, self.shape) + products(sens.face, self.link_shape)
+        through, whole = products(rate, self.shape), rate.sum(axis=(1, 2))
+        # the shift's rate -side u . b / 2 in scaled tilt and shift
+        pose[:, 1:] -= 0.5 * self.side * np.outer(whole, self.shift)
+        shift = products(rate, self.shifted) - 0.5 * self.side * np.outer(whole, self.pose[1:])
+        scale = np.array([1.0, k.R, k.R]) / k.c
+        return np.concatenate(
+            (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1
+        )

@@ -1,0 +1,113 @@
+"""The films on the end faces at a prescribed position of the journal."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.thrust import ADVICE, ThrustModel
+from exudyn_ehd.pictures.units import shown
+from exudyn_ehd.status import FilmError, InputError, Status
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ThrustResult:
+    """Films on the end faces at one position of the journal; vectors on the journal, in the joint frame.
+
+    Attributes
+    ----------
+    axial_position : float
+        Of the journal's centre, m.
+    force, moment : (3,) arrays
+        N and Nm, moment about the joint's origin.
+    axial_force, friction_torque : float
+        N along z; Nm about the bearing's axis.
+    axial_stiffness, axial_damping : float
+        -dF/dz, N/m, and -dF/dw, N s/m.
+    minimum_gap, peak_pressure, power_loss, contact_load : float
+        m, Pa, W, N, of all faces.
+    inflow, outflow : (k,) arrays
+        m3/s that every face takes in at its inner radius, and gives away at its outer one.
+    theta, r : (n,), (m,) arrays
+        Grid, rad and m.
+    pressure, gap : (k, n, m) arrays
+        Of every face, Pa (gauge) and m; the lower one first.
+    tangent : (6, 11) array
+        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
+
+    Examples
+    --------
+    After the example of `ThrustFaces`:
+
+    >>> print(film.faces)
+    <ThrustResult: axial force -3.88 kN, minimum film thickness 20 µm, peak pressure 2.9 MPa, power loss 577 W>
+    >>> film.faces.pressure.shape  # faces, theta, r
+    (2, 96, 11)
+    """
+
+    axial_position: float
+    force: np.ndarray
+    moment: np.ndarray
+    axial_force: float
+    friction_torque: float
+    axial_stiffness: float
+    axial_damping: float
+    minimum_gap: float
+    peak_pressure: float
+    power_loss: float
+    contact_load: float
+    inflow: np.ndarray
+    outflow: np.ndarray
+    theta: np.ndarray = field(repr=False)
+    r: np.ndarray = field(repr=False)
+    pressure: np.ndarray = field(repr=False)
+    gap: np.ndarray = field(repr=False)
+    tangent: np.ndarray = field(repr=False)
+
+    def __repr__(self) -> str:
+        gap, peak = shown("length", self.minimum_gap), shown("pressure", self.peak_pressure)
+        force, loss = shown("force", self.axial_force), shown("power", self.power_loss)
+        film = f"minimum film thickness {gap}, peak pressure {peak}, power loss {loss}"
+        return f"<ThrustResult: axial force {force}, {film}>"
+
+
+def thrust_result(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult | None:
+    """The films on the faces; None for a bearing without them, of which the journal's position may be 0 only."""
+    if bearing.thrust is None:
+        if position != 0.0:
+            raise InputError(
+                f"{where}: axial_position is that between the faces of JournalBearing.thrust=ThrustFaces(...), which "
+                f"the bearing does not have, got {position!r} m; without faces nothing depends on it."
+            )
+        return None
+    model = ThrustModel(bearing)
+    found = model.evaluate(motion, position)
+    if found.status is not Status.CONVERGED:
+        gap = min(state.minimum_gap for state in found.states)
+        raise FilmError(
+            f"{where}: {found.status.name} on a thrust face at the axial position {position:.4g} m, tilt = "
+            f"({motion[2]:.3g}, {motion[3]:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+        )
+    tangent, values, first = found.tangent(), found.quantities(), model.faces[0]
+    return ThrustResult(
+        axial_position=position,
+        force=found.wrench[:3],
+        moment=found.wrench[3:],
+        axial_force=float(found.wrench[2]),
+        friction_torque=float(found.wrench[5]),
+        axial_stiffness=-float(tangent[2, 10]),
+        axial_damping=-float(tangent[2, 9]),
+        minimum_gap=values["thrust_minimum_gap"],
+        peak_pressure=values["thrust_peak_pressure"],
+        power_loss=values["thrust_power_loss"],
+        contact_load=values["thrust_contact_load"],
+        inflow=np.array([state.inflow for state in found.states]),
+        outflow=np.array([state.outflow for state in found.states]),
+        theta=first.annulus.grid.x,
+        r=first.annulus.scale * first.annulus.r,
+        pressure=np.array([face.pressure for face in model.faces]),
+        gap=np.array([face.gap for face in model.faces]),
+        tangent=tangent,
+    )

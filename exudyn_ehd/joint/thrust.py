@@ -1,0 +1,166 @@
+"""The films on both end faces of a joint as a pure function of its motion and of the journal's place along the axis.
+
+Motion (10,) as in `exudyn_ehd.joint.solved_film`; besides it the axial position z of the journal's centre, the point of
+its axis that lies at O in the reference configuration. The collars are planes across the journal's axis at fixed
+distances from the centre. With the axis at (x, y) in the mid-plane and e = (x, y) + (bx, by) z_f at a face, z_f =
++-L/2, they cross the bearing's axis at ``zeta = z + bx x + by y`` from their middle places and slide with
+``u = de/dt - omega e_z x e`` there. What is left out is of second order in the tilt, clearance squared over length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.cavitation.closures import place_line
+from exudyn_ehd.film.thrust.face import FACE_SIZE, FaceFilm, FaceState
+from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.status import Status
+
+NAMES = (
+    "axial_position",
+    "thrust_force",
+    "thrust_minimum_gap",
+    "thrust_peak_pressure",
+    "thrust_torque",
+    "thrust_power_loss",
+    "thrust_contact_load",
+)
+"""Quantities of the faces, as in histories."""
+ADVICE = (
+    "give the faces contact=RegularisedWall(onset=...), pads that carry (profile=TaperLand(...)), more clearance or "
+    "less load, or take smaller steps."
+)
+"""What helps where a face has no film."""
+
+
+@dataclass(frozen=True, eq=False)
+class ThrustEvaluation:
+    """One evaluation of the faces.
+
+    Attributes
+    ----------
+    status : Status
+        The worst of the faces.
+    motion, position : (10,) array, float
+    wrench : (6,) array
+        Force (N) and moment about O (Nm) on the journal, joint frame; nan unless converged.
+    states : tuple of FaceState
+        Lower face first.
+    """
+
+    status: Status
+    motion: np.ndarray
+    position: float
+    wrench: np.ndarray
+    states: tuple[FaceState, ...]
+    model: ThrustModel
+    serial: int
+
+    def tangent(self) -> np.ndarray:
+        """d wrench / d (motion, position) (6, 11), exact; only until the model's next evaluation."""
+        if self.serial != self.model.serial:
+            raise RuntimeError("ThrustEvaluation.tangent: the model has evaluated another state since.")
+        if self.status is not Status.CONVERGED:
+            return np.full((6, MOTION_SIZE + 1), np.nan)
+        out = np.zeros((6, MOTION_SIZE + 1))
+        for face in self.model.faces:
+            out += _about_origin(face.tangent(), self.model.height(face)) @ face_motion_map(
+                self.motion, self.model.height(face)
+            )
+        return out
+
+    def quantities(self) -> Mapping[str, float]:
+        """Scalars by the names of `NAMES`.
+
+        Place (m), axial force on the journal (N), smallest gap (m), highest pressure (Pa), torque on the journal about
+        the bearing's axis (Nm), power that turns into heat or pumps oil (W), load carried by contact (N).
+        """
+        s = self.states
+        values = (
+            self.position,
+            float(self.wrench[2]),
+            min(f.minimum_gap for f in s),
+            max(f.peak_pressure for f in s),
+            float(self.wrench[5]),
+            sum(f.power_loss for f in s),
+            sum(f.contact_load for f in s),
+        )
+        return dict(zip(NAMES, values, strict=True))
+
+
+class ThrustModel:
+    """Films on the end faces of a bearing that has ``thrust``.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    """
+
+    def __init__(self, bearing: JournalBearing) -> None:
+        faces = bearing.thrust
+        assert faces is not None
+        self.bearing, self.serial = bearing, 0
+        closure = place_line(bearing.cavitation, True)
+        inner = bearing.end_pressures if faces.inner_pressures is None else faces.inner_pressures
+        self.faces = [
+            FaceFilm(
+                faces,
+                side,
+                closure,
+                bearing.lubricant.viscosity,
+                (inner[k], faces.outer_pressures[k]),
+                bearing.squeeze,
+            )
+            for k, (side, present) in enumerate(((-1, faces.lower), (1, faces.upper)))
+            if present
+        ]
+
+    def height(self, face: FaceFilm) -> float:
+        """z of a face, m."""
+        return 0.5 * face.side * self.bearing.length
+
+    def evaluate(self, motion: np.ndarray, position: float) -> ThrustEvaluation:
+        """The films at a motion (10,) and an axial position."""
+        self.serial += 1
+        motion = np.array(motion[:MOTION_SIZE], dtype=float)
+        if not np.isfinite(motion.sum() + position):
+            state = FaceState(Status.NOT_FINITE, np.full(6, np.nan), np.nan)
+            return ThrustEvaluation(state.status, motion, position, state.wrench, (state,), self, self.serial)
+        states = tuple(face.evaluate(face_motion(motion, position, self.height(face))) for face in self.faces)
+        wrench = np.zeros(6)
+        for face, state in zip(self.faces, states, strict=True):
+            wrench += _about_origin(state.wrench, self.height(face))
+        status = max((state.status for state in states), key=lambda found: found.value)
+        return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
+
+
+def face_motion(motion: np.ndarray, position: float, height: float) -> np.ndarray:
+    """Motion (9,) of the collar at a face at z = ``height``, as in `exudyn_ehd.film.thrust.face`."""
+    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w = motion.tolist()
+    zeta, zeta_t = position + bx * x + by * y, w + bx_t * x + bx * x_t + by_t * y + by * y_t
+    u_x, u_y = x_t + bx_t * height + omega * (y + by * height), y_t + by_t * height - omega * (x + bx * height)
+    return np.array([zeta, bx, by, zeta_t, bx_t, by_t, omega, u_x, u_y])
+
+
+def face_motion_map(motion: np.ndarray, height: float) -> np.ndarray:
+    """Derivative (9, 11) of `face_motion` to motion and position."""
+    x, y, bx, by, x_t, y_t, bx_t, by_t, omega, _ = motion.tolist()
+    out = np.zeros((FACE_SIZE, MOTION_SIZE + 1))
+    out[0, :4], out[0, 10] = (bx, by, x, y), 1.0
+    out[1, 2] = out[2, 3] = out[4, 6] = out[5, 7] = out[6, 8] = 1.0
+    out[3, :10] = bx_t, by_t, x_t, y_t, bx, by, x, y, 0.0, 1.0
+    out[7, [1, 3, 4, 6, 8]] = omega, omega * height, 1.0, height, y + by * height
+    out[8, [0, 2, 5, 7, 8]] = -omega, -omega * height, 1.0, height, -x - bx * height
+    return out
+
+
+def _about_origin(wrench: np.ndarray, height: float) -> np.ndarray:
+    """Wrench (6, ...) about the face's centre at z = ``height`` to one about O."""
+    out = wrench.copy()
+    out[3] -= height * wrench[1]
+    out[4] += height * wrench[0]
+    return out
