@@ -363,7 +363,7 @@ def film_solver(
                 f"Lubricant.density_law must be None with film={type(film).__name__}(...), which takes oil as "
                 f"incompressible; use film=FiniteLength(...)."
             )
-        if thins or closure.line_in_cells:
+        if thins:
             return ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=flux_effects, density=density)
         return CompressibleFilmSolver(grid, closure, density, squeeze=squeeze, flux_effects=flux_effects)
     if isinstance(film, ClassicSOR):

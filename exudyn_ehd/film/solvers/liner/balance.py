@@ -57,12 +57,15 @@ class LinerBalance(LinerFilm):
         if self.line is None or not self.film.work.warm or self.rates.pseudo != 0.0:
             # the way to a film without its line is the safer one
             self.met = None
-            ok, steps = self._solve_plain() if self.plain and not self.fills else newton(self)
+            ok, steps = self._newton()
         if self.line is None or not ok or self.rates.pseudo != 0.0:
             return ok, steps
         self.met, self.film.work.warm = self.line, True
-        ok, more = newton(self)
+        ok, more = self._newton()
         return ok, steps + more
+
+    def _newton(self) -> tuple[bool, int]:
+        return self._solve_plain() if self.plain and not self.fills else newton(self)
 
     def see_cavity(self) -> None:
         """Take the line's coefficients of the film that is about to be solved; gaps and links are left as they are in
@@ -133,6 +136,7 @@ class LinerBalance(LinerFilm):
             self.residual,
             w.active,
             (start, w.warm, w.count, w.width),
+            None if self.met is None else self.met.state,
         )  # fmt: skip
         self.reusable = ok
         return ok, steps
@@ -208,7 +212,8 @@ class LinerBalance(LinerFilm):
             (self.clips, self._chooses()),
             (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
             self._sides(self.trial),
-            None if self.met is None else (self.met.state, self.taken),
+            None if self.met is None else self.met.state,
+            self.taken,
         )
         self.taken += 1
         return Step(*found)
