@@ -13,7 +13,7 @@ from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.solvers.liner.line import GapChain
+from exudyn_ehd.film.solvers.liner.line import FilmLine, GapChain
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step, newton
 from exudyn_ehd.film.solvers.steps import (
@@ -50,21 +50,22 @@ class LinerBalance(LinerFilm):
 
     def solve(self) -> tuple[bool, int]:
         """Newton for the film that is asked for, from the present state and sets: (found, steps)."""
+        ok, steps = True, 0
+        if self.line is None or not self.film.work.warm:
+            # the way to a film without its line is the safer one
+            ok, steps = self.solve_with(None)
+        if self.line is None or not ok:
+            return ok, steps
+        self.film.work.warm = True
+        ok, more = self.solve_with(self.line)
+        return ok, steps + more
+
+    def solve_with(self, line: FilmLine | None) -> tuple[bool, int]:
+        """`solve` with the line inside the cells, or without."""
         # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
         if self.film.complementary:
             admit(*self._sides(self.u), self.film.grid.fixed, self.film.system.cavity_pressure)
-        ok, steps = True, 0
-        if self.line is None or not self.film.work.warm or self.rates.pseudo != 0.0:
-            # the way to a film without its line is the safer one
-            self.met = None
-            ok, steps = self._newton()
-        if self.line is None or not ok or self.rates.pseudo != 0.0:
-            return ok, steps
-        self.met, self.film.work.warm = self.line, True
-        ok, more = self._newton()
-        return ok, steps + more
-
-    def _newton(self) -> tuple[bool, int]:
+        self.met = line
         return self._solve_plain() if self.plain and not self.fills else newton(self)
 
     def see_cavity(self) -> None:
