@@ -16,6 +16,8 @@ the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to t
 1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
 out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
 
+Swift-Stieber's rupture line lies inside the cells as `exudyn_ehd.film.solvers.liner.line` has it.
+
 Newton's method with the exact non-symmetric matrix starts from the last film, else
 from the incompressible one. Should it fail, the density's departure from a constant
 is switched on in steps. Oil that no pressure of the law's range carries has no film.

@@ -71,7 +71,9 @@ def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.
 def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     """Implicit steps of a storage of its own towards the target, from short to long; the last one is the target itself.
 
-    A film with its line inside the cells follows the one on the vertices, in the same way if it has to. Returns (found, Newton steps).
+    A film with its line inside the cells follows the one on the vertices, in the same way if it has to.
+
+    Returns (found, Newton steps).
     """
     work, rates = film.film.work, film.rates
     work.warm = False
