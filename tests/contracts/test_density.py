@@ -17,7 +17,7 @@ C, STEP = 25e-6, 1e-4
 CLOSURES = [
     ehd.FullSommerfeld(),
     ehd.Gumbel(),
-    ehd.SwiftStieber(line_in_cells=False),
+    ehd.SwiftStieber(),
     ehd.ElrodAdams(cavity_pressure=-1e5),
 ]
 PRESSURE = [None, ehd.BarusPressure(coefficient=1e-8), ehd.RoelandsPressure(coefficient=2e-8)]

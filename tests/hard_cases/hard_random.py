@@ -394,6 +394,17 @@ def _compressible(rng):
     return dataclasses.replace(plain, lubricant=oil)
 
 
+def _dense(rng):
+    """A bearing with a density law that carries up to the end of its range, every other one with a pressure law."""
+    bearing = random_bearing(rng, ehd.SwiftStieber(), laws=False)
+    film = bearing.film if isinstance(bearing.film, ehd.FiniteLength) else ehd.FiniteLength()
+    thickens = ehd.RoelandsPressure(coefficient=2e-8) if rng.random() < 0.5 else None
+    oil = ehd.Lubricant(
+        viscosity=VISCOSITY * 10.0 ** rng.uniform(-3.0, -1.0), density_law=ehd.DowsonHigginson(), pressure_law=thickens
+    )
+    return dataclasses.replace(bearing, film=film, lubricant=oil)
+
+
 CAMPAIGNS: dict[str, Callable[[int, int], Record]] = {
     "FullSommerfeld": lambda n, seed: steady_campaign(
         "FullSommerfeld", lambda r: random_bearing(r, ehd.FullSommerfeld()), n, seed
@@ -411,6 +422,7 @@ CAMPAIGNS: dict[str, Callable[[int, int], Record]] = {
     "ElrodAdams, in motion": lambda n, seed: transient_campaign(
         "ElrodAdams, in motion", lambda r: random_bearing(r, ehd.ElrodAdams()), n, seed
     ),
+    "SwiftStieber, compressible": lambda n, seed: steady_campaign("SwiftStieber, compressible", _dense, n, seed, 50),
     "ElrodAdams, compressible": lambda n, seed: transient_campaign("ElrodAdams, compressible", _compressible, n, seed),
 }
 
@@ -428,4 +440,5 @@ LINERS = {
     if name.endswith("in motion") or not isinstance(closure, ehd.Gumbel)
 }
 CAMPAIGNS |= LINERS
+COSTLY = {*LINERS, "SwiftStieber, compressible"}
 CAMPAIGNS["ImpedanceMap"] = lambda n, seed: steady_campaign("ImpedanceMap", random_map, n, seed, 500)

@@ -13,8 +13,8 @@ LARGEST_ON_LINER = 6000
 
 
 def count(name, share):
-    """Films on liners take ten times the time of rigid ones."""
-    return round(share * report.SHORT * (0.2 if name in hard_random.LINERS else 1.0))
+    """Films on liners and with density laws take ten times the time of plain ones."""
+    return round(share * report.SHORT * (0.2 if name in hard_random.COSTLY else 1.0))
 
 
 def run(name, states):

@@ -6,6 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
+from exudyn_ehd.film.cavitation.line_kernels import meet_line
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import plain_slopes
@@ -37,8 +38,18 @@ WHOLE_STEPS, TO_THE_END = 16, 0.9
 
 
 @njit(cache=True, inline="always")
-def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual):
+def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual, line):
     """Norm of what does not hold, and the smallest gap, at P."""
+    norm, gap = _balance_alone(P, fill, fixed, numbers, kinds, terms, liner, oil, residual)
+    if line is not None and gap > 0.0:
+        meet_line(P, numbers[0], terms[0], terms[1], line, residual)
+        norm = violation(residual, P, fixed, numbers[0], True)
+    return norm, gap
+
+
+@njit(cache=True, inline="always")
+def _balance_alone(P, fill, fixed, numbers, kinds, terms, liner, oil, residual):
+    """`_balance` without a line inside the cells."""
     if liner is not None:
         load, rigid, G, delta_old, gaps, _, metric, known, rates, _ = liner
         return plain_residual(
@@ -52,7 +63,7 @@ def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual):
 
 
 @njit(cache=True, inline="always")
-def factor(u, fixed, numbers, terms, liner, oil, matrix, active):
+def factor(u, fixed, numbers, terms, liner, oil, matrix, active, line):
     """Newton's matrix at u, for the state of the last balance, factored; returns (ok, count, width)."""
     P = u[0]
     if liner is not None:
@@ -60,11 +71,12 @@ def factor(u, fixed, numbers, terms, liner, oil, matrix, active):
         _, vx, vz, beta = numbers
         plain_slopes(P, load, beta, rates[1], gap_slopes)
         link_gradients(P, None, None, terms, fixed, gaps, None, metric, vx, vz, by)
-        return factor_film(u, (None, None), terms, fixed, (gap_slopes, load, rates, beta, by), matrix, active)
+        elements = gap_slopes, load, rates, beta, by
+        return factor_film(u, (None, None), terms, fixed, elements, matrix, active, None, line)
     if oil is not None:
         scale, floor, law, share, known, rho, rho_P = oil
         density_slope_at(P, scale, floor, law, share, known, rho_P)
-        return factor_film(u, (rho, rho_P), terms, fixed, None, matrix, active)
+        return factor_film(u, (rho, rho_P), terms, fixed, None, matrix, active, None, line)
     return False, 0, 0
 
 
@@ -75,17 +87,19 @@ def _end(oil, step):
 
 
 @njit(cache=True, inline="always")
-def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, width, trial):
+def _step(step, residual, u, numbers, kinds, gap, liner, oil, factored, count, width, trial, line):
     """As `newton_step`."""
     pc, vx, vz, beta = numbers
     base, slight = pc if pc > -np.inf else 0.0, LEAST_PRESSURE * (abs(vx) + abs(vz))
     if liner is not None:
         opening, elements = gap / beta, (liner[0], liner[4], liner[5])
         levels = (pc, base, max(LEAST_DEFLECTION * opening, slight), opening, ROUNDED * slight)
-        return newton_step(residual, u, elements, ENDLESS, factored, count, width, kinds, levels, trial)
+        end = ENDLESS
+        return newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line, step - 1)
     if oil is not None:
         levels = (pc, base, max(SMALLEST_PEAK / oil[0], slight), np.inf, ROUNDED * slight)
-        return newton_step(residual, u, None, _end(oil, step), factored, count, width, kinds, levels, trial)
+        end = _end(oil, step)
+        return newton_step(residual, u, None, end, factored, count, width, kinds, levels, trial, line, step - 1)
     return np.inf, np.inf, 0.0, 0.0, 0
 
 
@@ -113,7 +127,7 @@ def _accept(u, trial, residual, fixed, pc, chooses, active, changes):
 
 
 @njit(cache=True, nogil=True)
-def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, residual, active, start):
+def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, residual, active, start, line):
     """Newton from ``u``, in place; returns (found, steps, exact, count, width).
 
     Parameters
@@ -128,11 +142,12 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
     matrix : (slopes, number, factored) of `factor_film`
     active : unknown vertices
     start : (whether a factor is there, whether the sets are, count, width)
+    line : that of `line_kernels`, or None
     """
     pc, P, fill = numbers[0], u[0], u[1]
     clips, chooses = kinds
     ready, warm, count, width = start
-    norm, gap = _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual)
+    norm, gap = _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual, line)
     if not gap > 0.0:
         return False, 0, False, count, width
     if not chooses or not warm:
@@ -144,14 +159,14 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
     for step in range(1, RULE.most_steps + 1):
         fresh = not ready
         if fresh:
-            ok, count, width = factor(u, fixed, numbers, terms, liner, oil, matrix, active)
+            ok, count, width = factor(u, fixed, numbers, terms, liner, oil, matrix, active, line)
             if not ok:
                 return False, step, False, count, width
             moved = 0.0
             if count == 0 or norm == 0.0:
                 return True, step, True, count, width
         size, left, peak, share, changes = _step(
-            step, residual, u, numbers, kinds, gap, liner, oil, matrix[2], count, width, trial
+            step, residual, u, numbers, kinds, gap, liner, oil, matrix[2], count, width, trial, line
         )
         if not size < 1e300:
             return False, step, False, count, width
@@ -165,11 +180,11 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
             if k > 0:
                 share *= 0.5
                 changes = _shorter(step, u, chooses, liner, oil, matrix[2], count, share, pc, SUCTION * peak, trial)
-            norm, gap = _balance(trial[0], trial[1], fixed, numbers, kinds, terms, liner, oil, residual)
+            norm, gap = _balance(trial[0], trial[1], fixed, numbers, kinds, terms, liner, oil, residual, line)
             if improves(gap, norm, before, size, changes):
                 break
         if from_last and not improves(gap, norm, before, size, changes):
-            norm, gap = _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual)
+            norm, gap = _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual, line)
             if chooses:
                 select(P, residual, fixed, pc, active)
             ready = False
@@ -188,6 +203,6 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
         last, last_left = size, 0.0 if from_last else left
     if norm <= flow_rounding(terms, rate):
         # a film that carries nothing: its balances hold to rounding, and its steps never become small
-        ok, count, width = factor(u, fixed, numbers, terms, liner, oil, matrix, active)
+        ok, count, width = factor(u, fixed, numbers, terms, liner, oil, matrix, active, line)
         return ok, RULE.most_steps, ok, count, width
     return False, RULE.most_steps, False, count, width

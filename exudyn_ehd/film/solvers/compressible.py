@@ -16,6 +16,8 @@ the strain of the oil, dp / K with its bulk modulus K = 1 / a near 1.7 GPa, to t
 1 % for 10 MPa during which the gap changes by half. The rates at an instant (a history without a time step) leave it
 out likewise. A flooded start holds oil of ambient density, so that its film builds up the pressure over some steps.
 
+Swift-Stieber's rupture line lies inside the cells as `exudyn_ehd.film.solvers.liner.line` has it.
+
 Newton's method with the exact non-symmetric matrix starts from the last film, else
 from the incompressible one. Should it fail, the density's departure from a constant
 is switched on in steps. Oil that no pressure of the law's range carries has no film.
@@ -35,6 +37,7 @@ from exudyn_ehd.film.reynolds.links import FluxEffect
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compiled import factor, solve
 from exudyn_ehd.film.solvers.exact import NewtonFilmSolver
+from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.steps import admit
 from exudyn_ehd.status import Status
 
@@ -72,6 +75,10 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects)
         shape = grid.shape
         self.law, self.pressure_scale = law, 1.0
+        self.edge: FilmLine | None = None
+        if self.line is not None:
+            self.line = self.system.line = self.edge = FilmLine(shape)
+            self.edge.flux = self.flux
         s, fills = self.system, closure.conserves_mass
         self.fields = np.zeros((10, *shape))
         s.kx, s.kz, s.fx, s.fz, grow, known, kept, area, s.prompt, s.late = self.fields
@@ -121,7 +128,8 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             ok, steps = self._newton(1.0)
             if ok:
                 return self._finish(steps)
-        w.warm = self.reusable = False
+        self.forget()
+        self.reusable = False
         status, count = super().solve(vx, vz, cavity_pressure, mass_old, step)
         steps += count
         w.warm = False
@@ -129,6 +137,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             return status, steps
         if self.closure.conserves_mass:
             self._set_store()
+        self._take_line()
         # Beyond the law's range the density stays what it is at its end: nothing to go along from there.
         out = self._reaches(self.law.kernel_table.highest)
         ok, count = self._newton(1.0) if out else self._switch_on()
@@ -159,6 +168,19 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         if self.closure.conserves_mass:
             self._set_storage(mass_old, step)
             self._set_store()
+        self._take_line()
+
+    def _take_line(self) -> None:
+        """The line's coefficients of this film; see `exudyn_ehd.film.solvers.liner.line`."""
+        s = self.system
+        if self.edge is not None:
+            self.edge.density = float(self.law.density.ratio(self._cavity_in_pascal(s.cavity_pressure)))
+            self.edge.take((self.H, self.HF), s.kx, s.b, self.grid.fixed)
+
+    @property
+    def _line(self) -> tuple[np.ndarray, ...] | None:
+        """The line inside the cells as kernels take it."""
+        return None if self.edge is None else self.edge.state
 
     def _set_store(self) -> None:
         """Coefficients of a mass-conserving film's storage term; see `FilmTerms`."""
@@ -210,6 +232,7 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.residual,
             self._unknown(),
             (self.reusable, True, w.count, w.width),
+            self._line,
         )
         if fills:
             np.logical_and(self.full, self.free, out=w.active)
@@ -249,6 +272,9 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             np.logical_not(fixed, out=w.active)
         elif self.closure.conserves_mass:
             np.maximum(s.fill, 0.0, out=s.fill)
+        elif self.edge is not None:
+            self.edge.settle(w.active)
+            self.exact = self.exact and self.edge.factored
         return Status.CONVERGED, steps
 
     def viscosity(self, p_out: np.ndarray, ratio_out: np.ndarray, ratio_P_out: np.ndarray, p_P_out: np.ndarray) -> bool:
@@ -299,7 +325,15 @@ class CompressibleFilmSolver(NewtonFilmSolver):
         w = self.work
         if not self.exact:
             _, w.count, w.width = factor(
-                self.u, self.grid.fixed, self._speeds(), self.fields, None, self._oil(1.0), w.matrix, self._unknown()
+                self.u,
+                self.grid.fixed,
+                self._speeds(),
+                self.fields,
+                None,
+                self._oil(1.0),
+                w.matrix,
+                self._unknown(),
+                self._line,
             )
             self.exact = True
         return dense_band(w.lower, w.count, w.width), dense_band(w.upper, w.count, w.width)

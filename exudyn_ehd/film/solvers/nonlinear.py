@@ -43,7 +43,8 @@ ones some are not found. `FullSommerfeld` has none where surfaces part so fast t
 (NO_FILM).
 
 Newton's method (`exudyn_ehd.film.solvers.newton`) starts from the last film, else from a dry guess; should it fail,
-pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`).
+pseudo time leads to the film (`exudyn_ehd.film.solvers.liner.continuation`). A line inside the cells is sought from the
+film on the vertices, in the same two ways.
 """
 
 from __future__ import annotations

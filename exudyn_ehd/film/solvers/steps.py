@@ -120,20 +120,20 @@ def take_over(trial, r, fixed, pc, active, P_out):
 
 
 @njit(cache=True, inline="always")
-def _solve(residual, factored, count, width, P, pc, line):
+def _solve(residual, factored, count, width, P, pc, line, taken):
     """Newton's step of the numbered unknowns; returns as `bend_to_line`."""
     order, x, lower, upper, inv_diag = factored
     flat = residual.reshape(-1)
     for r in range(count):
         x[r] = -flat[order[r]]
     if line is not None:
-        lean_to_line(P, pc, order, count, line[0], x)
+        lean_to_line(P, pc, order, count, line, x)
     if count > 0:
         L, U = dense_band(lower, count, width), dense_band(upper, count, width)
         solve_lu_one(L, U, inv_diag, count, width, x)
     if line is None:
         return 0.0
-    return bend_to_line(P, pc, order, count, line[0], line[1], x)
+    return bend_to_line(P, pc, order, count, line, taken, x)
 
 
 @njit(cache=True)
@@ -171,7 +171,7 @@ def _sizes(P_now, sides, elements, order, steps, count, base, least):
 
 
 @njit(cache=True)
-def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line=None):
+def newton_step(residual, u, elements, end, factored, count, width, kinds, levels, trial, line, taken):
     """Newton's step of the numbered unknowns with the factor at hand; returns
     the entries of `newton.Step`, and as `take_step`.
 
@@ -185,11 +185,11 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
     elements : (load, gaps, gap slopes), as fields
     end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
-    line : (that of `line_kernels`, steps before), or None
+    line, taken : that of `line_kernels` or None, and steps before
     """
     clips, chooses = kinds
     pc, base, least, opening, suction = levels
-    along_line = _solve(residual, factored, count, width, u[0], pc, line)
+    along_line = _solve(residual, factored, count, width, u[0], pc, line, taken)
     largest, filled, peak, pressing, share = _sizes(u[0], u[2], elements, factored[0], factored[1], count, base, least)
     if not largest < np.inf:
         return np.inf, np.inf, peak, 1.0, 0

@@ -1,5 +1,4 @@
-"""Films between rigid surfaces that Newton's method solves: with an oil that thins by the shear of its own flow, whose
-conductances follow the pressure, or with a density law and a rupture line inside the cells.
+"""Films between rigid surfaces of an oil that thins by the shear of its own flow: conductances follow the pressure.
 
 `exudyn_ehd.film.solvers.nonlinear` without a liner; the rest of the package sees a plain film's links, whose
 derivatives at fixed pressure are those of `LinkFlux`, and Newton's matrix.
@@ -21,7 +20,7 @@ from exudyn_ehd.status import Status
 
 
 class ThinningFilmSolver(NonlinearFilmSolver):
-    """`FilmSolver` with a `ShearThinning` among its effects, or with a density law.
+    """`FilmSolver` with a `ShearThinning` among its effects.
 
     Parameters
     ----------
@@ -44,11 +43,10 @@ class ThinningFilmSolver(NonlinearFilmSolver):
         density: CompressibleLaw | None = None,
     ) -> None:
         super().__init__(grid, closure, squeeze=squeeze, flux_effects=flux_effects, oil=density, density=density)
-        self.thins = next((e for e in flux_effects if isinstance(e, ShearThinning)), None)
+        self.thins = next(e for e in flux_effects if isinstance(e, ShearThinning))
         coarse = grid.coarser()
         self.flow_x = 1.0 if circumferential_pressure_flow else 0.0
-        if self.thins is not None:
-            self.thins.place(grid, self.flow_x)
+        self.thins.place(grid, self.flow_x)
         if coarse is not None and self.complementary:
             # for the sets of a start alone
             self.coarse = FilmSolver(
@@ -65,11 +63,9 @@ class ThinningFilmSolver(NonlinearFilmSolver):
         return super().solve(vx, vz, cavity_pressure, mass_old, step)
 
     def _start(self, mass_old: np.ndarray | None, step: float) -> tuple[bool, int]:
-        """Newton's method from the incompressible film in which the sliding alone thins the oil; without it from a dry
-        guess."""
+        """Newton's method from the film in which the sliding alone thins the oil; without it from a dry guess."""
         e, s = self.elements, self.system
-        if self.thins is not None:
-            self.thins.see(self.nothing)
+        self.thins.see(self.nothing)
         self.work.warm = e.reusable = False
         status, steps = FilmSolver.solve(self, self.vx, self.vz, s.cavity_pressure, mass_old, step)
         self._set_times(mass_old, step)
@@ -91,7 +87,6 @@ class ThinningFilmSolver(NonlinearFilmSolver):
 
     def response(self) -> tuple[np.ndarray, ...]:
         """`ShearThinning.response` of the last solution."""
-        assert self.thins is not None
         return self.thins.response()
 
     def link_derivatives(self, rho: np.ndarray | None = None) -> np.ndarray:

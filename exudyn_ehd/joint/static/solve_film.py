@@ -14,7 +14,6 @@ from exudyn_ehd.film.reynolds.stepped_gap import SteppedGap
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.compressible import CompressibleFilmSolver
 from exudyn_ehd.film.solvers.linear import FilmSolver
-from exudyn_ehd.film.solvers.thinning import ThinningFilmSolver
 from exudyn_ehd.joint.model.rheology import transform_law
 from exudyn_ehd.joint.seams import PressureLaw
 from exudyn_ehd.pictures.units import shown
@@ -131,7 +130,7 @@ def solve_film(
     4421
     """
     gap = np.asarray(gap, dtype=float)
-    closure = place_line(SwiftStieber() if cavitation is None else cavitation, lubricant.density_law is None)
+    closure = place_line(SwiftStieber() if cavitation is None else cavitation, True)
     _check_film(grid, gap, gap_rate, closure, boundary, history, step)
     if lubricant.shear_law is not None:
         raise InputError(
@@ -174,7 +173,7 @@ def solve_film(
         inflow=solver.inflow() * c * R**2,
         load=float(np.sum(pressure * grid.weight)) * R**2,
         fill=fill,
-        content=fill * gap * (solver.rho if isinstance(solver, (CompressibleFilmSolver, ThinningFilmSolver)) else 1.0),
+        content=fill * gap * (solver.rho if isinstance(solver, CompressibleFilmSolver) else 1.0),
     )
 
 
@@ -184,14 +183,10 @@ def _any_gap_solver(
     effects = () if steps is None else (steps,)
     if not isinstance(law, CompressibleLaw):
         return FilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects)
-    solver: CompressibleFilmSolver | ThinningFilmSolver
     if closure.line_in_cells and (closure.clips or closure.conserves_mass):
         name = type(closure).__name__
         raise InputError(f"solve_film: {name}.line_in_cells=True does not go with Lubricant.density_law; use {name}().")
-    if closure.line_in_cells:
-        solver = ThinningFilmSolver(grid, closure, squeeze=squeeze, flux_effects=effects, density=law)
-    else:
-        solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
+    solver = CompressibleFilmSolver(grid, closure, law, squeeze=squeeze, flux_effects=effects)
     solver.pressure_scale = scale
     return solver
 

@@ -74,6 +74,35 @@ def test_films_do_not_know_their_start(name):
     assert found > 50
 
 
+# Soft liners that close in on a journal: from their films on vertices Newton's method alone comes to rest elsewhere.
+# Bearing's length, journal's motion and what else there is.
+CREEPING = (
+    (0.02, [1.1907e-5, 1.5754e-5, -1.027e-5, 3.5576e-8, -0.35015, 0.46135, -54.548, 27.06, 3000.0, 0.0],
+     {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=4.6625e8), "end_pressures": (1.532e5, 4.1334e5),
+      "film": ehd.FiniteLength(n_theta=96), "contact": ehd.RegularisedWall(onset=6e-7, pressure=1e9)}),
+    (0.04, [-1.2023e-6, -1.5014e-5, 0.0, 0.0, 0.11852, -0.058122, 0.98653, -5.4715, 2932.2, 0.0],
+     {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1.4732e9), "film": ehd.FiniteLength(n_theta=128, n_z=12),
+      "asperity": ehd.GreenwoodTripp(composite_roughness=4e-7, composite_modulus=1e11)}),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(("length", "motion", "options"), CREEPING, ids=("wall", "asperities"))
+def test_pseudo_time_leads_to_films_with_their_line(length, motion, options):
+    """Alone, and after a film close by: the same."""
+    options = {"journal_radius": 0.01, "length": length, "radial_clearance": 2e-5, **options}
+    oil = ehd.Lubricant(viscosity=0.04)
+    model = _model(ehd.SwiftStieber(cavity_pressure=-1e5), **(options | {"lubricant": oil}))
+    found = []
+    for k in range(2):
+        film = model.evaluate(np.array(motion))
+        assert film.status is ehd.Status.CONVERGED
+        assert film.iterations > 100 or k
+        found.append(model.solver.pressure.copy())
+        assert np.any(model.solver.line.s < 1.0)
+        assert model.evaluate(np.array(motion) * (1.0 - 1e-4)).status is ehd.Status.CONVERGED
+    assert np.abs(found[1] - found[0]).max() < 1e-12 * found[0].max()
+
+
 VANISHING = {
     "shear": _oil(shear_law=ehd.CarreauShear(relaxation_time=1e-11, exponent=0.7)),
     "density": _oil(density_law=ehd.DowsonHigginson(coefficient=1e-20)),

@@ -29,7 +29,7 @@ OIL = ehd.Lubricant(
 CLOSURES = [
     ehd.FullSommerfeld(),
     ehd.Gumbel(),
-    ehd.SwiftStieber(line_in_cells=False),
+    ehd.SwiftStieber(),
     ehd.ElrodAdams(cavity_pressure=-1e5),
 ]
 LUMPED = ehd.LumpedThermal(supply_temperature=SUPPLY, housing_conductance=3.0, housing_temperature=310.0, capacity=0.01)

@@ -40,7 +40,7 @@ EFFECTS = {
 CLOSURES = [
     ehd.FullSommerfeld(),
     ehd.Gumbel(),
-    ehd.SwiftStieber(line_in_cells=False),
+    ehd.SwiftStieber(),
     ehd.ElrodAdams(cavity_pressure=-1e5),
 ]
 every_closure = pytest.mark.parametrize("closure", CLOSURES, ids=lambda c: type(c).__name__)

@@ -13,7 +13,7 @@ from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.solvers.liner.elements import plain_links
 from exudyn_ehd.film.solvers.liner.film import LinerFilm
-from exudyn_ehd.film.solvers.liner.line import GapChain
+from exudyn_ehd.film.solvers.liner.line import FilmLine, GapChain
 from exudyn_ehd.film.solvers.liner.parts import LinerParts
 from exudyn_ehd.film.solvers.newton import RULE, Step, newton
 from exudyn_ehd.film.solvers.steps import (
@@ -50,19 +50,23 @@ class LinerBalance(LinerFilm):
 
     def solve(self) -> tuple[bool, int]:
         """Newton for the film that is asked for, from the present state and sets: (found, steps)."""
+        ok, steps = True, 0
+        if self.line is None or not self.film.work.warm:
+            # the way to a film without its line is the safer one
+            ok, steps = self.solve_with(None)
+        if self.line is None or not ok:
+            return ok, steps
+        self.film.work.warm = True
+        ok, more = self.solve_with(self.line)
+        return ok, steps + more
+
+    def solve_with(self, line: FilmLine | None) -> tuple[bool, int]:
+        """`solve` with the line inside the cells, or without."""
         # prescribed vertices move with rotating supplies, the cavity's scaled pressure with the viscosity
         if self.film.complementary:
             admit(*self._sides(self.u), self.film.grid.fixed, self.film.system.cavity_pressure)
-        ok, steps = True, 0
-        if self.line is None or not self.film.work.warm or self.rates.pseudo != 0.0:
-            # the way to a film without its line is the safer one
-            self.met = None
-            ok, steps = self._solve_plain() if self.plain and not self.fills else newton(self)
-        if self.line is None or not ok or self.rates.pseudo != 0.0:
-            return ok, steps
-        self.met, self.film.work.warm = self.line, True
-        ok, more = newton(self)
-        return ok, steps + more
+        self.met = line
+        return self._solve_plain() if self.plain and not self.fills else newton(self)
 
     def see_cavity(self) -> None:
         """Take the line's coefficients of the film that is about to be solved; gaps and links are left as they are in
@@ -133,6 +137,7 @@ class LinerBalance(LinerFilm):
             self.residual,
             w.active,
             (start, w.warm, w.count, w.width),
+            None if self.met is None else self.met.state,
         )  # fmt: skip
         self.reusable = ok
         return ok, steps
@@ -208,7 +213,8 @@ class LinerBalance(LinerFilm):
             (self.clips, self._chooses()),
             (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
             self._sides(self.trial),
-            None if self.met is None else (self.met.state, self.taken),
+            None if self.met is None else self.met.state,
+            self.taken,
         )
         self.taken += 1
         return Step(*found)

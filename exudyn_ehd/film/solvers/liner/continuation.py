@@ -6,11 +6,14 @@ its own, added to every vertex, holds the film back and is taken away step by st
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from exudyn_ehd.film.cavitation.pseudo_time import pseudo_time
 from exudyn_ehd.film.lubricant.pressure_viscosity import PressureLaw
 from exudyn_ehd.film.solvers.liner.balance import LinerBalance
+from exudyn_ehd.film.solvers.liner.line import FilmLine
 from exudyn_ehd.film.solvers.newton import newton
 
 # Smallest gap of a dry guess, and the share of an oil's largest pressure that it may take at leisure.
@@ -68,6 +71,8 @@ def _transformed(film: LinerBalance, oil: PressureLaw, guess: np.ndarray) -> np.
 def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     """Implicit steps of a storage of its own towards the target, from short to long; the last one is the target itself.
 
+    A film with its line inside the cells follows the one on the vertices, in the same way if it has to.
+
     Returns (found, Newton steps).
     """
     work, rates = film.film.work, film.rates
@@ -81,10 +86,10 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
     start = tuple(field.copy() for field in film.u)
     film.update_elements(film.u.P)
 
-    def attempt(extra: float) -> tuple[bool, int]:
+    def attempt(extra: float, line: FilmLine | None = None) -> tuple[bool, int]:
         film.rates = rates._replace(pseudo=extra)
         film.pseudo_old[:] = _stored(film, start)
-        ok, steps = film.solve()
+        ok, steps = film.solve_with(line)
         film.rates, film.reusable = rates, film.reusable and extra == 0.0
         work.warm = work.warm or ok
         taken, given = (start, film.u) if ok else (film.u, start)
@@ -94,7 +99,15 @@ def pseudo_transient(film: LinerBalance) -> tuple[bool, int]:
             film.update_elements(film.u.P)
         return ok, steps
 
-    return pseudo_time(attempt, rate)
+    ok, steps = pseudo_time(attempt, rate)
+    if not ok or film.line is None:
+        return ok, steps
+    to_line = partial(attempt, line=film.line)
+    ok, more = to_line(0.0)
+    steps += more
+    if not ok:
+        ok, more = pseudo_time(to_line, rate)
+    return ok, steps + more
 
 
 def _stored(film: LinerBalance, start: tuple[np.ndarray, ...]) -> np.ndarray:
