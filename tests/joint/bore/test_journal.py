@@ -106,7 +106,7 @@ def test_tangent(pin, bush, option):
     assert checked > 3
 
 
-@pytest.mark.parametrize(("pin", "bush"), SCENES)
+@pytest.mark.parametrize(("pin", "bush"), [SCENES[1], *(pytest.param(*s, marks=pytest.mark.slow) for s in SCENES[::2])])
 def test_stiffness_and_damping_of_an_equilibrium(pin, bush):
     bearing = make_bearing(BUSHES[bush], journal=PINS[pin])
     found = ehd.equilibrium(bearing, speed=300.0, load=(0.0, -1e4))

@@ -51,7 +51,7 @@ def test_closed_form_against_the_equations_of_elasticity(n, nu):
 @pytest.mark.parametrize("inner", [0.0, 0.5 * A, 0.8 * A])
 def test_plane_strain(inner):
     """The middle of a long cylinder whose ends don't move along the axis."""
-    body = cylinder(inner, np.linspace(-10.0 * A, 10.0 * A, 41))
+    body = cylinder(inner, np.linspace(-10.0 * A, 10.0 * A, 31))
     ends = np.isin(np.arange(body.size // 3) % body.nodes_z.size, (0, body.nodes_z.size - 1))
     for n in (0, *range(2, 9)):
         free = np.ones(body.size, dtype=bool)

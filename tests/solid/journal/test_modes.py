@@ -47,7 +47,7 @@ def test_elements_through_a_solid_pin_yield_as_closed_forms_do(tolerance, measur
 
 
 @pytest.mark.parametrize("held", HELD)
-@pytest.mark.parametrize("inner", [0.0, 0.005])
+@pytest.mark.parametrize("inner", [0.0, pytest.param(0.005, marks=pytest.mark.slow)])
 def test_compliance_of_the_modes_is_that_of_the_elements(held, inner):
     """Loads of the modes' own pressures come back exactly; a smooth film they do not know, within the tolerance."""
     journal = pin(held, inner_radius=inner, tolerance=0.08)
