@@ -44,7 +44,7 @@ from exudyn_ehd.status import (
 )
 
 if TYPE_CHECKING:
-    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
 
@@ -382,7 +382,6 @@ def _check_elastic(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
-    from exudyn_ehd.solid.mesh import HollowCylinder
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)
@@ -394,22 +393,5 @@ def _check_elastic(bearing: JournalBearing) -> None:
         )
     if bearing.journal is not None:
         bearing.journal.require_fit(bearing.journal_radius, bearing.length, bearing.bush)
-    if not isinstance(bearing.bush, ModalBush | ANCFBush):
-        return
-    mesh, radius = bearing.bush.mesh, bearing.journal_radius + bearing.radial_clearance
-    if isinstance(mesh, HollowCylinder):
-        own, what, ends = mesh.inner_radius, "HollowCylinder.inner_radius", (-0.5 * mesh.length, 0.5 * mesh.length)
-    else:
-        place = mesh.bore.positions
-        own, what = float(np.hypot(place[:, 0], place[:, 1]).mean()), "a mesh whose bore's mean radius"
-        ends = float(mesh.bore.z.min()), float(mesh.bore.z.max())
-    if abs(own - radius) > 0.02 * radius:
-        raise InputError(
-            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got {what} = {own:g} m."
-        )
-    half = 0.5 * bearing.length * (1.0 - 1e-9)
-    if ends[0] > -half or ends[1] < half:
-        raise InputError(
-            f"JournalBearing.bush must be at least as long as the film, {bearing.length:g} m about its mid-plane, got "
-            f"a bore from {ends[0]:g} to {ends[1]:g} m."
-        )
+    if isinstance(bearing.bush, ModalBush | ANCFBush):
+        require_bore(bearing.bush.mesh, bearing.journal_radius + bearing.radial_clearance, bearing.length)

@@ -33,7 +33,7 @@ PURE = {
     "SwiftStieber.cavity_shear",
     "add_bore_modes.axis", "add_bore_modes.tolerance", "add_bore_modes.radius_tolerance", "bearing_grid.stretch",
     "composite_modulus.poisson_ratios", "recommend.error", "recommend.eccentricity_ratio", "recommend.tilt_ratio",
-    "recommend_steps.error",
+    "recommend_steps.error", "SolveEquilibrium.ratios", "SolveThreshold.ratios",
     "slider_grid.stretch", "steady.eccentricity_ratio", "add_bore_modes.fixed_nodes", "mesh_from_arrays.elements",
     "NeoHooke.poisson_ratio", "OnCylinder.tolerance", "OnPlane.normal", "mesh_from_file.scale", "bearing_grid.rows",
     "UntilPeriodic.tolerance", "Hirs.coefficient", "Hirs.exponent", "Hirs.full", "Hirs.onset", "NgPan.full",
@@ -47,6 +47,8 @@ HANDED_ON = {
     "EquilibriumPoint.load",
     "varied.parameters",
     "parameter_study.parameters",
+    "stability_map.make",
+    "stability_map.values",
 }
 # Numbers, but no sizes of a scene: times and angles of a picture or of what has been computed; what is handed on.
 READING = {
@@ -55,7 +57,7 @@ READING = {
     "LubricatedJoint.plot_traces.options", "CreateLubricatedJoint.itemNumbers", "CreateFlexibleBush.supports",
     "CreateFlexibleBush.loads", "Support.nodes", "mesh_from_arrays.held",
     "mesh_from_fem.held", "mesh_from_file.held", "parameter_study.function", "parameter_study.hosts",
-    "CreateLubricatedSphericalJoint.itemNumbers",
+    "CreateLubricatedSphericalJoint.itemNumbers", "SolveEquilibrium.rotors", "SolveThreshold.rotors",
     "CreateLubricatedJoint.axisLength", "CreateLubricatedJoint.axisRadius", "CreateLubricatedJoint.bodyNumbers",
     "ReplaceJoint.options", "ReplaceJoints.bearing", "ReplaceJoints.options", "ReplaceJoints.types",
 }  # fmt: skip
@@ -64,7 +66,7 @@ RESULTS = {
     "BoreModesReport", "BushMesh", "EquilibriumResult", "FilmFields", "FilmResult", "Finding", "FlexibleBush",
     "SphericalHistory", "SphericalResult",
     "JointHistory", "JointState", "LastCycle", "Recommendation", "Revolutions", "SteadyResult", "StepRecommendation",
-    "StribeckResult", "StudyTable", "SystemState", "ThrustResult",
+    "StribeckResult", "StudyTable", "SystemState", "ThrustResult", "RotorResult",
 }  # fmt: skip
 # Classes whose methods a scene calls; methods of descriptions are called by the package.
 WITH_METHODS = {"LubricatedJoint"}

@@ -150,3 +150,13 @@ class Side(Protocol):
         self, mbs: exu.MainSystem, q: np.ndarray, force: np.ndarray, moment: np.ndarray, out: np.ndarray
     ) -> None:
         """Write d(Jp^T F + Jr^T M) / dq (n, n) at fixed global force and moment into the zero ``out``."""
+
+
+class Faces(Protocol):
+    """Films on the end faces of a joint, as records ask for them."""
+
+    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
+        """Scalars at a motion (10,), to which the sides' arrays belong."""
+
+    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
+        """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""

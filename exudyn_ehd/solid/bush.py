@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+import numpy as np
+
 from exudyn_ehd.solid.elements.element import Quadrature
 from exudyn_ehd.solid.elements.hex20 import HEX20
 from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
@@ -187,3 +189,23 @@ def require_tolerance(where: str, tolerance: float) -> float:
     """Return the tolerance of a choice of modes, or raise `InputError`."""
     hint = "0.02 is a good start."
     return require_number(where, tolerance, at_least=SMALLEST_TOLERANCE, at_most=LARGEST_TOLERANCE, hint=hint)
+
+
+def require_bore(mesh: HollowCylinder | BushMesh, radius: float, length: float) -> None:
+    """Refuse a bush whose bore is not that of a film of this bore radius and length, m."""
+    if isinstance(mesh, HollowCylinder):
+        own, what, ends = mesh.inner_radius, "HollowCylinder.inner_radius", (-0.5 * mesh.length, 0.5 * mesh.length)
+    else:
+        place = mesh.bore.positions
+        own, what = float(np.hypot(place[:, 0], place[:, 1]).mean()), "a mesh whose bore's mean radius"
+        ends = float(mesh.bore.z.min()), float(mesh.bore.z.max())
+    if abs(own - radius) > 0.02 * radius:
+        raise InputError(
+            f"JournalBearing.bush must have the bearing's bore radius {radius:g} m within 2 %, got {what} = {own:g} m."
+        )
+    half = 0.5 * length * (1.0 - 1e-9)
+    if ends[0] > -half or ends[1] < half:
+        raise InputError(
+            f"JournalBearing.bush must be at least as long as the film, {length:g} m about its mid-plane, got "
+            f"a bore from {ends[0]:g} to {ends[1]:g} m."
+        )

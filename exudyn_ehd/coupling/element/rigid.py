@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import ModuleType
-from typing import Protocol, TypeAlias
+from typing import TypeAlias
 
 import exudyn as exu
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Evaluation, JointModel, Side, Trial
+from exudyn_ehd.coupling.contract import Evaluation, Faces, JointModel, Side, Trial
 from exudyn_ehd.coupling.element.accepted_steps import AcceptedSteps
 from exudyn_ehd.coupling.element.failures import Failures
 from exudyn_ehd.coupling.element.presence import Presence
@@ -34,16 +34,6 @@ _CURRENT = exu.ConfigurationType.Current
 _START_OF_STEP = exu.ConfigurationType.StartOfStep
 _Values: TypeAlias = list[float]
 _Configuration: TypeAlias = exu.ConfigurationType
-
-
-class Faces(Protocol):
-    """Films on the end faces of a joint, as records ask for them."""
-
-    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
-        """Scalars at a motion (10,), to which the sides' arrays belong."""
-
-    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
-        """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""
 
 
 class FilmElement:

@@ -15,7 +15,7 @@ from exudyn_ehd.coupling.rotor.result import Layout, RotorResult, StabilityMap
 from exudyn_ehd.coupling.rotor.solve import EquilibriumSearch, films_off
 from exudyn_ehd.coupling.rotor.spinning import WHERE
 from exudyn_ehd.coupling.run.solve import joints_of, require_items
-from exudyn_ehd.status import InputError, require_number
+from exudyn_ehd.status import InputError, require_number, require_plausible
 
 # Speeds at which a threshold is first looked for between its limits.
 SCAN = 16
@@ -82,6 +82,7 @@ def SolveEquilibrium(
         raise InputError(f"{WHERE}.speeds must be finite numbers other than 0 in rad/s, got {speeds!r}.")
     if not np.all(np.sign(values) == np.sign(values[0])):
         raise InputError(f"{WHERE}.speeds must be of one sign, got {speeds!r}; solve once for each sense of rotation.")
+    require_plausible(f"{WHERE}: speeds", speeds, values)
     with _search(mbs, rotors, ratios) as search:
         return _result(search, [search.at(float(speed)) for speed in values])
 
