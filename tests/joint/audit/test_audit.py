@@ -206,6 +206,23 @@ def test_coarse_areas_of_supply_are_told():
     assert not fine.matters
 
 
+def test_elasticity_of_a_journal_named_and_not():
+    """A steel pin is nothing under little load and much under more; a bush that knows no journal has no row of it."""
+    light, heavy = (audit(bearing(), eps=eps)["journal elasticity"] for eps in (0.1, 0.9))
+    assert light.on is False and light.change is None and not light.matters
+    assert heavy.on is False and heavy.change.size > 0.03 and heavy.remedy(bearing()).journal is not None
+    steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
+    half = 0.5 * bearing().length
+    pin = ehd.ElasticJournal(material=steel, span=(-half, half), held=None, tolerance=0.08)
+    named = audit(bearing(journal=pin), eps=0.9)
+    assert named["journal elasticity"].on and named["journal elasticity"].matters
+    assert named["elasticity"].on is False
+    idle = audit(bearing(journal=pin), eps=0.1)["journal elasticity"]
+    assert idle.unneeded and idle.remedy(bearing(journal=pin)).journal is None
+    with pytest.raises(KeyError):
+        audit(bearing(bush=ehd.ElasticLiner(thickness=0.002, youngs_modulus=2e11)))["journal elasticity"]
+
+
 def test_elasticity_of_a_liner_given_and_asked_about():
     soft, stiff = (ehd.ElasticLiner(thickness=0.002, youngs_modulus=E) for E in (2e9, 2e11))
     assert not audit(bearing())["elasticity"].matters and "steel ring" in audit(bearing())["elasticity"].indicator
