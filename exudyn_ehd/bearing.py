@@ -44,7 +44,7 @@ from exudyn_ehd.status import (
 )
 
 if TYPE_CHECKING:
-    from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
 
@@ -379,7 +379,7 @@ def _check_temperatures(bearing: JournalBearing) -> None:
 def _check_elastic(bearing: JournalBearing) -> None:
     """Refuse what is no bush or journal, or one whose surface is not the film's."""
     # imported here: a rigid bearing needs no solid
-    from exudyn_ehd.solid.bush import ANCFBush, ModalBush
+    from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
 
