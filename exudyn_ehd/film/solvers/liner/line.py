@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from exudyn_ehd.film.banded.workspace import Workspace
-from exudyn_ehd.film.cavitation.rupture_line import Line, LineGradients, RuptureLine, line_terms, to_true_gap
+from exudyn_ehd.film.cavitation.rupture_line import LEAST, Line, LineGradients, RuptureLine, line_terms, to_true_gap
 from exudyn_ehd.film.reynolds.links import LinkFlux
 
 
@@ -89,7 +89,8 @@ class FilmLine(RuptureLine):
         """Whether the factor holds the line of the film that is solved."""
         _, k, s, _, _, places, shift, _ = self.fields
         c = places[: places[-1]]
-        own = k[c] * (1.0 - s[c]) / s[c]
+        place = np.maximum(s[c], LEAST)
+        own = k[c] * (1.0 - place) / place
         return bool(np.all(np.abs(shift[c] - own) <= 1e-9 * (k[c] + own)) and np.count_nonzero(shift) == c.size)
 
     def weights(self, places: np.ndarray) -> np.ndarray:
