@@ -67,6 +67,15 @@ EFFECTS = {
     ),
     "lumped": (("joint.heat.temperature",), {"lubricant": HOT, "thermal": ehd.LumpedThermal(supply_temperature=330.0)}),
     "energy": (("film.heat.energy",), {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0)}),
+    "walls": (
+        ("film.heat.passage", "film.heat.conduction"),
+        {
+            "lubricant": HOT,
+            "thermal": ehd.FilmEnergy(
+                supply_temperature=330.0, conductivity=0.13, bush=ehd.Conduction(thickness=0.02, conductance=1.0)
+            ),
+        },
+    ),
     "liner": (
         (
             "film.solvers.nonlinear",

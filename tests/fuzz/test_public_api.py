@@ -55,6 +55,13 @@ GOOD = [
     ehd.ANCFBush(mesh=MESH, material=STEEL),
     ehd.FEBore(fem=types.SimpleNamespace(elements=[])),
     ehd.File(path="main.rows"),
+    ehd.Every(steps=20),
+    ehd.TaperLand(pads=6, depth=2e-5),
+    ehd.StepLand(pads=6, depth=2e-5),
+    ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.03, clearance=2e-5),
+    ehd.SphericalBearing(ball_radius=0.015, radial_clearance=3e-5, lubricant=OIL),
+    ehd.HeldBands(bands=((-0.03, -0.015), (0.015, 0.03))),
+    ehd.ElasticJournal(material=STEEL, span=(-0.03, 0.03)),
 ]
 _OTHERS = [c for c in specs() if c.__name__ not in OF_A_MESH | {type(good).__name__ for good in GOOD}]
 GOOD += [good for good in map(by_itself, _OTHERS) if good is not None]

@@ -113,7 +113,7 @@ def test_journal_film_does_not_know_the_faces():
         ehd.steady(bearing, speed=200.0, eccentricity_ratio=0.6, axial_position=5e-5)
 
 
-CARRIED = {"groove", "profile", "liner", "wall"}
+CARRIED = {"groove", "profile", "liner", "wall", "elastic journal"}
 
 
 @pytest.mark.parametrize("effect", EFFECTS)

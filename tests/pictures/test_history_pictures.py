@@ -64,7 +64,7 @@ def test_traces_over_time_and_angle(history):
 
 
 def test_traces_refuse_what_can_not_be_drawn(history):
-    with pytest.raises(InputError, match="scalars of a history, got 'force'; known are contact_load"):
+    with pytest.raises(InputError, match="scalars of a history, got 'force'; known are axial_position"):
         plot_traces(history, ["force"])
     with pytest.raises(InputError, match="this film has no supply flow"):
         plot_traces(history, ["supply_flow"])
