@@ -61,7 +61,7 @@ GOOD = [
     ehd.ThrustFaces(inner_radius=0.02, outer_radius=0.03, clearance=2e-5),
     ehd.SphericalBearing(ball_radius=0.015, radial_clearance=3e-5, lubricant=OIL),
     ehd.HeldBands(bands=((-0.03, -0.015), (0.015, 0.03))),
-    ehd.ElasticJournal(material=STEEL, span=(-0.03, 0.03)),
+    ehd.ElasticJournal(material=STEEL, span=(-0.03, 0.03), held=ehd.HeldEnds()),
 ]
 _OTHERS = [c for c in specs() if c.__name__ not in OF_A_MESH | {type(good).__name__ for good in GOOD}]
 GOOD += [good for good in map(by_itself, _OTHERS) if good is not None]
