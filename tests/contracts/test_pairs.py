@@ -79,7 +79,7 @@ LINER_TRIPLES = [
 ]
 # Their kernels take longer to compile than all other pairs to run.
 RARE = [{"liner", "density"}, {"carreau", "density"}]
-RARE += [{"elastic journal", name} for name in set(EFFECTS) - {"profile"}]
+RARE += [{new, name} for new in ("elastic journal", "walls") for name in set(EFFECTS) - {"profile"}]
 PAIRS = [
     pytest.param(pair, marks=pytest.mark.slow if any(rare <= set(pair) for rare in RARE) else ())
     for pair in [*itertools.combinations(EFFECTS, 2), *LINER_TRIPLES]
