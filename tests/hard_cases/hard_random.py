@@ -262,11 +262,19 @@ def balance_error(model):
 
 
 def beyond_law(model, motion, past):
-    """Whether the film of constant density and viscosity exceeds what the oil's laws reach."""
+    """Whether the film of constant density and viscosity exceeds what the oil's laws reach.
+
+    Of films with a density law and the line inside the cells: or the one with its line on the vertices has no pressure.
+    """
     law = model.effects.pressure_law
     if law is None:
         return False
     if model.parts.compressible is not None:
+        if isinstance(model.bearing.cavitation, ehd.SwiftStieber) and model.bearing.closure.line_in_cells:
+            vertices = dataclasses.replace(model.bearing.cavitation, line_in_cells=False)
+            other = build_model(dataclasses.replace(model.bearing, cavitation=vertices))
+            if other.evaluate(motion, *past).status is ehd.Status.NO_PRESSURE:
+                return True
         bearing = dataclasses.replace(
             model.bearing, lubricant=ehd.Lubricant(viscosity=model.bearing.lubricant.viscosity)
         )
@@ -400,7 +408,7 @@ def _dense(rng):
     film = bearing.film if isinstance(bearing.film, ehd.FiniteLength) else ehd.FiniteLength()
     thickens = ehd.RoelandsPressure(coefficient=2e-8) if rng.random() < 0.5 else None
     oil = ehd.Lubricant(
-        viscosity=VISCOSITY * 10.0 ** rng.uniform(-3.0, -1.0), density_law=ehd.DowsonHigginson(), pressure_law=thickens
+        viscosity=VISCOSITY * 10.0 ** rng.uniform(-2.8, -1.0), density_law=ehd.DowsonHigginson(), pressure_law=thickens
     )
     return dataclasses.replace(bearing, film=film, lubricant=oil)
 

@@ -215,7 +215,7 @@ def test_memory_of_ten_joints(kind, tmp_path):
     for k in range(3):
         record = Record(Bearing)
         if "thinned" in kind:
-            record.thin(ehd.Every(steps=50))
+            record.thin(ehd.Every(steps=60))
         if "file" in kind:
             record.keep_on_disk(tmp_path / f"{k}.rows", str(k))
         found.append(record)

@@ -240,8 +240,8 @@ PLACES = {
     "long": ({"film": ehd.LongBearing(), "supply": (ehd.AxialGroove(angle=2.0, width_angle=0.3),)}, True),
     "map": ({"film": ehd.ImpedanceMap()}, True),
     "short": ({"film": ehd.ShortBearing()}, False),
-    "liner": ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)}, False),
-    "density": ({"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())}, False),
+    "liner": ({"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=1e9)}, True),
+    "density": ({"lubricant": ehd.Lubricant(viscosity=0.02, density_law=ehd.DowsonHigginson())}, True),
     "shear": (
         {"lubricant": ehd.Lubricant(viscosity=0.02, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.7))},
         True,
