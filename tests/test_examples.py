@@ -262,6 +262,7 @@ def test_rotor_campbell(example, tmp_path):
     assert n["largest_error_in_time"] < 0.01 and n["largest_journal_amplitude"] < 0.1
 
 
+@pytest.mark.slow
 def test_four_bar_spatial(example, tmp_path):
     rows = example("four_bar_spatial").main(quick=True, output=tmp_path)
     assert (tmp_path / "four_bar_spatial.png").stat().st_size > 10_000
@@ -315,6 +316,7 @@ def test_hydrostatic_or_grooved(example, tmp_path):
     assert 0 < rows["Elrod-Adams: load's angle from the groove then [deg]"] < 60
 
 
+@pytest.mark.slow
 def test_turbulent_bearing(example, tmp_path):
     rows = example("turbulent_bearing").main(quick=True, output=tmp_path)
     assert (tmp_path / "turbulent_bearing.png").stat().st_size > 10_000
@@ -346,6 +348,7 @@ def test_cold_start(example, tmp_path):
     assert math.isnan(rows["50 um: seizes after [s]"])
 
 
+@pytest.mark.slow
 def test_thrust_reversal(example, tmp_path):
     rows = example("thrust_reversal").main(quick=True, output=tmp_path)
     assert (tmp_path / "thrust_reversal.png").stat().st_size > 10_000

@@ -12,6 +12,7 @@ import pytest
 import exudyn_ehd as ehd
 from exudyn_ehd.plausible import ARGUMENTS, KINDS
 from tests.descriptions import usual
+from tests.sampling import but_slow
 
 # Numbers without a dimension, directions and colours among them.
 PURE = {
@@ -214,7 +215,11 @@ def _call(where, size):
     return getattr(ehd, name)(**(CLASS_NEEDS[name] | {argument: value}))
 
 
-@pytest.mark.parametrize("where", sorted(set(_cases()) - SAID_OTHERWISE))
+# an unusual load or speed makes these search for steps
+LONG = [f"recommend_steps.{name}" for name in ("speed", "mass", "period")]
+
+
+@pytest.mark.parametrize("where", but_slow(sorted(set(_cases()) - SAID_OTHERWISE), *LONG))
 def test_a_size_beyond_reason_is_refused_and_an_unusual_one_warns(where):
     kind = KINDS[ARGUMENTS[where]]
     argument = where.rpartition(".")[2]

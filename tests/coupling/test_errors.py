@@ -239,6 +239,7 @@ def test_lengths_in_millimetres():
         ehd.JournalBearing(journal_radius=0.025, length=0.025, radial_clearance=0.05, **size)
 
 
+@pytest.mark.slow
 def test_static_solution_of_a_bush_that_nothing_holds_names_it():
     mbs = scenes.new_system()
     mesh = ehd.HollowCylinder(inner_radius=0.03, thickness=0.012, length=0.03, axial=1, radial=1, circumferential=8)

@@ -74,6 +74,7 @@ def test_newton_needs_as_few_steps_as_the_plain_film(make_bearing, measured, opt
     measured("Newton iterations per step", steps, plain + 0.5)
 
 
+@pytest.mark.slow
 def test_long_bearing_runs(make_bearing):
     """Sealed and several times as stiff as the other films."""
     groove = (ehd.AxialGroove(angle=0.0, width_angle=0.3),)

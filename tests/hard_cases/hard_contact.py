@@ -45,7 +45,7 @@ def eps_99():
     return settles_at(0.99, ehd.FiniteLength(n_theta=128, n_z=8), ehd.FiniteLength(n_theta=384, n_z=20), 0.02)
 
 
-@hard_case("eps 0.999", rejected=10)
+@hard_case("eps 0.999", rejected=10, slow=True)
 def eps_999():
     """50 nm of oil on a 25 mm journal: the pressure lives on a hundredth of the circumference.
 

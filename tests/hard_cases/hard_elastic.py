@@ -113,7 +113,7 @@ def swinging_liner(load, **options):
     return Rotor(bearing(bush=liner, **options), load=(0.0, -load), speed=angle), 2.0 * math.pi / rate
 
 
-@hard_case("soft liner under oscillating rotation", newton=3.0)
+@hard_case("soft liner under oscillating rotation", newton=3.0, slow=True)
 def soft_liner():
     """A liner of E = 5e7 Pa that is fed and drained by every turn of a motion whose wedge vanishes twice a period."""
     rotor, period = swinging_liner(100.0)
@@ -142,7 +142,7 @@ def liner_touches():
     return run
 
 
-@hard_case("soft liner pressed onto its edges", newton=5.0)
+@hard_case("soft liner pressed onto its edges", newton=5.0, slow=True)
 def liner_on_its_edges():
     """The same with a wall, that presses on the liner: the ends deflect, by more than the clearance leaves."""
     rotor, period = swinging_liner(1500.0, contact=ehd.RegularisedWall(onset=0.02 * CLEARANCE))

@@ -32,7 +32,7 @@ def light():
     return settles(bearing(), mass=1e-3, load=500.0, end=0.05, step=2e-4)[0]
 
 
-@hard_case("heavy journal, 1 t")
+@hard_case("heavy journal, 1 t", slow=True)
 def heavy():
     """1 t on a film: whirl of long period and of large amplitude, in which the film is next to a rigid wall."""
     made = bearing(length=0.05)
@@ -74,7 +74,7 @@ def thick_oil():
     return friction_and_load(10.0, load=5e5, speed=SPEED, step=2e-4, mass=2.0, end=0.06)
 
 
-@hard_case("clearance 1 um", rejected=12)
+@hard_case("clearance 1 um", rejected=12, slow=True)
 def narrow():
     """A clearance of 4e-5 of the radius: gaps of a few hundred atoms, pressures of GPa from any disturbance."""
     with warnings.catch_warnings():

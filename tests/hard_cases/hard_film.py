@@ -144,7 +144,7 @@ def tilted_mass_conserving():
     return tilted_orbit(VENTED)
 
 
-@hard_case("cavity from full film and back")
+@hard_case("cavity from full film and back", slow=True)
 def cavity_opens_and_closes():
     """The load pulses between nothing and 3 kN: every pulse opens a cavity in a full film, which heals in between."""
     made = bearing(cavitation=ehd.ElrodAdams(cavity_pressure=-5e4))

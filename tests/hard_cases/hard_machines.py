@@ -134,7 +134,7 @@ def two_joints():
     return run
 
 
-@hard_case("three bearings on a rigid shaft")
+@hard_case("three bearings on a rigid shaft", slow=True)
 def three_bearings():
     """Statically indeterminate: with ideal joints the reactions have no
     solution; the films share the load by their stiffness."""

@@ -47,7 +47,7 @@ def reversed_rotation():
     return runs
 
 
-@hard_case("oscillating rotation")
+@hard_case("oscillating rotation", slow=True)
 def oscillating_rotation():
     """The journal swings and stands still twice a period, like a gudgeon pin:
     without a wedge the squeeze alone carries."""
@@ -104,7 +104,7 @@ def released():
     return run
 
 
-@hard_case("whirl threshold of the short bearing", rejected=0)
+@hard_case("whirl threshold of the short bearing", rejected=0, slow=True)
 def whirl_threshold():
     """A rigid rotor 3 % on either side of its threshold: growth and decay
     of 1 % a turn decide between stable and lost."""
@@ -187,7 +187,7 @@ def run_up():
     return run
 
 
-@hard_case("rotating load of constant size")
+@hard_case("rotating load of constant size", slow=True)
 def rotating_load():
     """The load turns with the journal: the film meets its own pressure again at every angle of the grid."""
     made = bearing()

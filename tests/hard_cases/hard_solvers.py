@@ -92,7 +92,7 @@ def newtons():
     return runs
 
 
-@hard_case("index-2 trapezoidal rule")
+@hard_case("index-2 trapezoidal rule", slow=True)
 def trapezoidal():
     """No numerical damping at all, with the drive as velocity constraint."""
     made = bearing()
@@ -118,7 +118,7 @@ def not_finite():
     return run
 
 
-@hard_case("restart from a stored state")
+@hard_case("restart from a stored state", slow=True)
 def restart():
     """Stopped in the middle of a swinging load, written to a file and taken up
     by a new system: nothing may remember the stop."""

@@ -94,6 +94,7 @@ def pressed(material, pressure, steps):
     return solid, equilibrium(solid, held=held, loads=[load], steps=steps)
 
 
+@pytest.mark.slow
 def test_compression_turns_no_element_of_neo_hooke_inside_out():
     solid, found = pressed(RUBBER, 5e6, 20)
     assert solid.inversion(found.displacements) == ""

@@ -47,6 +47,7 @@ def test_solid_bush():
     assert advice.error <= 0.02
 
 
+@pytest.mark.slow
 def test_cheaper_for_less():
     def advice(error, quantity="peak pressure", eccentricity_ratio=0.7):
         return ehd.recommend(_bearing(), error, quantity, eccentricity_ratio=eccentricity_ratio)
@@ -71,6 +72,7 @@ def test_stiffness_wants_the_line_inside_the_cells():
     assert other.options["cavitation"] == ehd.SwiftStieber(line_in_cells=True)
 
 
+@pytest.mark.slow
 def test_critical_mass():
     place = {"eccentricity_ratio": (0.2, 0.6)}
     advice = ehd.recommend(_bearing(1.0), 0.05, "critical mass", **place)

@@ -85,6 +85,7 @@ def test_in_a_mechanism(make, mass):
     assert np.abs(coarse - fine[::4]).max() <= 0.02 * fine.min()
 
 
+@pytest.mark.slow
 def test_fewer_steps_for_less(monkeypatch):
     turn = np.linspace(0.0, 2.0 * math.pi, 24, endpoint=False)
     load = 6000.0 * np.column_stack([np.sin(turn), -1.2 + np.cos(turn)])

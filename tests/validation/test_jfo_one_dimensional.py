@@ -152,6 +152,7 @@ def squeeze():
     return step, np.array(times), np.array(edges), np.array(balances), np.array(fills), np.array(rises)
 
 
+@pytest.mark.slow
 def test_squeeze_opens_and_closes_within_one_step(squeeze):
     step, times, _, _, _, open_ = squeeze
     assert abs(times[open_][0] - 0.25008) <= step

@@ -80,7 +80,6 @@ def test_the_inlet_matters(make_bearing):
             (192, 16, 0.0005, 0.0015),
         ],
         0,
-        3,
     ),
 )
 def test_documented_grids_in_any_direction(make_bearing, table, measured, n_theta, n_z, moderate, high):

@@ -187,6 +187,7 @@ def test_a_temperature_field_thins_the_reynolds_number_too():
     assert film.force == pytest.approx(same.force, rel=1e-5, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_equilibrium_tangent_and_audit():
     laminar, turbulent = (bearing(5e-4, turbulence=t) for t in (None, ehd.NgPan()))
     rest = [ehd.equilibrium(b, load=(0.0, -2000.0), speed=SPEED) for b in (laminar, turbulent)]

@@ -249,6 +249,7 @@ def test_own_factorisation_serves_bodies_joints_and_constraints_too(kind):
     assert np.allclose(shapes[0], shapes[1], atol=1e-7 * np.abs(shapes[0]).max())
 
 
+@pytest.mark.slow
 def test_a_carrier_welded_to_ground_equals_a_fixed_outer_surface():
     shapes = []
     for fixed in (False, True):

@@ -130,6 +130,7 @@ def test_turning_housing_keeps_the_angular_momentum_of_a_bush_that_it_contains(m
     assert errors[1].max() < errors[0].max() / 3.0
 
 
+@pytest.mark.slow
 def test_mass_beside_the_housing_falls_with_its_own_gravity(measured):
     mbs, joint, bodies, gravity = pair(NODAL, "Rxyz", bushGravity=GRAVITY)
     t = fall(mbs)

@@ -143,6 +143,7 @@ def test_axial_damping():
     assert history.motion[:, 9] == pytest.approx(v0 * np.exp(-history.time / time), abs=2e-4 * v0)
 
 
+@pytest.mark.slow
 def test_impact_settles():
     """A heavy rotor thrown at a face is stopped by film and wall, bounces, and calms down."""
     wall = ehd.RegularisedWall(onset=6e-6, pressure=2e8)

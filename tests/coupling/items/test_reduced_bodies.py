@@ -230,6 +230,7 @@ def test_reduced_body_and_journal_fall_with_g(measured):
     assert np.abs(joint.history.force).max() > 100.0
 
 
+@pytest.mark.slow
 def test_modes_report_and_modes_beyond_those_that_are_there():
     mesh = CYLINDER.mesh()
     fem = fem_of(mesh, material(2.1e11))
@@ -345,6 +346,7 @@ def test_input_that_cannot_be_meant():
             ehd.add_bore_modes(fem, **spec)
 
 
+@pytest.mark.slow
 def test_film_can_be_seen_and_judged_and_the_picture_leaves_the_solver_alone():
     mbs, joint = moving()
     element = joint.element

@@ -84,6 +84,7 @@ def test_what_can_not_be_recorded_is_refused(make_bearing):
         joint.animate("a.gif")
 
 
+@pytest.mark.slow
 def test_animation_shows_every_film(recorded, tmp_path):
     recorded.animate(tmp_path / "bearing.gif", frames_per_second=5)
     with Image.open(tmp_path / "bearing.gif") as gif:
@@ -160,6 +161,7 @@ def test_bush_and_film_in_vtk_files(kind, tmp_path):
     assert 0.2 * film.pressure.max() < stress.max() < 2.0 * film.pressure.max()
 
 
+@pytest.mark.slow
 def test_bush_of_tetrahedra_in_vtk_files_and_the_renderer(tmp_path):
     meshio = pytest.importorskip("meshio")
     bush = steel_bush(ehd.ModalBush)

@@ -130,6 +130,7 @@ def settings(steps):
     return ehd.ConfigureSolver(out) or out
 
 
+@pytest.mark.slow
 def test_a_run_in_a_file_is_the_run_in_memory(tmp_path):
     histories = []
     for record in (None, ehd.File(path=tmp_path / "runs" / "{name}.rows")):

@@ -120,6 +120,7 @@ def test_effects_left_out_are_named_where_they_matter(lines, load, options, name
     assert [name for name in absent if name in line] == []
 
 
+@pytest.mark.slow
 def test_steps_that_are_too_coarse_are_named(lines):
     """From 5 % of the film on, with a number of steps that would do; the audit says the same."""
     mbs, joint = scene(30e3)

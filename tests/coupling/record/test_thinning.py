@@ -9,6 +9,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.coupling.record import history as rows_of
 from exudyn_ehd.coupling.record.record import MOST_ROWS, Record
 from tests.coupling.record.test_on_disk import Bearing, model, random_row, same, settings
+from tests.sampling import sample
 
 RULES = {
     "7 steps": ehd.Every(steps=7),
@@ -51,7 +52,7 @@ def require_thinned(whole, thinned, rule):
 
 
 @pytest.mark.parametrize("on_disk", [False, True], ids=["memory", "file"])
-@pytest.mark.parametrize("name", RULES)
+@pytest.mark.parametrize("name", sample(list(RULES), 0, 2))
 def test_any_course_gives_steps_of_the_whole_record(name, on_disk, tmp_path):
     """Repeated last times, times that run back, readings in between, tangents that are missing, a liner."""
     for seed in range(2):
@@ -101,6 +102,7 @@ def test_a_restored_record_goes_on(tmp_path):
         whole.restore(stored)
 
 
+@pytest.mark.slow
 def test_a_thinned_run_is_that_in_memory(tmp_path, caplog):
     caplog.set_level("INFO", logger="exudyn_ehd")
     rule, path, found = ehd.Every(steps=10), tmp_path / "{name}.rows", []

@@ -6,6 +6,7 @@ import pytest
 import scenes
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 IMPLICIT, EXPLICIT = exu.DynamicSolverType.GeneralizedAlpha, exu.DynamicSolverType.RK44
 
@@ -35,7 +36,7 @@ def run(mbs, solver, last, **options):
 
 
 @pytest.mark.parametrize("solver", [IMPLICIT, EXPLICIT], ids=["implicit", "explicit"])
-@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)])
+@pytest.mark.parametrize("cavitation", sample([ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], 1))
 @pytest.mark.parametrize("behind", [False, True], ids=["before", "behind"])
 def test_state_after_an_interrupt_is_stored(cavitation, solver, behind, monkeypatch, tmp_path):
     """At every evaluation of three steps, before and behind the film's own solver."""

@@ -12,6 +12,7 @@ import scenes
 import exudyn_ehd as ehd
 from exudyn_ehd.coupling.run.joint_state import digest
 from exudyn_ehd.coupling.run.restart import load_state
+from tests.sampling import but_slow
 
 CLEARANCE = 30e-6
 PLAIN = ehd.JournalBearing(
@@ -88,7 +89,7 @@ def assert_same(one, other, tolerance):
         np.testing.assert_allclose(b, a, rtol=0.0, atol=share * scale, err_msg=field.name)
 
 
-@pytest.mark.parametrize("what", BEARINGS)
+@pytest.mark.parametrize("what", but_slow(BEARINGS, "liner", "temperature field", "wear"))
 def test_run_goes_on(what, tmp_path):
     mbs, joint = system(BEARINGS[what])
     ehd.SolveDynamic(mbs, settings(0, STEPS))

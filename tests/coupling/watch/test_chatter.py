@@ -167,7 +167,7 @@ def test_step_far_beyond_the_limit_raises(solver, eccentricity_ratio, share):
     assert np.all(np.isfinite(joint.history.motion))
 
 
-@pytest.mark.parametrize("solver", sample(list(LIMITS), 0, 3), ids=str)
+@pytest.mark.parametrize("solver", sample(list(LIMITS), 3), ids=str)
 def test_step_well_below_the_limit_agrees_with_the_implicit_solver(solver):
     load, end = (0.0, -500.0), 0.004
     step = end / np.ceil(end / (0.5 * LIMITS[solver] * MASS / largest_damping(load)))

@@ -51,6 +51,7 @@ def run(end_time=0.1, **options):
     return joint.history
 
 
+@pytest.mark.slow
 def test_a_film_without_a_source_of_oil_says_when_it_runs_dry():
     with pytest.warns(ehd.StarvationWarning) as told:
         history = run(cavitation=VENTED)

@@ -61,6 +61,7 @@ def test_a_control_that_has_nothing_to_do_changes_no_bit():
     np.testing.assert_array_equal(watched.history.motion, plain.history.motion)
 
 
+@pytest.mark.slow
 def test_explicit_solvers_are_not_touched():
     control = ehd.StepControl(largest_gap_change=0.01)
     plain, watched = (run(c, 1e-5, exu.DynamicSolverType.RK44) for c in (None, control))

@@ -128,6 +128,7 @@ def test_tangent_is_exact_in_a_moving_film():
         assert min(errors) < 1e-6
 
 
+@pytest.mark.slow
 def test_cavities_follow_whirl():
     """Work of the film on a journal that whirls with half the spin about an equilibrium, per turn of the whirl;
     backward Euler is ten times as far off."""

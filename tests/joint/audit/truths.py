@@ -41,6 +41,7 @@ NUMBERS = ("minimum_gap", "peak_pressure", "power_loss")
 # effect: (whether a bearing has it, what adds it, what drops it)
 EFFECTS = {
     "elasticity": (lambda b: b.bush is not None, s.steel_ring, s.rigid),
+    "journal elasticity": (lambda b: b.journal is not None, s.steel_pin, s.rigid_journal),
     "piezoviscosity": (lambda b: b.lubricant.pressure_law is not None, s.piezoviscous, s.isoviscous),
     "heating": (lambda b: b.thermal is not None, s.heated, s.isothermal),
     "shear thinning": (lambda b: b.lubricant.shear_law is not None, s.thinning, s.newtonian),

@@ -69,6 +69,7 @@ def tongues(seed, count, shapes=((4e-4, 8),)):
         yield build_model(b), np.array([*place, 0, 0, 0, 0, 0, 0, rng.choice([-300.0, 50.0, 100.0, 300.0, 600.0]), 0.0])
 
 
+@pytest.mark.slow
 def test_films_on_thin_tongues_are_found():
     """Bores that bend by ten clearances: from the undeformed one a film is found, in a bounded number of trials."""
     for model, motion in tongues(0, 4):

@@ -62,6 +62,7 @@ def test_thin_solid_bush_is_a_liner():
     assert max(abs(peak[1]), abs(peak[2])) < 0.5 * abs(peak[0])
 
 
+@pytest.mark.slow
 def test_long_bush_has_the_fourier_compliances_of_plane_strain():
     """p = cos(n theta) (1 - zeta^2) on 0.6 m: plane strain at the mid-plane to (t / L)^2."""
     mesh = ehd.HollowCylinder(inner_radius=R, thickness=0.02, length=0.6, axial=8, radial=2, circumferential=32)

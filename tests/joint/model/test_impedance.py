@@ -241,6 +241,7 @@ def _cut_member(file):
         archive.writestr("nodes.npy", b"\x93NUMPY\x01\x00")
 
 
+@pytest.mark.slow
 def test_cache_is_used_detects_damage_and_is_optional(cache, monkeypatch, tmp_path):
     film, closure = dataclasses.replace(SMALL, n_direction=18), ehd.SwiftStieber()
     monkeypatch.setenv("EXUDYN_EHD_CACHE", str(tmp_path / "new"))

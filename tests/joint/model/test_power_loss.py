@@ -11,6 +11,7 @@ import exudyn_ehd as ehd
 from exudyn_ehd.joint.heat.oil_flows import Exchange, heat_and_leakage
 from exudyn_ehd.joint.heat.power import sliding_power
 from exudyn_ehd.joint.model.build import build_model
+from tests.sampling import sample
 
 R, C, SPEED, MU = 0.03, 30e-6, 314.0, 9e-3
 STEEL = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
@@ -246,7 +247,7 @@ def test_heat_of_a_temperature_field_tends_to_the_power_loss(surfaces):
 
 
 @pytest.mark.parametrize("bore", ["rigid", "liner"])
-@pytest.mark.parametrize("surfaces", ["wall", "asperities"])
+@pytest.mark.parametrize("surfaces", sample(["wall", "asperities"], 0))
 def test_what_touching_surfaces_store_is_no_heat(surfaces, bore):
     """A journal that is pressed into its bore or drawn out of it: heat and loss differ by the grid's error alone.
 

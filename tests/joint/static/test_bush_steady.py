@@ -146,6 +146,7 @@ def test_many_modes_are_within_a_thousandth_of_the_nodes(modulus, tilt):
     assert reduced.minimum_gap == pytest.approx(full.minimum_gap, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_flexibility_widens_the_film_and_lowers_the_peak():
     results = [solve(None)] + [solve(modal(E, tilted=False)) for E in (2.1e12, 2.1e11, 2.1e10)]
     peaks = [r.peak_pressure for r in results]
@@ -167,6 +168,7 @@ def test_an_aligned_film_deforms_the_bore_symmetrically():
     assert np.allclose(d, d[:, ::-1], atol=1e-9 * d.max())
 
 
+@pytest.mark.slow
 def test_an_eccentricity_beyond_the_clearance_is_reached():
     film = solve(modal(3e9), ratio=1.3)
     assert film.minimum_gap > 0.0

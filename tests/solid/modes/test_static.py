@@ -88,6 +88,7 @@ def test_tolerance_holds_for_films(modes, pressure, factor):
     assert np.linalg.norm(reduced - exact) <= factor * 0.05 * np.linalg.norm(exact)
 
 
+@pytest.mark.slow
 def test_tighter_tolerance_takes_more_modes_and_aligned_films_fewer():
     counts = [bore_modes(ModalBush(mesh=CYLINDER, material=STEEL, tolerance=t)).count for t in (0.2, 0.05, 0.02)]
     assert counts == sorted(set(counts))
