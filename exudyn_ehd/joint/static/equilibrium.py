@@ -278,7 +278,7 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     Returns
     -------
     whirl_ratio, critical_mass : float
-        (nan, inf) if stable at any mass; (nan, 0) if k is not positive, that is unstable at any mass.
+        (nan, inf) if stable at any mass; (nan, 0) if unstable at any, as k is not positive or C singular.
     """
     (kxx, kxy), (kyx, kyy) = stiffness
     (cxx, cxy), (cyx, cyy) = damping
@@ -286,9 +286,13 @@ def whirl_threshold(stiffness: np.ndarray, damping: np.ndarray, omega: float) ->
     k = (kxx * cyy + kyy * cxx - kxy * cyx - kyx * cxy) / trace if trace > 0.0 else 0.0
     if k <= 0.0:
         return math.nan, 0.0
-    square = ((k - kxx) * (k - kyy) - kxy * kyx) / (cxx * cyy - cxy * cyx)
-    if square <= 0.0:
+    above, below = (k - kxx) * (k - kyy) - kxy * kyx, cxx * cyy - cxy * cyx
+    if below == 0.0 < above:
+        # it whirls ever faster, at ever smaller a mass
+        return math.nan, 0.0
+    if below == 0.0 or above / below <= 0.0:
         return math.nan, math.inf
+    square = above / below
     return math.sqrt(square) / omega, k / square
 
 

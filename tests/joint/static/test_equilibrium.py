@@ -198,6 +198,14 @@ class TestWhirlThreshold:
         assert whirl_threshold(-one, one, 1.0)[1] == 0.0
         assert whirl_threshold(one, -one, 1.0)[1] == 0.0
 
+    @pytest.mark.parametrize(("cross", "threshold"), [(-1.0, 0.0), (0.5, math.inf)])
+    def test_damping_in_one_direction_alone(self, cross, threshold):
+        K, C = np.array([[1.0, abs(cross)], [cross, 1.0]]), np.diag([1.0, 0.0])
+        assert whirl_threshold(K, C, 1.0)[1] == threshold
+        for m in (1e-3, 1.0, 1e3):
+            s = np.linalg.eigvals(np.block([[np.zeros((2, 2)), np.eye(2)], [-K / m, -C / m]]))
+            assert (s.real.max() > 0.0) == (threshold == 0.0)
+
 
 def test_load_on_a_groove_that_starves_the_film_ends_with_an_error_that_says_so():
     groove = ehd.AxialGroove(angle=np.radians(270.0), width_angle=np.radians(15.0), length=0.06, pressure=7e4)
