@@ -32,7 +32,7 @@ from scipy.interpolate import CubicSpline
 
 from exudyn_ehd.film.grid import bearing_grid
 from exudyn_ehd.film.loads import pressure_integrals
-from exudyn_ehd.film.reynolds.gap import rigid_gap
+from exudyn_ehd.film.reynolds.gap import rigid_gaps
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.status import FilmError, Status, require_integer, require_number
@@ -138,18 +138,16 @@ class _SqueezeFilm:
 
     def force(self, eps: float, alpha: float, turn: float = 0.0) -> np.ndarray:
         """f (2,) along e and across, for e at the angle ``turn`` of the grid and V at ``turn + alpha``."""
-        s, (cx, sx, cf, sf, z) = self.solver, self.grid.directions
+        s, at = self.solver, self.grid.directions
         pose = np.array([eps * math.cos(turn), eps * math.sin(turn), 0.0, 0.0])
         rate = np.array([math.cos(turn + alpha), math.sin(turn + alpha), 0.0, 0.0])
-        rigid_gap(pose, cx, sx, z, 1.0, s.H)
-        rigid_gap(pose, cf, sf, z, 1.0, s.HF)
-        rigid_gap(rate, cx, sx, z, 0.0, s.H_t)
+        rigid_gaps(pose, rate, True, at, 0.0, s.H, s.HF, s.H_t)
         s.pressure[:, 0] = s.pressure[:, -1] = 0.0
         status, _ = s.solve(0.0, 0.0, 0.0)
         if status is not Status.CONVERGED:
             raise FilmError(f"ImpedanceMap: {status.name} at eccentricity ratio {eps:.4f}: {status.advice}")
         out = np.empty(4)
-        pressure_integrals(s.pressure, self.grid.weight, cx, sx, z, out)
+        pressure_integrals(s.pressure, self.grid.weight, at[0], at[1], at[4], out)
         c, d = math.cos(turn), math.sin(turn)
         return self.scale * np.array([out[0] * c + out[1] * d, out[1] * c - out[0] * d])
 

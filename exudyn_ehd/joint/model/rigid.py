@@ -17,7 +17,7 @@ import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.film.heat.conduction import Walls
-from exudyn_ehd.film.reynolds.gap import add_to_gap, largest_eccentricity, rigid_gap
+from exudyn_ehd.film.reynolds.gap import add_to_gap, rigid_gaps
 from exudyn_ehd.film.sensitivity.bore_stencil import gap_slopes
 from exudyn_ehd.joint.model.loads import film_loads, oil_fields
 from exudyn_ehd.joint.model.parts import film_parts
@@ -315,12 +315,8 @@ class BearingModel:
 
         Returns the smallest, scaled, with the record's fields of these names.
         """
-        s, p, z = self.solver, self.parts, self.grid.z
-        rigid_gap(journal.pose, p.directions.cos_x, p.directions.sin_x, z, 1.0, s.H)
-        rigid_gap(journal.pose, p.directions.cos_f, p.directions.sin_f, z, 1.0, s.HF)
-        if s.squeeze:
-            rigid_gap(journal.rate, p.directions.cos_x, p.directions.sin_x, z, 0.0, s.H_t)
-        smallest = 1.0 - float(largest_eccentricity(journal.pose, p.half_length))
+        s, p, at = self.solver, self.parts, self.grid.directions
+        smallest = rigid_gaps(journal.pose, journal.rate, s.squeeze, at, p.half_length, s.H, s.HF, s.H_t)
         extra = None
         if self.effects.gap_terms:
             smallest, extra = self._add_gap_terms(history)

@@ -32,6 +32,7 @@ from exudyn_ehd.joint.tangent.drag import (
     pulls_unevenly,
 )
 from exudyn_ehd.joint.tangent.line import by_fills, true_fills, true_line
+from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
 _NO_ENDS, _NO_EXTRA = np.zeros(4), np.zeros((2, MOTION_SIZE))
 
@@ -43,6 +44,8 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
     follows a slow motion, ``dH/dt = rigid rate + beta dP/d(pose) rate``: the damping of a steady state. ``gradient``
     (k, 10) of the integrals of `adjoint_rows`, if they are known already.
     """
+    if gradient is None and is_plain(film):
+        return plain_tangent(film)
     p, w, scales, through_film = film.parts, film.journal, film.scales, None
     if gradient is None and _pressed_contact(film):
         # six rows instead of the film's and the contact's ten and more
@@ -51,9 +54,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
     elif gradient is None:
         gradient = film_gradient(film, slow_motion)
     ds, dc, extra = _integral_gradients(film, gradient)
-    ends = _NO_ENDS
-    if _film_gap_slope(film) is not None and any(p.bearing.end_pressures):
-        ends = _end_gradient(film)
+    ends = _end_gradient(film) if _film_gap_slope(film) is not None and any(p.bearing.end_pressures) else _NO_ENDS
     out = np.empty((6, MOTION_SIZE))
     wrench_gradient(
         ds,
@@ -135,8 +136,7 @@ def balance_gradients(film: SolvedFilm) -> np.ndarray:
         film.parts.liner.motion_columns(at, out)
     else:
         motion_columns(w.order, w.count, *gap_derivatives(film), at, out)
-        line = true_line(film)
-        if line is not None:
+        if (line := true_line(film)) is not None:
             add_line_columns(tuple(line), at, out)
     return out
 

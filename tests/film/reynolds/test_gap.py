@@ -5,7 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from exudyn_ehd.film.reynolds.gap import add_to_gap, contract_ends, contract_pose, largest_eccentricity, rigid_gap
+from exudyn_ehd.film.reynolds.gap import (
+    add_to_gap,
+    contract_ends,
+    contract_pose,
+    largest_eccentricity,
+    rigid_gap,
+    rigid_gaps,
+)
 
 
 def _gap(pose, theta, z, base):
@@ -22,6 +29,18 @@ def test_rigid_gap(base):
     out = np.empty((9, 5))
     rigid_gap(pose, np.cos(theta), np.sin(theta), z, base, out)
     np.testing.assert_allclose(out, _gap(pose, theta, z, base), rtol=1e-13, atol=1e-14)
+
+
+@pytest.mark.parametrize("squeeze", [True, False])
+def test_rigid_gaps(squeeze):
+    rng = np.random.default_rng(3)
+    theta, between, z = rng.uniform(0, 6, 9), rng.uniform(0, 6, 9), np.linspace(-1, 1, 5)
+    (pose, rate), out = rng.normal(size=(2, 4)), np.zeros((3, 9, 5))
+    at = np.cos(theta), np.sin(theta), np.cos(between), np.sin(between), z
+    smallest = rigid_gaps(pose, rate, squeeze, at, 0.7, *out)
+    assert smallest == 1.0 - largest_eccentricity(pose, 0.7)
+    expected = _gap(pose, theta, z, 1.0), _gap(pose, between, z, 1.0), squeeze * _gap(rate, theta, z, 0.0)
+    np.testing.assert_allclose(out, expected, rtol=1e-13, atol=1e-14)
 
 
 def test_largest_eccentricity_is_one_minus_the_smallest_gap():

@@ -1,0 +1,99 @@
+"""The tangent of a plain film in one kernel: rigid surfaces, an oil of constant viscosity, a linear film in its sets.
+
+It calls what `exudyn_ehd.joint.tangent.wrench.wrench_tangent` calls one by one for any film. On small grids those calls
+from Python take longer than what they call.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from exudyn_ehd.film.banded.substitution import solve_ldl
+from exudyn_ehd.film.cavitation.line_newton import refine_line, solve_corrected
+from exudyn_ehd.film.cavitation.rupture_line import add_line_columns, line_gradients, line_weights
+from exudyn_ehd.film.loads import couette_gradient, load_adjoint_rhs
+from exudyn_ehd.film.reynolds.gap import contract_pose
+from exudyn_ehd.film.reynolds.link_derivatives import link_derivatives
+from exudyn_ehd.film.sensitivity.rigid import functional_gradients, motion_columns, wrench_gradient
+from exudyn_ehd.film.solvers.linear import FilmSolver
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, SolvedFilm
+
+
+def is_plain(film: SolvedFilm) -> bool:
+    """Whether `plain_tangent` is this film's."""
+    s, p, oil = film.solver, film.parts, film.oil
+    return (
+        type(s) is FilmSolver
+        and not (s.closure.clips or s.closure.conserves_mass)
+        and s.flux is None
+        and oil.P_q is None
+        and oil.ratio is None
+        and film.extra is None
+        and film.limited is None
+        and film.pressing is None
+        and s.grid.cuts is None
+        and not p.uneven_drag
+    )
+
+
+def plain_tangent(film: SolvedFilm) -> np.ndarray:
+    """d wrench / d motion (6, 10) in SI units of a film that `is_plain`."""
+    s, p, g, w, scales, out = film.solver, film.parts, film.grid, film.journal, film.scales, np.empty((6, MOTION_SIZE))
+    y, line, work = s.system, s.line, s.work
+    known = (0, 0.0, True) if line is None else (work.count if line.own_links else 0, line.peak, line.exact)
+    exact = _plain_tangent(
+        (y.kx, y.kz, y.b),
+        None if line is None else line.fields,
+        work.factor,
+        (work.count, work.width),
+        known,
+        (y.linear_pressure, s.H, s.HF, s.ones, s.area if s.squeeze else s.nothing, s.nothing, g.weight, s.link_fields),
+        (g.fixed, work.active),
+        g.directions,
+        g.mesh,
+        (s.vx, s.vz, s.flow_x, s.closure.cavity_shear),
+        s.squeeze,
+        (w.pose, film.loads.integrals, p.pose_scale),
+        (g.reference_length, scales.force, scales.shear, w.omega, w.axial_speed, film.loads.couette),
+        out,
+    )
+    if line is not None:
+        line.own_links, line.exact = True, exact
+    return out
+
+
+@njit(cache=True, nogil=True)
+def _plain_tangent(links, line, factor, size, known, fields, sets, at, mesh, speeds, squeeze, pose, scales, out):
+    """Returns whether the factor is exact, as `refine_line`; ``known``: its ``first``, ``peak`` and last answer."""
+    order, _, number, band, inv_diag = factor
+    (count, width), (first, peak, exact) = size, known
+    P, H, HF, ones, by_rate, by_gap, weight, link_fields = fields
+    fixed, active = sets
+    cos_x, sin_x, _, _, z = at
+    vx, vz, flow_x, cavity_shear = speeds
+    if line is not None and not exact:
+        exact = refine_line(links, line, factor, count, width, first, peak, 0.0)
+    lam = np.empty((4, count))
+    load_adjoint_rhs(order, count, weight, cos_x, sin_x, z, active, lam)
+    if line is None or exact:
+        solve_ldl(band, inv_diag, count, width, lam)
+    else:
+        solve_corrected(band, inv_diag, count, width, line[7], lam)
+    link_derivatives(P, H, HF, None, None, None, None, None, vx, vz, flow_x, mesh, link_fields)
+    columns = np.empty((10, count))
+    motion_columns(order, count, link_fields, ones, by_rate, by_gap, at, columns)
+    if line is not None:
+        places = line[5][: line[5][-1]]
+        weights, by, rows = np.empty((2, places.size)), np.zeros((8, places.size)), number.reshape(-1)[places]
+        line_weights(places, line[0], line[1], line[2], weights)
+        line_gradients(places, weights, H, HF, None, None, vx, vz, flow_x, squeeze, mesh, by)
+        add_line_columns((rows, places, by), at, columns)
+    gradient, field = np.empty((4, 10)), np.empty((1, *H.shape))
+    functional_gradients(lam, columns, gradient)
+    by_pose, dc = np.zeros((1, 4)), np.zeros(10)
+    couette_gradient(H, weight, active, fixed, cavity_shear, field[0])
+    contract_pose(field, cos_x, sin_x, z, by_pose)
+    dc[:4] = by_pose[0]
+    wrench_gradient(gradient, dc, np.zeros((2, 10)), np.zeros(4), *pose[:2], pose[2], *scales, out)
+    return exact
