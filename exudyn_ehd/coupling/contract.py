@@ -153,7 +153,9 @@ class Side(Protocol):
 
 
 class Faces(Protocol):
-    """Films on the end faces of a joint, as records ask for them."""
+    """Films on the end faces of a joint, as records ask for them; ``objectNumber`` is that of their element."""
+
+    objectNumber: Index
 
     def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
         """Scalars at a motion (10,), to which the sides' arrays belong."""

@@ -194,6 +194,20 @@ def test_arguments_of_the_joint(argument, value):
         assert argument in str(error) or "outside the bore" in str(error), str(error)
 
 
+@pytest.mark.parametrize("study", ["steady", "equilibrium", "stribeck"])
+@pytest.mark.parametrize(
+    "bearing", [None, "x", ehd.SphericalBearing(ball_radius=0.015, radial_clearance=3e-5, lubricant=OIL)]
+)
+def test_studies_of_journals_take_nothing_else(study, bearing):
+    arguments = {
+        "steady": {"speed": 300.0, "eccentricity_ratio": 0.5},
+        "equilibrium": {"speed": 300.0, "load": (0.0, -100.0)},
+        "stribeck": {"speeds": [300.0], "load": 100.0},
+    }[study]
+    with pytest.raises(ehd.InputError, match=f"{study}: bearing must be JournalBearing"):
+        getattr(ehd, study)(bearing, **arguments)
+
+
 def _inertia():
     from exudyn.utilities import InertiaCuboid
 

@@ -20,7 +20,7 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Side
+from exudyn_ehd.coupling.contract import ObjectIndex, Side
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
@@ -49,7 +49,14 @@ class ThrustElement:
         Housing and journal, not those of ``film``.
     offset : float
         z_0, m.
+
+    Attributes
+    ----------
+    objectNumber : exudyn.ObjectIndex
+        Of the element in the system.
     """
+
+    objectNumber: ObjectIndex
 
     def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
         self.model = ThrustModel(film.model.bearing)
@@ -87,7 +94,9 @@ class ThrustElement:
         journal.geometric(mbs, state[n_h:], loads[2], loads[3], stiffness[n_h:, n_h:])
         own = np.ascontiguousarray(tangent[:, :MOTION_SIZE])
         relative.tangent_matrices(*frames, *jacobians, loads, own, by_q, by_rate, stiffness, damping)
-        stiffness += np.outer(turned @ tangent[:, MOTION_SIZE], self._position_change(found.motion, by_q))
+        stiffness += np.outer(
+            turned @ tangent[:, MOTION_SIZE], self.position_change(frames, jacobians, found.motion, by_q)
+        )
         return np.asarray(-(f_q * stiffness + f_qt * damping))
 
     def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> ThrustEvaluation:
@@ -152,12 +161,18 @@ class ThrustElement:
         along = float(housing[:, 2] @ (journal[:, PLACE] - housing[:, PLACE]))
         return along - self.offset / math.sqrt(1.0 + float(motion[2:4] @ motion[2:4]))
 
-    def _position_change(self, motion: np.ndarray, by_q: np.ndarray) -> np.ndarray:
-        """Derivative (n,) of the position to q, with that of the motion (10, n)."""
-        (housing, journal), tilt = self.sides, motion[2:4]
-        axis = housing.frame[:, 2]
-        turning = np.cross(axis, journal.frame[:, PLACE] - housing.frame[:, PLACE])
-        along = np.concatenate((turning @ housing.jac[1] - axis @ housing.jac[0], axis @ journal.jac[0]))
+    def position_change(
+        self,
+        frames: tuple[np.ndarray, np.ndarray],
+        jacobians: tuple[np.ndarray, np.ndarray],
+        motion: np.ndarray,
+        by_q: np.ndarray,
+    ) -> np.ndarray:
+        """Derivative (n,) of the position to q, from frames and Jacobians of both sides and that of the motion."""
+        (housing, journal), tilt = frames, motion[2:4]
+        axis = housing[:, 2]
+        turning = np.cross(axis, journal[:, PLACE] - housing[:, PLACE])
+        along = np.concatenate((turning @ jacobians[0][1] - axis @ jacobians[0][0], axis @ jacobians[1][0]))
         return np.asarray(along + self.offset * (1.0 + tilt @ tilt) ** -1.5 * (tilt @ by_q[2:4]))
 
     def _has_film(self, time: float, found: ThrustEvaluation) -> bool:
@@ -213,7 +228,7 @@ def attach_faces(
             f"gap {min(state.minimum_gap for state in start.states):.6g} m; check the initial positions, and whether "
             "ThrustFaces.clearance is that of one face."
         )
-    mbs.AddObject(
+    element.objectNumber = mbs.AddObject(
         eii.ObjectGenericODE2(
             name=f"{element.name} thrust faces",
             nodeNumbers=[node for side in (housing, journal) for node in side.nodes],

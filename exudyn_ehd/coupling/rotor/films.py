@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 import numpy as np
 
@@ -19,6 +19,10 @@ from exudyn_ehd.joint.balance.overload import refuse_pressed_through, warn_of_ov
 from exudyn_ehd.joint.balance.position import first_guess
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.status import InputError, Status
+
+if TYPE_CHECKING:
+    from exudyn_ehd.coupling.element.thrust import ThrustElement
+    from exudyn_ehd.joint.thrust import ThrustEvaluation
 
 # Loads that do work on the slopes of a motion (x, y, bx, by): F_x, F_y, M_y, -M_x.
 _LOADS, _SIGNS = [0, 1, 4, 3], np.array([1.0, 1.0, 1.0, -1.0])
@@ -100,16 +104,22 @@ class RotorFilm:
             )
         self.places = np.concatenate((housing.places, journal.places))
         self.motion = np.zeros(10)
+        self.faces = cast("ThrustElement | None", joint.element.faces)
+        self._on_faces: ThrustEvaluation | None = None
 
     def update(self, q: np.ndarray, u: np.ndarray) -> None:
         """Bring the journal's motion to a state."""
         for side in (self.housing, self.journal):
             side.update(q, u)
-        relative.relative_motion(self.housing.frame, self.journal.frame, self.motion)
+        frames = self.housing.frame, self.journal.frame
+        relative.relative_motion(*frames, self.motion)
+        self._on_faces = None if self.faces is None else self.faces.at(frames, self.motion)
 
     def evaluate(self) -> Evaluation | None:
-        """The film at the motion; None if there is none."""
+        """The film at the motion; None if there is none, or none on an end face."""
         if not np.all(np.isfinite(self.motion)):
+            return None
+        if self._on_faces is not None and self._on_faces.status is not Status.CONVERGED:
             return None
         evaluation = self.model.evaluate(self.motion)
         return evaluation if evaluation.status is Status.CONVERGED else None
@@ -128,6 +138,29 @@ class RotorFilm:
         tangent = np.ascontiguousarray(tangent)
         relative.tangent_matrices(*frames, *jacobians, loads, tangent, motion_x, motion_u, by_place, by_rate)
         return FilmLoads(force, by_place, by_rate, motion_x)
+
+    def all_loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:
+        """`loads`, and what the films on the end faces do at the state of the last `update`."""
+        film, found = self.loads(wrench, tangent), self._on_faces
+        if self.faces is None or found is None:
+            return film
+        by_motion = found.tangent()
+        faces = self.loads(found.wrench, by_motion[:, :10])
+        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
+        turned = np.empty((self.places.size, 6))
+        relative.wrench_map(*frames, *jacobians, turned)
+        along = self.faces.position_change(frames, jacobians, self.motion, film.motion_by_place)
+        by_place = faces.by_place + np.outer(turned @ by_motion[:, 10], along)
+        return FilmLoads(
+            film.force + faces.force, film.by_place + by_place, film.by_rate + faces.by_rate, film.motion_by_place
+        )
+
+    def by_spin(self, tangent: np.ndarray) -> np.ndarray:
+        """Derivative (n,) of the generalized force of all films to the speed of the first rotor."""
+        change = tangent[:, 8].copy()
+        if self._on_faces is not None:
+            change += self._on_faces.tangent()[:, 8]
+        return self.loads(self.ratio * change, np.ascontiguousarray(tangent[:, :10])).force
 
     @property
     def support_stiffness(self) -> float:
@@ -148,9 +181,9 @@ class RotorFilm:
     def room(self, x: np.ndarray) -> float:
         """Largest part of a step x (size,) that uses up at most 60 % of the gap at either end; `update` has run."""
         change = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place @ x[self.places]
-        c, half, part = self.bearing.radial_clearance, 0.5 * self.bearing.length, 1.0
+        c, half, part = self.bearing.radial_clearance, 0.5 * self.bearing.length, self.room_of_faces(x)
         if self.model.effects.contacts:
-            return min(1.0, 0.3 * c / max(float(np.hypot(*change[:2])), 1e-300))
+            return min(part, 0.3 * c / max(float(np.hypot(*change[:2])), 1e-300))
         for s in (-half, half):
             e, d = self.motion[:2] + s * self.motion[2:4], change[:2] + s * change[2:4]
             near, far = float(np.hypot(*e)), float(np.hypot(*d))
@@ -159,6 +192,20 @@ class RotorFilm:
             if far > 0.0:
                 part = min(part, (-along + math.sqrt(along**2 + far**2 * square)) / far**2)
         return part
+
+    def room_of_faces(self, x: np.ndarray) -> float:
+        """Largest part of a step x (size,) that uses up at most 60 % of the gaps of the end faces; `update` has run."""
+        thrust = self.bearing.thrust
+        if self.faces is None or self._on_faces is None or thrust is None:
+            return 1.0
+        frames, jacobians = (self.housing.frame, self.journal.frame), (self.housing.jac, self.journal.jac)
+        by_place = self.loads(np.zeros(6), np.zeros((6, 10))).motion_by_place
+        along = self.faces.position_change(frames, jacobians, self.motion, by_place) @ x[self.places]
+        turn = by_place[2:4] @ x[self.places]
+        closed = abs(float(along)) + thrust.outer_radius * float(np.hypot(*turn))
+        gap = min(state.minimum_gap for state in self._on_faces.states)
+        allowed = 0.6 * gap if thrust.contact is None else 0.3 * thrust.clearance
+        return min(1.0, allowed / max(closed, 1e-300))
 
     def found(self, evaluation: Evaluation, tangent: np.ndarray) -> dict[str, np.ndarray | float]:
         """What `RotorResult` has of a film at its equilibrium."""

@@ -114,12 +114,12 @@ class EquilibriumSearch:
             raise self._lost(speed)
         evaluations, tangents = found
         self.rest = system.derivatives()
-        balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
+        balance = self._balance([f.all_loads(e.wrench, t) for f, e, t in zip(self.films, *found, strict=True)])
         load = max(float(np.abs(e.wrench[:3]).max()) for e in evaluations)
         require_steady_load(system, self.weights, balance.free, load)
         changed = np.zeros(system.size)
         for film, tangent in zip(self.films, tangents, strict=True):
-            changed[film.places] -= film.loads(film.ratio * tangent[:, 8], tangent).force
+            changed[film.places] -= film.by_spin(tangent)
         free, M = balance.free, system.mass()
         self.slope = -free @ np.linalg.solve(free.T @ balance.K @ free, free.T @ changed)
         self.speed = speed
@@ -147,9 +147,10 @@ class EquilibriumSearch:
         for _ in range(3):
             self._update()
             springs = [film.support(*part) for film, part in zip(self.films, supports, strict=True)]
-            balance = self._balance([f.loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
+            balance = self._balance([f.all_loads(*spring) for f, spring in zip(self.films, springs, strict=True)])
             require_held(self.system, self.weights, balance.K, balance.free)
-            self.system.q = self.system.moved(self._step(balance))
+            step = self._step(balance)
+            self.system.q = self.system.moved(min(film.room_of_faces(step) for film in self.films) * step)
             self._update()
             forces = [f.support(*part)[0][:2] for f, part in zip(self.films, supports, strict=True)]
             supports = [(force, film.guess(-force)) for film, force in zip(self.films, forces, strict=True)]
@@ -219,7 +220,7 @@ class EquilibriumSearch:
             films = self._films()
             if films is None:
                 return None
-            balance = self._balance([f.loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
+            balance = self._balance([f.all_loads(e.wrench, t) for f, e, t in zip(self.films, *films, strict=True)])
             if balance.residual < TOLERANCE and np.abs(balance.mend).max() < TOLERANCE * self.length:
                 return films
             count = system.multipliers.size
@@ -251,8 +252,9 @@ def films_off(mbs: exu.MainSystem, joints: list[Joint]) -> Iterator[None]:
     """Let Exudyn see no films: they are evaluated here, once per state."""
     kept = []
     try:
-        for joint in joints:
-            number = joint.objectNumber
+        numbers = [joint.objectNumber for joint in joints]
+        numbers += [joint.element.faces.objectNumber for joint in joints if joint.element.faces is not None]
+        for number in numbers:
             kept += [(number, name, mbs.GetObjectParameter(number, name)["function"]) for name in FUNCTIONS]
             mbs.SetObjectParameter(number, FUNCTIONS[0], lambda mbs, t, item, q, q_t: np.zeros(len(q)))
             mbs.SetObjectParameter(number, FUNCTIONS[1], lambda mbs, t, item, q, *rest: np.zeros((len(q), len(q))))

@@ -20,7 +20,7 @@ from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, require_number, require_size, require_vector
+from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
 
 # Of the difference quotients between settled films, as a share of the minimum film thickness.
 SETTLED_STEP = 1e-4
@@ -201,6 +201,7 @@ def equilibrium(
     array([[ 175.,   99.],
            [-295.,  181.]])
     """
+    require_type("equilibrium: bearing", bearing, JournalBearing)
     force = require_vector("equilibrium: load", load, 2, "N")
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")

@@ -26,7 +26,16 @@ from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.pictures.mixins import FilmPictures
 from exudyn_ehd.pictures.records import Film
 from exudyn_ehd.pictures.units import shown
-from exudyn_ehd.status import InputError, Status, StrainWarning, require_number, require_size, require_vector, warn_user
+from exudyn_ehd.status import (
+    InputError,
+    Status,
+    StrainWarning,
+    require_number,
+    require_size,
+    require_type,
+    require_vector,
+    warn_user,
+)
 
 if TYPE_CHECKING:
     from exudyn_ehd.joint.static.thrust import ThrustResult
@@ -201,6 +210,7 @@ def steady(
     >>> (1e-3 * film.force[:2]).round(1), round(1e6 * film.minimum_gap, 2)  # kN, um
     (array([-11.4,   7.4]), 4.96)
     """
+    require_type("steady: bearing", bearing, JournalBearing)
     e = require_number("steady: eccentricity_ratio", eccentricity_ratio, at_least=0.0) * bearing.radial_clearance
     angle = require_number("steady: direction", direction, "rad")
     b = require_vector("steady: tilt", tilt, 2, "rad")

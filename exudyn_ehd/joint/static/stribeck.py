@@ -14,7 +14,7 @@ from exudyn_ehd.joint.balance.position import Carried, LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.rigid import Evaluation
 from exudyn_ehd.joint.static.steady import require_oil
-from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible
+from exudyn_ehd.status import FilmError, InputError, require_number, require_plausible, require_type
 
 LARGEST_HALVINGS = 8
 # Speed by which boundary friction would pass through rest, as a share of the slowest sliding.
@@ -122,6 +122,7 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     >>> curve.friction_coefficient.round(4)
     array([0.0173, 0.0325, 0.0479])
     """
+    require_type("stribeck: bearing", bearing, JournalBearing)
     size = require_number("stribeck: load", load, "N", above=0.0)
     values = np.atleast_1d(np.array(speeds, dtype=float))
     if values.ndim != 1 or values.size == 0 or not np.all(np.isfinite(values)) or not np.all(values > 0.0):

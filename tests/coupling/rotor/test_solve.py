@@ -199,3 +199,36 @@ def test_the_state_of_a_run_and_its_history_stay_as_they_are():
     assert mbs.GetObjectParameter(joints[0].objectNumber, "forceUserFunction")["function"] == film
     # started in equilibrium, it stays there
     assert np.ptp(joints[0].history.eccentricity, axis=0).max() < 1e-6 * CLEARANCE
+
+
+@pytest.mark.slow
+def test_thrust_faces_take_part_with_their_exact_tangent():
+    """Place, stiffness and damping along the axis are those of the faces alone, whatever their cavities."""
+    b = {"journal_radius": 0.025, "length": 0.03, "radial_clearance": 40e-6, "lubricant": ehd.Lubricant(viscosity=0.02)}
+    pads = ehd.TaperLand(pads=4, depth=20e-6)
+    faces = ehd.ThrustFaces(inner_radius=0.025, outer_radius=0.04, clearance=40e-6, profile=pads, n_theta=32)
+    kind = ehd.JournalBearing(**b, film=ehd.FiniteLength(n_theta=32, n_z=4), thrust=faces)
+    container = exu.SystemContainer()
+    mbs = container.AddSystem()
+    rotor = mbs.CreateRigidBody(inertia=inertia_of(20.0, 0.3, 0.1, np.eye(3)))
+    ground, load = mbs.CreateGround(), np.array([30.0, -100.0, 400.0])
+    joint = ehd.CreateLubricatedJoint(mbs, "film", [ground, rotor], [0, 0, 0], [0, 0, 1], kind)
+    mbs.CreateForce(itemNumber=rotor, loadVector=load)
+    mbs.Assemble()
+    found = ehd.SolveEquilibrium(mbs, 600.0)
+    motion, place = found.motion[0, 0], found.coordinates[0, 2]
+    known = ehd.steady(
+        kind,
+        speed=600.0,
+        eccentricity_ratio=float(np.hypot(*motion[:2]) / 40e-6),
+        direction=float(np.arctan2(motion[1], motion[0])),
+        tilt=tuple(motion[2:4]),
+        axial_position=float(place),
+    )
+    np.testing.assert_allclose(known.force + known.faces.force, -load, atol=1e-6 * 400.0)
+    along = found.directions[0].T @ np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    assert along @ found.stiffness_matrix[0] @ along == pytest.approx(known.faces.axial_stiffness, rel=1e-4)
+    assert along @ found.damping_matrix[0] @ along == pytest.approx(known.faces.axial_damping, rel=1e-4)
+    # Exudyn sees the faces again
+    number = joint.element.faces.objectNumber
+    assert mbs.GetObjectParameter(number, "forceUserFunction")["function"] == joint.element.faces.force
