@@ -28,6 +28,7 @@ from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind
 from exudyn_ehd.coupling.watch import solver_state
+from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
 from exudyn_ehd.joint.balance.overload import DEEPEST
 from exudyn_ehd.joint.model.compile import MESSAGE
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
@@ -62,13 +63,14 @@ class ThrustElement:
         self.model = ThrustModel(film.model.bearing)
         self.steps, self.name, self._failures = film.steps, film.failures.name, film.failures
         self.sides, self.offset = sides, offset
+        self._gap = np.nan  # smallest one at the start of the step, m
         self._last: tuple[list[float], list[float], ThrustEvaluation] | None = None
         self._loads, self._bound = np.zeros((4, 3)), False
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
         found, out = self._evaluate(mbs, q, q_t), np.full(len(q), np.nan)
-        if self._has_film(t, found):
+        if self._has_film(t, found) and not self._goes_too_far(t, found):
             frames, jacobians = self._arrays()
             relative.global_loads(*frames, found.wrench, self._loads)
             relative.generalized_force(*jacobians, self._loads, out)
@@ -132,6 +134,7 @@ class ThrustElement:
                 f"{gap:.4g} m; check masses, loads and units, take more steps, or name ThrustFaces.contact; "
                 "joint.stop_at(pressure=...) allows more."
             )
+        self._gap = gap
         return values
 
     def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
@@ -174,6 +177,15 @@ class ThrustElement:
         turning = np.cross(axis, journal[:, PLACE] - housing[:, PLACE])
         along = np.concatenate((turning @ jacobians[0][1] - axis @ jacobians[0][0], axis @ jacobians[1][0]))
         return np.asarray(along + self.offset * (1.0 + tilt @ tilt) ** -1.5 * (tilt @ by_q[2:4]))
+
+    def _goes_too_far(self, time: float, found: ThrustEvaluation) -> bool:
+        """Whether the joint's step control asks for a smaller step."""
+        control, faces = self.steps.control, self.model.bearing.thrust
+        if control is None or faces is None or not time > self.steps.start:
+            return False
+        least = SMALLEST_GAP_SHARE * faces.clearance if faces.contact is None else faces.contact.onset
+        change = min(state.minimum_gap for state in found.states) - self._gap
+        return control.refuses(change, max(self._gap, least), self.steps.solver)
 
     def _has_film(self, time: float, found: ThrustEvaluation) -> bool:
         """Whether there are films; raise `FilmError` if there are none and the solver can't repeat the step."""

@@ -44,8 +44,8 @@ class UntilPeriodic:
         Of the loads and motions, s: one turn of a crank, two of a four-stroke engine.
     tolerance : float
         How far the last cycle may be from the one before, and from the limit that the changes from cycle to cycle lead
-        to: distances of the journal's axis, at both ends, over the radial clearance, and of the film's temperature over
-        its rise since the start of the run.
+        to: distances of the journal's axis, at both ends, and of the journal between its thrust faces over the radial
+        clearance, and of the film's temperature over its rise since the start of the run.
 
     Examples
     --------
@@ -249,7 +249,10 @@ def _change(history: JointHistory, begin: float, end: float, period: float) -> f
     moved = last.motion[:, :4] - orbit(before)
     half = 0.5 * history.length
     ends = [np.hypot(*(moved[:, :2] + side * moved[:, 2:]).T) for side in (-half, half)]
-    change = float(np.max(ends)) / history.radial_clearance
+    place = history.axial_position
+    if np.isfinite(place).all():
+        ends.append(last.axial_position - np.interp(before, history.time, place))
+    change = float(np.abs(ends).max()) / history.radial_clearance
     warm = history.film_temperature
     if not np.isfinite(warm).all():
         return change

@@ -43,9 +43,10 @@ class StepControl:
     ----------
     largest_gap_change : float
         Largest change of the smallest gap of the rigid surfaces in a step, as a share of that gap at the start of the
-        step (or of the contact's range, if that is larger); 0.01 to 1. Of a joint.
+        step (or of the contact's range, if that is larger), and the same of the end faces; 0.01 to 1. Of a joint.
     error : float, optional
-        Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run.
+        Error of the gap to aim at, as a share of the minimum film thickness; 1e-4 to 0.5. Of a run. The gaps of end
+        faces do not count: their films have no estimate.
 
     Examples
     --------
@@ -115,8 +116,12 @@ class GapWatch:
 
     def rejects(self, motion: np.ndarray, solver: solver_state.Solver | None) -> bool:
         """Whether the step to this motion is too coarse and can be repeated."""
+        return self.refuses(self.bore.smallest(motion) - self.gap, max(self.film, self.range), solver)
+
+    def refuses(self, change: float, gap: float, solver: solver_state.Solver | None) -> bool:
+        """Whether a step that changes a gap (m) by so much is too coarse and can be repeated."""
         # not true for a gap that is not finite: the film itself reports that
-        too_far = abs(self.bore.smallest(motion) - self.gap) > self.share * max(self.film, self.range)
+        too_far = abs(change) > self.share * gap
         if not too_far or not isinstance(solver, exu.MainSolverImplicitSecondOrder):
             return False
         if not solver_state.can_reject_step(solver):

@@ -160,6 +160,41 @@ def test_impact_settles():
     assert impulse == pytest.approx(300.0 * (history.motion[-1, 9] - 0.25), rel=0.01)
 
 
+def _pushed(force, end, steps, *, control=None, **options):
+    """A shaft that a force pushes towards one of its plane faces."""
+    mbs = exu.SystemContainer().AddSystem()
+    ground = mbs.CreateGround()
+    shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.025, 2), initialAngularVelocity=[0, 0, 300.0])
+    bearing = _bearing(contact=ehd.RegularisedWall(onset=0.1 * C))
+    joint = ehd.CreateLubricatedJoint(mbs, "a", [ground, shaft], [0, 0, 0], [0, 0, 1], bearing, stepControl=control)
+    mbs.CreateForce(itemNumber=shaft, loadVector=[0, -20, force])
+    mbs.Assemble()
+    return joint, lambda: ehd.SolveDynamic(mbs, scenes.settings(end, steps), **options)
+
+
+@pytest.mark.slow
+def test_step_control_watches_the_faces():
+    """Steps of 1 ms / 10 change their gap by a quarter and more; with a control by no more than it says."""
+    changes = []
+    for control in (None, ehd.StepControl(largest_gap_change=0.05)):
+        joint, run = _pushed(2e5, 1e-3, 10, control=control)
+        run()
+        gap = joint.history.thrust_minimum_gap
+        changes.append((np.abs(np.diff(gap)) / np.maximum(gap[:-1], 0.1 * C)).max())
+    assert changes[0] > 0.1
+    assert changes[1] < 0.05
+
+
+@pytest.mark.slow
+def test_a_journal_that_creeps_along_its_axis_is_not_periodic():
+    """Its orbit has closed long before."""
+    joint, run = _pushed(1000.0, 0.03, 60, until_periodic=ehd.UntilPeriodic(period=5e-3, tolerance=0.02))
+    with pytest.raises(ehd.RunError, match="have not closed"):
+        run()
+    place = joint.history.axial_position
+    assert place[-1] - place[-11] > 0.02 * 50e-6
+
+
 @pytest.mark.slow
 def test_audit():
     """A row says what the faces take; advice about the journal's film is given as without them."""
