@@ -167,7 +167,7 @@ def _pushed(force, end, steps, *, control=None, **options):
     shaft = mbs.CreateRigidBody(inertia=InertiaCylinder(7800, 0.5, 0.025, 2), initialAngularVelocity=[0, 0, 300.0])
     bearing = _bearing(contact=ehd.RegularisedWall(onset=0.1 * C))
     joint = ehd.CreateLubricatedJoint(mbs, "a", [ground, shaft], [0, 0, 0], [0, 0, 1], bearing, stepControl=control)
-    mbs.CreateForce(itemNumber=shaft, loadVector=[0, -20, force])
+    mbs.CreateForce(itemNumber=shaft, loadVector=[0, 0, force])
     mbs.Assemble()
     return joint, lambda: ehd.SolveDynamic(mbs, scenes.settings(end, steps), **options)
 
