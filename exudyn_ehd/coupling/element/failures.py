@@ -10,7 +10,7 @@ import numpy as np
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Trial
 from exudyn_ehd.coupling.kinematics.bore_gap import BoreGap
-from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, eccentricity_ratios
+from exudyn_ehd.coupling.record.history import FORCE, PEAK_PRESSURE, THRUST, eccentricity_ratios
 from exudyn_ehd.joint.balance.advice import advice
 from exudyn_ehd.joint.balance.hot_oil import HOTTEST, NO_OIL, hot_film, hottest, is_above, seized
 from exudyn_ehd.joint.balance.overload import DEEPEST, HIGHEST_MEAN, HIGHEST_PEAK, PRESSED_THROUGH, mean_pressure
@@ -88,7 +88,27 @@ class Failures:
             return seizure
         if self._pressure(row) > self._bearable:
             return FilmError(self.overloaded(time, row, trial.motion))
-        return self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
+        on_faces = None if getattr(self.bearing, "thrust", None) is None else self._absurd_faces(time, row)
+        return on_faces or self._beyond_limit(time, row, trial) or self._pressed_through(time, trial)
+
+    def _absurd_faces(self, time: float, row: np.ndarray) -> FilmError | None:
+        """A collar pressed through its contact by more than any explains, or with what no steel bears."""
+        gap, peak, force = (float(row[column]) for column in THRUST)
+        assert self.bearing.thrust is not None
+        if gap < -DEEPEST * self.bearing.thrust.clearance:
+            return FilmError(
+                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: a collar is pressed through its thrust face, "
+                f"smallest gap {gap:.4g} m; check load, mass and units, give ThrustFaces.contact more stiffness "
+                "(RegularisedWall.pressure), or take smaller steps."
+            )
+        if peak > self.largest_pressure:
+            return FilmError(
+                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: its thrust faces have a film that neither oil nor "
+                f"steel bears: peak pressure {peak:.4g} Pa, axial force {force:.4g} N, smallest gap {gap:.4g} m; check "
+                "masses, loads and units, take more steps, or name ThrustFaces.contact; joint.stop_at(pressure=...) "
+                "allows more."
+            )
+        return None
 
     def crushes(self, trial: Trial) -> bool:
         """Whether the state has a film that no accepted step may have."""

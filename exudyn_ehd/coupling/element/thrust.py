@@ -29,7 +29,6 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
-from exudyn_ehd.joint.balance.overload import DEEPEST
 from exudyn_ehd.joint.model.compile import MESSAGE
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.thrust import ADVICE, ThrustEvaluation, ThrustModel
@@ -61,7 +60,7 @@ class ThrustElement:
 
     def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
         self.model = ThrustModel(film.model.bearing)
-        self.steps, self.name, self._failures = film.steps, film.failures.name, film.failures
+        self.steps, self.name = film.steps, film.failures.name
         self.sides, self.offset = sides, offset
         self._gap = np.nan  # smallest one at the start of the step, m
         self._last: tuple[list[float], list[float], ThrustEvaluation] | None = None
@@ -112,29 +111,9 @@ class ThrustElement:
         return self.at(frames, motion).wrench
 
     def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
-        """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong.
-
-        Raises
-        ------
-        FilmError
-            If a collar is pressed through its contact by more than any explains, or with what no steel bears.
-        """
+        """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong."""
         values = self.at((sides[0].frame, sides[1].frame), motion).quantities()
-        faces, gap = self.model.bearing.thrust, values["thrust_minimum_gap"]
-        if faces is not None and gap < -DEEPEST * faces.clearance:
-            raise FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: a collar is pressed through its thrust face, "
-                f"smallest gap {gap:.4g} m; check load, mass and units, give ThrustFaces.contact more stiffness "
-                "(RegularisedWall.pressure), or take smaller steps."
-            )
-        if (peak := values["thrust_peak_pressure"]) > self._failures.largest_pressure:
-            raise FilmError(
-                f"LubricatedJoint '{self.name}' at t = {time:.9g} s: its thrust faces have a film that neither oil nor "
-                f"steel bears: peak pressure {peak:.4g} Pa, axial force {values['thrust_force']:.4g} N, smallest gap "
-                f"{gap:.4g} m; check masses, loads and units, take more steps, or name ThrustFaces.contact; "
-                "joint.stop_at(pressure=...) allows more."
-            )
-        self._gap = gap
+        self._gap = values["thrust_minimum_gap"]
         return values
 
     def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:

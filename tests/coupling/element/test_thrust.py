@@ -186,6 +186,16 @@ def test_step_control_watches_the_faces():
 
 
 @pytest.mark.slow
+def test_the_history_of_a_run_that_faces_end_is_there():
+    joint, run = _pushed(3e6, 0.02, 200)
+    joint.stop_at(pressure=1e8)
+    with pytest.raises(ehd.FilmError, match="its thrust faces have a film that neither"):
+        run()
+    assert joint.history.time.size > 1
+    assert np.isfinite(joint.history.thrust_minimum_gap).all()
+
+
+@pytest.mark.slow
 def test_a_journal_that_creeps_along_its_axis_is_not_periodic():
     """Its orbit has closed long before."""
     joint, run = _pushed(1000.0, 0.03, 60, until_periodic=ehd.UntilPeriodic(period=5e-3, tolerance=0.02))
