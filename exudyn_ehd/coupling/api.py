@@ -242,6 +242,11 @@ def CreateLubricatedJoint(
     rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = joint_points(housing, journal, position, useGlobalFrame)
     bearing, housing = _on_its_housing(mbs, bearing, housing, points[0], rotation)
+    if journal.body is not None and getattr(bearing, "journal", None) is not None:
+        # imported here: a rigid bearing needs no solid
+        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_journal
+
+        bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
     joint = attach(
         mbs,
         _model_of(bearing, housing, journal),

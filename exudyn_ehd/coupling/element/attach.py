@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
-from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, describe
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settle_body, undeformed
@@ -18,7 +18,7 @@ from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, TurningModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.solid.modes.static import BoreModes
@@ -78,6 +78,8 @@ def attach_bush(
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
+    if isinstance(model, TurningModel):
+        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name), {}
     start = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(

@@ -17,7 +17,7 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation, TurningModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.status import Status
@@ -93,7 +93,10 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
     flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
+    The modes of a finite-element journal are where the scene has put them.
     """
+    if isinstance(model, TurningModel):
+        return None
     return _equilibrium([_starting_film(model, sides, model.make_bore)])
 
 

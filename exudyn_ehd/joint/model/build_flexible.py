@@ -11,11 +11,12 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore.equilibrium import Elasticity
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore, NodalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, TurningModel
 from exudyn_ehd.joint.seams import Effects
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
 from exudyn_ehd.solid.journal.modes import journal_modes
+from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 from exudyn_ehd.solid.modes.static import bore_modes
 from exudyn_ehd.status import InputError
 
@@ -29,6 +30,14 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
             "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
             "itself, take a ModalBush(...)."
         )
+    if isinstance(bearing.journal, FEJournal):
+        raise InputError(
+            "JournalBearing.journal=FEJournal(...) takes its modes from the body that is the joint's journal: give "
+            "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[1]; for other bodies, and for a bearing by "
+            "itself, take an ElasticJournal(...)."
+        )
+    if isinstance(bearing.journal, TurningJournal):
+        return TurningModel(bearing, bearing.journal, start_angle, effects)
     bore, elasticity = _bore_and_elasticity(bearing)
     return ElasticBearingModel(bearing, bore, elasticity=elasticity, start_angle=start_angle, effects=effects)
 
