@@ -52,11 +52,14 @@ class FESurface:
     fem: BodyMesh
     nodes: tuple[int, ...] | None = None
     radius_tolerance: float = 0.02
+    settled: bool = True
 
     def __post_init__(self) -> None:
         own = type(self).__name__
         if not hasattr(self.fem, "elements"):
             raise InputError(f"{own}.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
+        if not isinstance(self.settled, bool):
+            raise InputError(f"{own}.settled must be True or False, got {self.settled!r}.")
         require_number(f"{own}.radius_tolerance", self.radius_tolerance, above=0.0)
         if self.nodes is not None:
             try:
@@ -96,13 +99,6 @@ class FEBore(FESurface):
 
     >>> bore = ehd.FEBore(fem=fem)  # JournalBearing(..., bush=bore); the housing is the reduced body made of fem
     """
-
-    settled: bool = True
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not isinstance(self.settled, bool):
-            raise InputError(f"FEBore.settled must be True or False, got {self.settled!r}.")
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -181,9 +181,7 @@ def find_bore(
         member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
         if member.any():
             # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
-            member &= (
-                r >= r[member].max() - SURFACE * radius if outer else r <= r[member].min() + SURFACE * radius
-            )
+            member &= r >= r[member].max() - SURFACE * radius if outer else r <= r[member].min() + SURFACE * radius
         chosen = np.flatnonzero(member)
     else:
         chosen = np.array(nodes, dtype=int)

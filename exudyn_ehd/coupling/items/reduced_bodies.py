@@ -23,6 +23,7 @@ from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
 from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 from exudyn_ehd.status import InputError
 
+
 def hold_fe_bore(
     mbs: exu.MainSystem, bearing: JournalBearing, housing: Item, point: np.ndarray, rotation: np.ndarray
 ) -> tuple[JournalBearing, Item]:
@@ -52,7 +53,7 @@ def hold_fe_bore(
         )
     radius = bearing.journal_radius + bearing.radial_clearance
     reduced, housing = _find_surface(mbs, bush, "bush", housing, (radius, bearing.length), (point, rotation))
-    return dataclasses.replace(bearing, bush=dataclasses.replace(reduced, settled=bush.settled)), housing
+    return dataclasses.replace(bearing, bush=reduced), housing
 
 
 def hold_fe_journal(
@@ -105,11 +106,14 @@ def _find_surface(
         stiffness_matrix=np.asarray(data["stiffnessMatrixReduced"].Convert2DenseMatrix()),
         radius=radius,
         length=length,
+        settled=surface.settled,
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
         assert item.node_kind is not None
-        frame = NodeSide(item.node_kind, item.node, item.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3))
+        frame = NodeSide(
+            item.node_kind, item.node, item.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
+        )
         return FloatingBoreSide(frame, item.nodes[1], origin, local, reduced.rigid)
 
     return reduced, dataclasses.replace(item, build=build)

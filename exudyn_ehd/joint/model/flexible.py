@@ -391,7 +391,7 @@ class TurningModel(ElasticBearingModel):
     Attributes
     ----------
     turns : bool
-        False while a shape is looked for that stands in the joint's frame, `evaluate_steady`.
+        False for shapes that stand in the joint's frame, as `evaluate_steady` looks for.
     """
 
     def __init__(
@@ -455,11 +455,11 @@ class TurningModel(ElasticBearingModel):
         self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
     ) -> ElasticEvaluation:
         """As `ElasticBearingModel.evaluate_steady`, with a shape that stands under the turning journal."""
-        self.turns = False
+        turns, self.turns = self.turns, False
         try:
             return super().evaluate_steady(motion, history, step, spin)
         finally:
-            self.turns = True
+            self.turns = turns
 
 
 def _axis(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

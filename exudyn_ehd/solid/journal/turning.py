@@ -40,7 +40,7 @@ class FEJournal(FESurface):
 
     Of any body, also one that is not the same in all directions: its surface turns under the film, which knows the
     radial displacement. The body's mass and its stresses by spin are Exudyn's. Give it the modes that a pressure needs
-    with `add_bore_modes` (radius: the journal's). It starts as the scene has put its modes, by default undeformed.
+    with `add_bore_modes` (radius: the journal's).
 
     Parameters
     ----------
@@ -50,6 +50,8 @@ class FEJournal(FESurface):
         Mesh nodes on the journal; by default those on the cylinder around the joint's axis.
     radius_tolerance : float
         How far a node's radius may be from the bearing's journal radius, over that radius.
+    settled : bool
+        As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
 
     Examples
     --------

@@ -49,22 +49,23 @@ def shaft(mbs, modulus=2.1e11, tolerance=0.1, tilted=False, **placed):
 
 
 def run(kind, steps=40, step=2.5e-5, angle=0.0, modulus=2.1e11):
-    """A journal that spins under a load that swings: its history."""
+    """A journal that spins under a load that swings, from where a rigid one is in balance."""
     mbs = scenes.new_system()
+    place = ehd.equilibrium(bearing(None), speed=SPEED, load=(0.0, -LOAD)).position
     start = {"initialVelocity": [0.0, 0.0, 0.0], "initialAngularVelocity": [0.0, 0.0, SPEED]}
     matrix = scenes.rotation([0.0, 0.0, angle])
     described = None
     if kind == "finite elements":
         journal, node, fem = shaft(mbs, modulus, rotationMatrixRef=matrix, **start)
         displaced = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
-        displaced[:2] = [0.3 * C, -0.5 * C]
+        displaced[:2] = place
         mbs.SetNodeParameter(node, "initialCoordinates", displaced.tolist())
         marker = mbs.AddMarker(eii.MarkerNodeRigid(nodeNumber=node))
         described = ehd.FEJournal(fem=fem)
     else:
         journal = mbs.CreateRigidBody(
             referenceRotationMatrix=matrix,
-            initialDisplacement=[0.3 * C, -0.5 * C, 0],
+            initialDisplacement=[*place, 0.0],
             inertia=InertiaCylinder(7800, SPAN, R, 2, 0.012),
             nodeType=exu.NodeType.RotationRxyz,
             **start,
@@ -81,7 +82,8 @@ def run(kind, steps=40, step=2.5e-5, angle=0.0, modulus=2.1e11):
     )
 
     def swing(mbs, t, vector):
-        return [0.4 * LOAD * np.sin(SPEED * t), -LOAD * (1 - 0.3 * np.cos(SPEED * t)), 0]
+        phase = 1.0 - np.cos(4.0 * SPEED * t)
+        return [0.4 * LOAD * phase, -LOAD * (1.0 + 0.3 * phase), 0.0]
 
     mbs.AddLoad(eii.LoadForceVector(markerNumber=marker, loadVector=[0, -LOAD, 0], loadVectorUserFunction=swing))
     mbs.Assemble()

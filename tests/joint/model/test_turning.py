@@ -248,9 +248,7 @@ def test_description_refuses_what_it_does_not_carry():
     with pytest.raises(InputError, match="itemNumbers\\[1\\]"):
         model_of(ehd.FEJournal(fem=dataclasses.make_dataclass("Fem", ["elements"])([])))
     steel = ehd.SaintVenantKirchhoff(youngs_modulus=2.1e11, poisson_ratio=0.3, density=7800.0)
-    cylinder = ehd.HollowCylinder(
-        inner_radius=R + C, thickness=0.01, length=L, axial=2, radial=1, circumferential=12
-    )
+    cylinder = ehd.HollowCylinder(inner_radius=R + C, thickness=0.01, length=L, axial=2, radial=1, circumferential=12)
     bush = ehd.ModalBush(mesh=cylinder, material=steel)
     with pytest.raises(InputError, match="rigid bore"):
         model_of(ehd.FEJournal(fem=dataclasses.make_dataclass("Fem", ["elements"])([])), bush=bush)
