@@ -18,7 +18,8 @@ from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel, TurningModel
+from exudyn_ehd.joint.model.build_flexible import TurningModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.solid.modes.static import BoreModes

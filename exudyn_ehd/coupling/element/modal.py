@@ -18,7 +18,8 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.bore.shapes import ModalBore
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation, TurningEvaluation, TurningModel
+from exudyn_ehd.joint.model.build_flexible import TurningEvaluation, TurningModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.solid.modes.static import BoreModes

@@ -5,8 +5,8 @@ its modes q open the gap at (theta, z) by
 
     delta = S(theta - phi, z) q = sum_n [cos(n theta), sin(n theta)] P_n(z) r_n,   r = T(phi) q,
 
-with profiles P_n of its waves around: a turn by phi mixes the two phases of a wave, ``dT/dphi = D T``, and nothing else.
-So a journal keeps its shape at any angle, to rounding, and delta's rate at a vertex is that of
+with profiles P_n of its waves around: a turn by phi mixes the two phases of a wave, ``dT/dphi = D T``. A journal keeps
+its shape at any angle, to rounding, and delta's rate at a vertex is that of
 
     dr/dt = T dq/dt + (dphi/dt) D r,
 

@@ -1,4 +1,4 @@
-"""The film on a user's ObjectFFRFreducedOrder as journal: against rigid and axisymmetric journals, and itself turned."""
+"""The film on a user's ObjectFFRFreducedOrder as journal: against rigid and elastic ones, and itself turned."""
 
 from __future__ import annotations
 
@@ -156,23 +156,30 @@ def test_film_power_is_that_of_all_coordinates():
     assert -power == pytest.approx(found.quantities()["power_loss"], rel=1e-3)
 
 
+@pytest.mark.slow
 def test_stiff_body_is_a_rigid_journal(measured):
-    rigid, body = run("rigid", steps=20).history, run("finite elements", steps=20, modulus=2.1e17).history
-    for name in ("peak_pressure", "eccentricity", "friction_torque"):
-        expected = getattr(rigid, name)
-        measured(name, np.abs(getattr(body, name) - expected).max() / np.abs(expected).max(), 1e-3)
+    """A million times as stiff as steel. It starts without what centrifugal forces stretch it by, and rings.
+
+    Behind that its place differs by 1.5e-5, and by 6e-3 at ten times the step. Its smallest gap is that of a vertex.
+    """
+    with pytest.warns(ehd.PlausibilityWarning, match="youngs_modulus"):
+        body = run("finite elements", steps=24, step=2.5e-6, modulus=2.1e17).history
+    rigid, after = run("rigid", steps=24, step=2.5e-6).history, slice(12, None)
+    limits = {"peak_pressure": 2e-3, "eccentricity": 1e-4, "friction_torque": 1e-4, "minimum_gap": 1e-3}
+    for name, limit in limits.items():
+        own, other = getattr(body, name)[after], getattr(rigid, name)[after]
+        measured(name, np.abs(own - other).max() / np.abs(other).max(), limit)
 
 
 @pytest.mark.slow
 def test_body_of_revolution_is_an_elastic_journal(measured):
-    """A body of finite elements that turns by half a turn, and modes that stand: behind the start, which only one of
-    them begins settled."""
+    """Modes that turn with a body, and modes that stand: behind the ringing of the start, on a coarse mesh."""
     rigid, elastic, body = (run(k, steps=200).history for k in ("rigid", "elastic journal", "finite elements"))
-    after = slice(60, None)
+    after = slice(40, None)
     for name in ("peak_pressure", "minimum_gap"):
         expected = getattr(elastic, name)[after]
         measured(name, np.abs(getattr(body, name)[after] / expected - 1.0).max(), 0.04)
-    assert np.abs(rigid.minimum_gap[after] / elastic.minimum_gap[after] - 1.0).max() > 0.1
+    assert np.abs(rigid.minimum_gap[after] / elastic.minimum_gap[after] - 1.0).max() > 0.07
 
 
 @pytest.mark.slow
