@@ -67,6 +67,11 @@ def hold_fe_journal(
             f"journal=FEJournal(fem=...), got {type(pin).__name__}(...); for another one give MarkerSuperElementRigid "
             "on the body as itemNumbers[1]."
         )
+    if bearing.thrust is not None:
+        raise InputError(
+            "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would move "
+            "with the mean of the journal's surface; give another joint the faces, or leave them out."
+        )
     size = bearing.journal_radius, bearing.length
     reduced, journal = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
     return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced)), journal

@@ -210,10 +210,12 @@ def test_input_that_cannot_be_meant():
     body, _, fem = shaft(mbs, tolerance=0.2)
     ground, rigid = mbs.CreateGround(), scenes.add_body(mbs, "Rxyz")
     pin = ehd.ElasticJournal(material=material(2e11), span=(-0.03, 0.03), held=ehd.HeldEnds(), inner_radius=0.01)
+    faces = ehd.ThrustFaces(inner_radius=0.022, outer_radius=0.03, clearance=2e-5)
     for item, described, match in (
         (body, bearing(None), "journal=FEJournal"),
         (body, bearing(pin), "journal=FEJournal"),
         (rigid, bearing(ehd.FEJournal(fem=fem)), "itemNumbers\\[1\\]"),
+        (body, bearing(ehd.FEJournal(fem=fem), thrust=faces), "collars"),
         (body, bearing(ehd.FEJournal(fem=fem), journal_radius=0.015), "nodes lie on the bore"),
         (body, bearing(ehd.FEJournal(fem=fem), length=0.07), "must span the film"),
     ):
