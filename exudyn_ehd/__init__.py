@@ -113,6 +113,7 @@ _LAZY = {
         "solid.bush": "ANCFBush ModalBush Rayleigh",
         "solid.fe_bore": "BoreModesReport FEBore add_bore_modes",
         "solid.journal.description": "ElasticJournal HeldBands HeldEnds",
+        "solid.journal.turning": "FEJournal",
         "solid.loads": "DeadPressure FollowerPressure Gravity LineLoad SurfaceLoad",
         "solid.mesh": "BushMesh HollowCylinder",
         "solid.mesh_files": "mesh_from_file",
@@ -157,6 +158,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, Rayleigh
     from exudyn_ehd.solid.fe_bore import BoreModesReport, FEBore, add_bore_modes
     from exudyn_ehd.solid.journal.description import ElasticJournal, HeldBands, HeldEnds
+    from exudyn_ehd.solid.journal.turning import FEJournal
     from exudyn_ehd.solid.loads import DeadPressure, FollowerPressure, Gravity, LineLoad, SurfaceLoad
     from exudyn_ehd.solid.mesh import BushMesh, HollowCylinder
     from exudyn_ehd.solid.mesh_files import mesh_from_file
@@ -210,6 +212,7 @@ __all__ = [
     "EquilibriumResult",
     "Every",
     "FEBore",
+    "FEJournal",
     "FactorReuse",
     "File",
     "FilmEnergy",

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
+    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
 SMALLEST_CLEARANCE_RATIO = 1e-4
 LARGEST_CLEARANCE_RATIO = 1e-2
@@ -123,8 +124,9 @@ class JournalBearing:
         Temperature of the film; None: isothermal.
     bush : ElasticLiner, ModalBush, ANCFBush, FEBore or None
         What deflects under the film's pressure; the outer surface of a bush moves with the housing. None: a rigid bore.
-    journal : ElasticJournal or None
-        A pin that deflects, with a rigid bore or a `ModalBush` around it. None: a rigid journal.
+    journal : ElasticJournal, FEJournal or None
+        A pin that deflects, with a rigid bore or a `ModalBush` around it; or the joint's journal, a reduced
+        finite-element body, by its own modes in a rigid bore. None: a rigid journal.
     asperity : GreenwoodTripp or None
         Contact of rough surfaces with boundary friction; takes over like a wall, so that one of the two suffices.
     roughness : PatirCheng or None
@@ -167,7 +169,7 @@ class JournalBearing:
     supply: tuple[SupplyArea, ...] = ()
     thermal: LumpedThermal | FilmEnergy | None = None
     bush: ElasticLiner | ModalBush | ANCFBush | FEBore | ReducedBore | None = None
-    journal: ElasticJournal | None = None
+    journal: ElasticJournal | FEJournal | TurningJournal | None = None
     asperity: GreenwoodTripp | None = None
     roughness: PatirCheng | None = None
     profile: Profile | tuple[Profile, ...] | None = None
@@ -382,10 +384,11 @@ def _check_elastic(bearing: JournalBearing) -> None:
     from exudyn_ehd.solid.bush import ANCFBush, ModalBush, require_bore
     from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
     from exudyn_ehd.solid.journal.description import ElasticJournal
+    from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 
     kinds = (ElasticLiner, ModalBush, ANCFBush, FEBore, ReducedBore, type(None))
     require_type("JournalBearing.bush", bearing.bush, *kinds)
-    require_type("JournalBearing.journal", bearing.journal, ElasticJournal, type(None))
+    require_type("JournalBearing.journal", bearing.journal, ElasticJournal, FEJournal, TurningJournal, type(None))
     if not isinstance(bearing.film, FiniteLength | ShortBearing):
         raise InputError(
             f"JournalBearing.{'bush' if bearing.journal is None else 'journal'} needs film=FiniteLength(...) or "

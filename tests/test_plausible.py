@@ -24,6 +24,7 @@ PURE = {
     "CreateFlexibleBush.color", "CreateLubricatedJoint.axis",
     "CreateLubricatedJoint.rotationMatrixAxes", "CreateLubricatedJoint.color", "Crown.exponent",
     "DeadPressure.distribution", "ElasticLiner.poisson_ratio", "FactorReuse.contractivity", "FEBore.radius_tolerance",
+    "FEJournal.radius_tolerance",
     "FilmEnergy.carry_over",
     "FiniteLength.stretch", "FollowerPressure.distribution", "GreenwoodTripp.density_radius_roughness",
     "GreenwoodTripp.roughness_radius_ratio", "GreenwoodTripp.friction_coefficient", "GreenwoodTripp.residual_film",

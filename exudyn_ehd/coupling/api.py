@@ -241,7 +241,7 @@ def CreateLubricatedJoint(
     housing, journal = resolve_pair(mbs, itemNumbers)
     rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = joint_points(housing, journal, position, useGlobalFrame)
-    bearing, housing = _on_its_housing(mbs, bearing, housing, points[0], rotation)
+    bearing, housing, journal = _on_its_bodies(mbs, bearing, (housing, journal), points, rotation)
     joint = attach(
         mbs,
         _model_of(bearing, housing, journal),
@@ -294,6 +294,24 @@ def _on_its_housing(
         # what stands still needs no modes for its acceleration
         bearing = dataclasses.replace(bearing, bush=dataclasses.replace(bush, body_forces=False))
     return bearing, housing
+
+
+def _on_its_bodies(
+    mbs: exu.MainSystem,
+    bearing: JournalBearing,
+    items: tuple[Item, Item],
+    points: tuple[np.ndarray, np.ndarray],
+    rotation: np.ndarray,
+) -> tuple[JournalBearing, Item, Item]:
+    """The same with the journal that a finite-element body makes of it, and both sides."""
+    bearing, housing = _on_its_housing(mbs, bearing, items[0], points[0], rotation)
+    journal = items[1]
+    if journal.body is not None and getattr(bearing, "journal", None) is not None:
+        # imported here: a rigid bearing needs no solid
+        from exudyn_ehd.coupling.items.reduced_bodies import hold_fe_journal
+
+        bearing, journal = hold_fe_journal(mbs, bearing, journal, points[1], rotation)
+    return bearing, housing, journal
 
 
 def _require_new(mbs: exu.MainSystem, name: str) -> None:

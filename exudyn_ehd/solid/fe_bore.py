@@ -46,7 +46,36 @@ NEW_ENERGY = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class FEBore:
+class FESurface:
+    """A surface of an ObjectFFRFreducedOrder under the film; see `FEBore` and `FEJournal`."""
+
+    fem: BodyMesh
+    nodes: tuple[int, ...] | None = None
+    radius_tolerance: float = 0.02
+    settled: bool = True
+
+    def __post_init__(self) -> None:
+        own = type(self).__name__
+        if not hasattr(self.fem, "elements"):
+            raise InputError(f"{own}.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
+        if not isinstance(self.settled, bool):
+            raise InputError(f"{own}.settled must be True or False, got {self.settled!r}.")
+        require_number(f"{own}.radius_tolerance", self.radius_tolerance, above=0.0)
+        if self.nodes is not None:
+            try:
+                numbers = np.asarray(self.nodes)
+                good = numbers.ndim == 1 and numbers.size > 0 and numbers.dtype.kind in "iu" and numbers.min() >= 0
+            except (TypeError, ValueError):
+                good = False
+            if not good:
+                raise InputError(
+                    f"{own}.nodes must be mesh node numbers (integers from 0), got {self.nodes!r}; None finds the "
+                    "nodes on the film's surface."
+                )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FEBore(FESurface):
     """The film acts on the bore of the housing, an ObjectFFRFreducedOrder; its modes deform under the oil pressure.
 
     Give the body the modes that a pressure needs with `add_bore_modes`, or the bore can only do what the other modes
@@ -71,33 +100,12 @@ class FEBore:
     >>> bore = ehd.FEBore(fem=fem)  # JournalBearing(..., bush=bore); the housing is the reduced body made of fem
     """
 
-    fem: BodyMesh
-    nodes: tuple[int, ...] | None = None
-    radius_tolerance: float = 0.02
-    settled: bool = True
-
-    def __post_init__(self) -> None:
-        if not hasattr(self.fem, "elements"):
-            raise InputError(f"FEBore.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
-        if not isinstance(self.settled, bool):
-            raise InputError(f"FEBore.settled must be True or False, got {self.settled!r}.")
-        require_number("FEBore.radius_tolerance", self.radius_tolerance, above=0.0)
-        if self.nodes is not None:
-            try:
-                numbers = np.asarray(self.nodes)
-                good = numbers.ndim == 1 and numbers.size > 0 and numbers.dtype.kind in "iu" and numbers.min() >= 0
-            except (TypeError, ValueError):
-                good = False
-            if not good:
-                raise InputError(
-                    f"FEBore.nodes must be mesh node numbers (integers from 0), got {self.nodes!r}; None finds the "
-                    "bore's nodes."
-                )
-
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ReducedBore:
-    """A bore found in a reduced body, in the joint's frame; what `FEBore` becomes when its joint is made.
+    """A bore, or a journal's cylinder, found in a reduced body, in the joint's frame.
+
+    What `FEBore` becomes when its joint is made.
 
     Parameters
     ----------

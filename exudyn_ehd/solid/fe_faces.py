@@ -151,8 +151,9 @@ def find_bore(
     length: float,
     tolerance: float,
     nodes: tuple[int, ...] | None = None,
+    outer: bool = False,
 ) -> np.ndarray:
-    """Numbers of the nodes on a bore.
+    """Numbers of the nodes on a bore, or on the cylinder of a journal.
 
     Parameters
     ----------
@@ -166,6 +167,8 @@ def find_bore(
         On a node's radius, over the radius.
     nodes : sequence of int, optional
         Where to look; by default all.
+    outer : bool
+        Of a journal, whose surface is what is farthest from its axis.
 
     Raises
     ------
@@ -178,7 +181,7 @@ def find_bore(
         member = (np.abs(r - radius) <= tolerance * radius) & (np.abs(positions[:, 2]) <= 0.75 * length)
         if member.any():
             # a bore's surface is what is nearest to its axis; the next layer of a fine mesh may be within the tolerance
-            member &= r <= r[member].min() + SURFACE * radius
+            member &= r >= r[member].max() - SURFACE * radius if outer else r <= r[member].min() + SURFACE * radius
         chosen = np.flatnonzero(member)
     else:
         chosen = np.array(nodes, dtype=int)

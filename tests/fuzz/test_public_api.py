@@ -54,6 +54,7 @@ GOOD = [
     ehd.ModalBush(mesh=MESH, material=STEEL),
     ehd.ANCFBush(mesh=MESH, material=STEEL),
     ehd.FEBore(fem=types.SimpleNamespace(elements=[])),
+    ehd.FEJournal(fem=types.SimpleNamespace(elements=[])),
     ehd.File(path="main.rows"),
     ehd.Every(steps=20),
     ehd.TaperLand(pads=6, depth=2e-5),

@@ -8,7 +8,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.object import Mount, add_bush
 from exudyn_ehd.coupling.contract import JointModel, NodeIndex, Side
-from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement
+from exudyn_ehd.coupling.element.modal import BoreFilmElement, ModalFilmElement, TurningFilmElement
 from exudyn_ehd.coupling.element.modal_inertia import ModalInertia, describe
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settle_body, undeformed
@@ -18,6 +18,7 @@ from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
+from exudyn_ehd.joint.model.build_flexible import TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
 from exudyn_ehd.solid.loads import Gravity
@@ -63,10 +64,9 @@ def attach_bush(
         What the element's ObjectGenericODE2 needs besides nodes and functions.
     """
     assert isinstance(model, ElasticBearingModel)
-    if isinstance(sides[0], FloatingBoreSide):
-        items = (undeformed(mbs, items[0], sides[0]), items[1])
     for item, side in zip(items, sides, strict=True):
-        side.frame[:] = initial_frame(mbs, item, side)
+        start = undeformed(mbs, item, side) if isinstance(side, FloatingBoreSide) else item
+        side.frame[:] = initial_frame(mbs, start, side)
     if not isinstance(model.bore, ModalBore):
         return _attach_nodes(mbs, model, items[0], sides, place, name, show, gravity), {}
     if gravity is not None:
@@ -74,17 +74,20 @@ def attach_bush(
             f"CreateLubricatedJoint.bushGravity: mass and weight of the {type(model.bearing.yielding).__name__} of "
             f"joint '{name}' are its body's; leave it out, and let the body's mass and loads contain them."
         )
+    if isinstance(model, TurningModel):
+        settle_body(mbs, model, sides)
+        return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
-    start = initial_coordinates(model, sides)
+    settled = initial_coordinates(model, sides)
     k = model.bore.size
     node = mbs.AddNode(
         eii.NodeGenericODE2(
             name=f"{name} bush modes",
             referenceCoordinates=[0.0] * k,
-            initialCoordinates=[0.0] * k if start is None else start.tolist(),
+            initialCoordinates=[0.0] * k if settled is None else settled.tolist(),
             initialCoordinates_t=[0.0] * k,
             numberOfODE2Coordinates=k,
         )

@@ -18,8 +18,10 @@ from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.bore.shapes import ModalBore
+from exudyn_ehd.joint.model.build_flexible import TurningEvaluation, TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
+from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.solid.modes.static import BoreModes
 
 # An explicit solver that is not stored gives itself away by so many whole steps in a row, behind the first one.
@@ -94,7 +96,7 @@ class ModalFilmElement(BoreFilmElement):
 
     Parameters
     ----------
-    bore : ModalBore
+    bore : ModalBore or TurningJournal
         That of the model.
 
     Attributes
@@ -114,7 +116,7 @@ class ModalFilmElement(BoreFilmElement):
         journal: Side,
         nodes: list[Index],
         name: str,
-        bore: ModalBore,
+        bore: ModalBore | TurningJournal,
     ) -> None:
         super().__init__(model, housing, journal, nodes, name)
         self.bore, self.modes = bore, bore.modes
@@ -212,3 +214,33 @@ class ModalFilmElement(BoreFilmElement):
         if not isinstance(self.modes, BoreModes):
             return None
         return np.tensordot(self._evaluation(trial).bore.coordinates[: self.modes.count], self.modes.displacements, 1)
+
+
+class TurningFilmElement(ModalFilmElement):
+    """Film on a finite-element journal, whose body has nodes, mass and stiffness for the modes that turn with it.
+
+    Force and Jacobian are those of a modal bush, but for the angle phi of the journal, atan2 of its frame's x in the
+    joint frame, at which the film finds the modes: ``d phi = n . (d turn of the journal - d turn of the housing)``.
+    """
+
+    model: TurningModel
+
+    def __init__(self, model: TurningModel, housing: Side, journal: Side, nodes: list[Index], name: str) -> None:
+        super().__init__(model, housing, journal, nodes, name, model.turning)
+        self._by_angle = np.zeros(0)
+
+    def _film_tangent(self, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        evaluation = trial.evaluation
+        assert isinstance(evaluation, TurningEvaluation)
+        self._by_angle = evaluation.derivatives[:, -1]
+        return evaluation.combined_tangent(f_q, f_qt)
+
+    def _jacobian(self, mbs: exu.MainSystem, trial: Trial, f_q: float, f_qt: float) -> np.ndarray:
+        whole = super()._jacobian(mbs, trial, f_q, f_qt)
+        housing, journal = self.sides
+        t = housing.frame[:, :3].T @ journal.frame[:, 0]
+        n = housing.frame[:, :3] @ [*(-t[2] * t[:2] / (t[0] ** 2 + t[1] ** 2)), 1.0]
+        turn = np.concatenate((-n @ housing.jac[1], n @ journal.jac[1]))
+        own = np.concatenate((self._wrench_map() @ self._by_angle[:6], self._by_angle[6:]))
+        whole[:, : turn.size] -= f_q * np.multiply.outer(own, turn)
+        return whole

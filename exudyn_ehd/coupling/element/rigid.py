@@ -8,7 +8,6 @@ force user function alone; what can't be evaluated is explained by `failures`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from types import ModuleType
 from typing import TypeAlias
@@ -230,10 +229,9 @@ class FilmElement:
         return motion
 
     def _spin(self) -> float:
-        """Angle of the journal against the housing about the bearing's axis [rad], 0 in the reference configuration."""
+        """Angle of the journal [rad], see `relative.angle_of`."""
         housing, journal = self.sides
-        turn = housing.frame[:, :3].T @ journal.frame[:, 0]
-        return math.atan2(turn[1], turn[0])
+        return relative.angle_of(housing.frame, journal.frame)
 
     def require_items(self, mbs: exu.MainSystem) -> None:
         """Refuse a system of which items were deleted that the joint was made on."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
 
 import exudyn as exu
 import numpy as np
@@ -13,13 +12,14 @@ from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.coupling.kinematics import relative
 from exudyn_ehd.film.cavitation.closures import SwiftStieber
-from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore.equilibrium import Elasticity, bore_equilibrium
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore
 from exudyn_ehd.joint.model.build import collect_effects
+from exudyn_ehd.joint.model.build_flexible import TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, BoreState, History
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.status import Status
 
 # Name in mbs.variables of the films on every body, by the number of its modal node
@@ -28,17 +28,18 @@ _BODIES = "lubricatedBodies"
 
 @dataclasses.dataclass(frozen=True)
 class StartingFilm:
-    """A film on its bore, the motion (10,) at which it starts, and what it remembers there."""
+    """A film on its bore, the motion (10,) and the journal's angle at which it starts, and what it remembers there."""
 
     model: ElasticBearingModel
     motion: np.ndarray
     memory: History | None
+    spin: float
 
     def at(self, part: float, bore: np.ndarray) -> ElasticEvaluation:
         """The film with the pose scaled by ``part`` and the bore's coordinates and rates (2 k,)."""
         motion = np.concatenate((self.motion, bore))
         motion[:4] *= part
-        return self.model.evaluate(motion, self.memory)
+        return self.model.evaluate(motion, self.memory, 0.0, self.spin)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -93,8 +94,11 @@ def initial_coordinates(model: ElasticBearingModel, sides: tuple[Side, Side]) ->
 
     The sides' frames must be those of the initial configuration. A film that conserves mass starts flooded, and a
     flooded film's first instant is Swift-Stieber's; with a heat balance it has the temperature that the run starts at.
+    The modes of a finite-element journal are those of its body, see `settle_body`.
     """
-    return _equilibrium([_starting_film(model, sides, model.make_bore)])
+    if isinstance(model, TurningModel):
+        return None
+    return _equilibrium([_starting_film(model, sides)])
 
 
 def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> Item:
@@ -104,26 +108,29 @@ def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> It
     if not known or not np.array_equal(mbs.GetNodeParameter(node, "initialCoordinates"), known[1]):
         return housing
     initial = np.array(housing.initial_coordinates, dtype=float)
-    initial[side.floating.size :] = 0.0
-    return dataclasses.replace(housing, initial_coordinates=initial)
+    velocities = np.array(housing.initial_velocities, dtype=float)
+    initial[side.floating.size :] = velocities[side.floating.size :] = 0.0
+    return dataclasses.replace(housing, initial_coordinates=initial, initial_velocities=velocities)
 
 
 def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
     """Let the modes of a reduced body start in equilibrium with all of its films, unless the scene has set them.
 
-    The body's frame is held; the sides' frames are those of the undeformed body.
+    The body's frame is held; the sides' frames are those of the undeformed body. The shape of a journal that turns
+    starts at rest in the joint's frame.
     """
-    bush, side = model.bearing.bush, sides[0]
-    assert isinstance(bush, ReducedBore) and isinstance(side, FloatingBoreSide)
+    pin = model.bearing.journal
+    surface, side = (pin.surface, sides[1]) if isinstance(pin, TurningJournal) else (model.bearing.bush, sides[0])
+    assert isinstance(surface, ReducedBore) and isinstance(side, FloatingBoreSide)
     node, known = side.nodes[-1], _known(mbs, side)
     present = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
-    if not bush.settled or (present.any() and not (known and np.array_equal(present, known[1]))):
+    if not surface.settled or (present.any() and not (known and np.array_equal(present, known[1]))):
         return
-    held = bush.held()
-    films = [*(known[0] if known and present.any() else []), _starting_film(model, sides, lambda g: ModalBore(held, g))]
+    films = [*(known[0] if known and present.any() else []), _starting_film(model, sides, surface.held())]
     start = _equilibrium(films)
     if start is not None:
         mbs.SetNodeParameter(node, "initialCoordinates", start.tolist())
+        mbs.SetNodeParameter(node, "initialCoordinates_t", _standing_rates(films, start).tolist())
         put = np.array(mbs.GetNodeParameter(node, "initialCoordinates"))
         mbs.variables.setdefault(_BODIES, {})[int(node)] = films, put
 
@@ -134,24 +141,41 @@ def _known(mbs: exu.MainSystem, side: FloatingBoreSide) -> tuple[list[StartingFi
 
 
 def _starting_film(
-    model: ElasticBearingModel, sides: tuple[Side, Side], make_bore: Callable[[FilmGrid], Bore]
+    model: ElasticBearingModel, sides: tuple[Side, Side], held: ReducedBore | None = None
 ) -> StartingFilm:
-    """The film of a model on another bore at the sides' frames."""
-    bearing = model.bearing
+    """The film of a model at the sides' frames, on its own bore or on that of a body whose frame does not follow."""
+    bearing, film = model.bearing, model
     if bearing.cavitation.conserves_mass:
         closure = SwiftStieber(cavity_pressure=bearing.cavitation.cavity_pressure)
         bearing = dataclasses.replace(bearing, cavitation=closure)
-    film = ElasticBearingModel(bearing, make_bore, elasticity=model.elasticity, effects=collect_effects(bearing))
-    motion = np.empty(MOTION_SIZE)
-    relative.relative_motion(sides[0].frame, sides[1].frame, motion)
-    return StartingFilm(film, motion, film.initial_history(motion))
+    effects = collect_effects(bearing)
+    if held is not None and isinstance(model, TurningModel):
+        film = TurningModel(bearing, TurningJournal(surface=held), effects=effects)
+        film.turns = False
+    else:
+        make = model.make_bore if held is None else lambda grid: ModalBore(held, grid)
+        film = ElasticBearingModel(bearing, make, elasticity=model.elasticity, effects=effects)
+    frames = sides[0].frame, sides[1].frame
+    motion = relative.motion_of(*frames)
+    return StartingFilm(film, motion, film.initial_history(motion), relative.angle_of(*frames))
 
 
 def _equilibrium(films: list[StartingFilm]) -> np.ndarray | None:
     """Coordinates (k,) of the bores in equilibrium with their films, None if there is none."""
+    first = films[0]
     if len(films) == 1:
-        settled = films[0].model.evaluate_steady(films[0].motion, films[0].memory)
+        settled = first.model.evaluate_steady(first.motion, first.memory, 0.0, first.spin)
         return settled.bore.coordinates.copy() if settled.status is Status.CONVERGED else None
     together = FilmsOnOneBody(films)
-    found = bore_equilibrium(together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(together.bore.size))[0]
+    found = bore_equilibrium(together, np.ones(MOTION_SIZE), (None, 0.0, 0.0), np.zeros(first.model.size))[0]
     return None if found is None else found.bore.coordinates.copy()
+
+
+def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
+    """Rates (k,) with which shapes of turning journals stand as well as their modes let them: T q_t = -omega D T q."""
+    turning = [(f.model.turning, f) for f in films if isinstance(f.model, TurningModel)]
+    if not turning:
+        return np.zeros_like(q)
+    maps = [journal.map(film.spin) for journal, film in turning]
+    carried = [film.motion[8] * journal.turned(T @ q) for (journal, film), T in zip(turning, maps, strict=True)]
+    return np.asarray(np.linalg.lstsq(np.concatenate(maps), -np.concatenate(carried), rcond=1e-6)[0])

@@ -128,7 +128,8 @@ def _reduced_body_item(mbs: exu.MainSystem, where: str, body: Index, nodes: tupl
     def refuse(point: np.ndarray, rotation: np.ndarray) -> Side:
         raise InputError(
             f"{where}: an object of type FFRFreducedOrder is no rigid body; {_MESH_HINT}, or give the bearing "
-            "bush=FEBore(fem=...) for a housing whose bore deforms under the film."
+            "bush=FEBore(fem=...) for a housing whose bore deforms under the film, journal=FEJournal(fem=...) for a "
+            "journal that does."
         )
 
     return dataclasses.replace(

@@ -1,7 +1,7 @@
-"""The bore of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the joint's frame that follows it.
+"""The bore or journal of a user's ObjectFFRFreducedOrder: its data as Exudyn holds them, and the frame that follows it.
 
-The body's modal node serves twice in the film's object: in the housing's side, for the rigid motion of the bore that
-the modes cause, and as the bore's coordinates, for the rest. Exudyn adds up what an object hands to a node that it
+The body's modal node serves twice in the film's object: in the body's side, for the rigid motion of the surface that
+the modes cause, and as the surface's coordinates, for the rest. Exudyn adds up what an object hands to a node that it
 lists twice, forces and Jacobians alike.
 """
 
@@ -18,11 +18,10 @@ from exudyn_ehd.coupling.contract import Index
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.kinematics.relative import skew
 from exudyn_ehd.coupling.kinematics.sides import NodeSide, floating_change
-from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+from exudyn_ehd.solid.fe_bore import FEBore, FESurface, ReducedBore
 from exudyn_ehd.solid.fe_faces import bore_faces, find_bore
+from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 from exudyn_ehd.status import InputError
-
-_WHERE = "CreateLubricatedJoint.bearing with bush=FEBore(...)"
 
 
 def hold_fe_bore(
@@ -52,37 +51,77 @@ def hold_fe_bore(
             f"bush=FEBore(fem=...), got {type(bush).__name__}(...); for another bush give MarkerSuperElementRigid on "
             "the body as itemNumbers[0]."
         )
-    data = mbs.GetObject(housing.body)
-    basis = np.asarray(data["modeBasis"], dtype=float)
-    local = housing.node_rotation.T @ rotation
-    origin = housing.node_rotation.T @ (point - housing.node_position)
-    places = (np.asarray(data["referencePositions"], dtype=float).reshape(-1, 3) - origin) @ local
     radius = bearing.journal_radius + bearing.radial_clearance
-    chosen = find_bore(_WHERE, places, radius, bearing.length, bush.radius_tolerance, bush.nodes)
-    if len(np.asarray(bush.fem.nodes["Position"])) != len(places):
+    reduced, housing = _find_surface(mbs, bush, "bush", housing, (radius, bearing.length), (point, rotation))
+    return dataclasses.replace(bearing, bush=reduced), housing
+
+
+def hold_fe_journal(
+    mbs: exu.MainSystem, bearing: JournalBearing, journal: Item, point: np.ndarray, rotation: np.ndarray
+) -> tuple[JournalBearing, Item]:
+    """As `hold_fe_bore` of the journal, with an `FEJournal`."""
+    pin = bearing.journal
+    if not isinstance(pin, FEJournal):
         raise InputError(
-            f"{_WHERE}: fem must be the FEMinterface that the body was made of, with {len(places)} nodes, got one with "
-            f"{len(bush.fem.nodes['Position'])}."
+            "CreateLubricatedJoint.bearing: the journal of an ObjectFFRFreducedOrder deflects by its own modes with "
+            f"journal=FEJournal(fem=...), got {type(pin).__name__}(...); for another one give MarkerSuperElementRigid "
+            "on the body as itemNumbers[1]."
         )
-    faces, chosen = bore_faces(_WHERE, bush.fem, places, chosen)
+    if bearing.thrust is not None:
+        raise InputError(
+            "JournalBearing.thrust=ThrustFaces(...) does not go with journal=FEJournal(...): its collars would move "
+            "with the mean of the journal's surface; give another joint the faces, or leave them out."
+        )
+    size = bearing.journal_radius, bearing.length
+    reduced, journal = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
+    return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced)), journal
+
+
+def _find_surface(
+    mbs: exu.MainSystem,
+    surface: FESurface,
+    option: str,
+    item: Item,
+    size: tuple[float, float],
+    place: tuple[np.ndarray, np.ndarray],
+) -> tuple[ReducedBore, Item]:
+    """What of a body is under a film of radius and length ``size``, and the item that moves with it."""
+    where, (radius, length), (point, rotation) = (
+        f"CreateLubricatedJoint.bearing with {option}={type(surface).__name__}(...)",
+        size,
+        place,
+    )
+    data = mbs.GetObject(item.body)
+    basis = np.asarray(data["modeBasis"], dtype=float)
+    local = item.node_rotation.T @ rotation
+    origin = item.node_rotation.T @ (point - item.node_position)
+    places = (np.asarray(data["referencePositions"], dtype=float).reshape(-1, 3) - origin) @ local
+    outer = isinstance(surface, FEJournal)
+    chosen = find_bore(where, places, radius, length, surface.radius_tolerance, surface.nodes, outer)
+    if len(np.asarray(surface.fem.nodes["Position"])) != len(places):
+        raise InputError(
+            f"{where}: fem must be the FEMinterface that the body was made of, with {len(places)} nodes, got one with "
+            f"{len(surface.fem.nodes['Position'])}."
+        )
+    faces, chosen = bore_faces(where, surface.fem, places, chosen)
     shapes = basis.reshape(len(places), 3, -1)[chosen]
     reduced = ReducedBore(
         faces=faces,
         displacements=np.einsum("nik,ij->njk", shapes, local),
         stiffness_matrix=np.asarray(data["stiffnessMatrixReduced"].Convert2DenseMatrix()),
         radius=radius,
-        length=bearing.length,
-        settled=bush.settled,
+        length=length,
+        settled=surface.settled,
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
-        assert housing.node_kind is not None
+        assert item.node_kind is not None
         frame = NodeSide(
-            housing.node_kind, housing.node, housing.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
+            item.node_kind, item.node, item.reference_coordinates[: -reduced.count], np.zeros(3), np.eye(3)
         )
-        return FloatingBoreSide(frame, housing.nodes[1], origin, local, reduced.rigid)
+        return FloatingBoreSide(frame, item.nodes[1], origin, local, reduced.rigid)
 
-    return dataclasses.replace(bearing, bush=reduced), dataclasses.replace(housing, build=build)
+    return reduced, dataclasses.replace(item, build=build)
 
 
 class FloatingBoreSide:

@@ -6,6 +6,8 @@ joint frame that of the housing.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numba import njit
 
@@ -135,6 +137,12 @@ def motion_variation(frame_h, frame_j, jac_h, jac_j, motion_q_out, motion_qt_out
         _motion_variation(sign, d, d_t, spin, a, a_t, dd, dd_t, dspin, da, c, motion_q_out)
         # the velocity changes with the rates as the place does with the coordinates
         _motion_variation(sign, d, d_t, spin, a, a_t, zero, dd, dspin_rate, zero, c, motion_qt_out)
+
+
+def angle_of(frame_h: np.ndarray, frame_j: np.ndarray) -> float:
+    """Angle of the journal against the housing about the bearing's axis [rad], 0 in the reference configuration."""
+    turn = frame_h[:, :3].T @ frame_j[:, 0]
+    return math.atan2(turn[1], turn[0])
 
 
 def motion_of(frame_h: np.ndarray, frame_j: np.ndarray) -> np.ndarray:

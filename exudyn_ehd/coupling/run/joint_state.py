@@ -16,6 +16,7 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.step_rates import WEIGHTS, StepStart
 from exudyn_ehd.solid.fe_bore import ReducedBore
+from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.status import InputError
 from exudyn_ehd.storage import fingerprint
 
@@ -97,9 +98,11 @@ class Joint(Protocol):
 
 def digest(bearing: JournalBearing) -> str:
     """Digest of a bearing's description, arrays by content; modes of a body are told by `bore_modes_of`."""
-    bush = bearing.bush
+    bush, pin = bearing.bush, bearing.journal
     if isinstance(bush, ReducedBore):
         return fingerprint((dataclasses.replace(bearing, bush=None), bush.radius, bush.length))
+    if isinstance(pin, TurningJournal):
+        return fingerprint((dataclasses.replace(bearing, journal=None), pin.surface.radius, pin.surface.length))
     return fingerprint(bearing)
 
 
@@ -147,7 +150,7 @@ def _same_modes(own: np.ndarray | None, stored: np.ndarray | None) -> bool:
 def _check_memory(joint: Joint, state: JointState) -> None:
     """Refuse a memory or a start of a step that is none of this film's."""
     model, memory, begin = joint.element.model, state.memory, state.begin
-    bore = model.bore.size if isinstance(model, ElasticBearingModel) else 0
+    bore = model.size if isinstance(model, ElasticBearingModel) else 0
     size = getattr(model, "motion_size", MOTION_SIZE + 2 * bore)
     parts: list[tuple[str, dict[str, tuple[int, ...]], dict[str, tuple[int, ...]]]] = []
     if memory is not None:

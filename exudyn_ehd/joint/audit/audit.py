@@ -231,7 +231,7 @@ def _time_share(model: BearingModel, indicator: Indicator, states: Sequence[Film
 def _known_to(model: BearingModel, motion: np.ndarray) -> np.ndarray:
     """A motion without the coordinates and rates of bore or journal that ``model`` does not have."""
     q, q_t = np.split(motion[MOTION_SIZE:], 2)
-    size = model.bore.size if isinstance(model, ElasticBearingModel) else 0
+    size = model.size if isinstance(model, ElasticBearingModel) else 0
     kept = slice(size) if model.bearing.bush is not None else slice(q.size - size, None)
     return np.concatenate((motion[:MOTION_SIZE], q[kept], q_t[kept]))
 

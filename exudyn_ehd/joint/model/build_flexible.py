@@ -1,8 +1,13 @@
-"""From the description of a bush, of an elastic journal or of both to a bearing model with flexible surfaces."""
+"""From the description of a bush, of an elastic journal or of both to a bearing model with flexible surfaces.
+
+And the model of a journal whose modes turn under the film, see `exudyn_ehd.solid.journal.turning`.
+"""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
+from functools import cached_property
 
 import numpy as np
 
@@ -11,13 +16,17 @@ from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.joint.bore.equilibrium import Elasticity
 from exudyn_ehd.joint.bore.shapes import Bore, ModalBore, NodalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
-from exudyn_ehd.joint.model.flexible import ElasticBearingModel
+from exudyn_ehd.joint.model.flexible import ElasticBearingModel, ElasticEvaluation
 from exudyn_ehd.joint.seams import Effects
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History, JournalMotion, SolvedFilm
+from exudyn_ehd.joint.tangent.bore import elastic_tangent
 from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.fe_bore import FEBore, ReducedBore
+from exudyn_ehd.solid.journal.description import ElasticJournal
 from exudyn_ehd.solid.journal.modes import journal_modes
+from exudyn_ehd.solid.journal.turning import FEJournal, TurningJournal
 from exudyn_ehd.solid.modes.static import bore_modes
-from exudyn_ehd.status import InputError
+from exudyn_ehd.status import InputError, Status
 
 
 def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects) -> ElasticBearingModel:
@@ -29,6 +38,14 @@ def elastic_model(bearing: JournalBearing, start_angle: float, effects: Effects)
             "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[0]; for other bodies, and for a bearing by "
             "itself, take a ModalBush(...)."
         )
+    if isinstance(bearing.journal, FEJournal):
+        raise InputError(
+            "JournalBearing.journal=FEJournal(...) takes its modes from the body that is the joint's journal: give "
+            "CreateLubricatedJoint an ObjectFFRFreducedOrder as itemNumbers[1]; for other bodies, and for a bearing by "
+            "itself, take an ElasticJournal(...)."
+        )
+    if isinstance(bearing.journal, TurningJournal):
+        return TurningModel(bearing, bearing.journal, start_angle, effects)
     bore, elasticity = _bore_and_elasticity(bearing)
     return ElasticBearingModel(bearing, bore, elasticity=elasticity, start_angle=start_angle, effects=effects)
 
@@ -37,6 +54,7 @@ def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], 
     """A function that makes the bore on a film's grid, and what resists its coordinates."""
     bush, pin = bearing.bush, bearing.journal
     if isinstance(bush, ModalBush | None):
+        assert isinstance(pin, ElasticJournal | None)
         modes = None if bush is None else bore_modes(bush)
         journal = None if pin is None else journal_modes(pin, bearing.journal_radius, bearing.length)
         stiffness = np.concatenate([part.stiffness for part in (modes, journal) if part is not None])
@@ -46,3 +64,150 @@ def _bore_and_elasticity(bearing: JournalBearing) -> tuple[Callable[[FilmGrid], 
     assert isinstance(bush, ANCFBush)
     mesh = bush.build_mesh()
     return lambda grid: NodalBore(mesh.bore, grid), SolidElasticity(bush.solid(mesh))
+
+
+@dataclasses.dataclass(eq=False)
+class TurningEvaluation(ElasticEvaluation):
+    """One film evaluation on a journal whose modes turn under it.
+
+    ``wrench`` has the moment of the pressure on the deflected journal about its axis; ``bore`` is in the body's modes,
+    ``film.bore`` in the waves that stand, see `exudyn_ehd.solid.journal.turning`.
+
+    Attributes
+    ----------
+    turn : (K, k) array, float, bool
+        T, the speed that carries the shape round, rad/s, and whether it is the journal's.
+    moment : float
+        Nm.
+    """
+
+    model: TurningModel = dataclasses.field(repr=False)
+    turn: tuple[np.ndarray, float, bool] = dataclasses.field(repr=False, default=(np.zeros((0, 0)), 0.0, True))
+    moment: float = 0.0
+
+    def quantities(self) -> dict[str, float]:
+        """As `ElasticEvaluation.quantities`; torques with the moment of the pressure on the deflected journal."""
+        found = super().quantities()
+        if self.film is not None:
+            found["friction_torque"] += self.moment
+            found["friction_torque_bush"] = -float(self.wrench[5])
+        return found
+
+    @cached_property
+    def derivatives(self) -> np.ndarray:
+        """d (wrench, Q) / d (motion, angle of the journal) (6 + k, 10 + 2 k + 1); nan without a film."""
+        film, k = self._current(), self.bore.coordinates.size
+        if film is None or film.bore is None:
+            return np.full((6 + k, MOTION_SIZE + 2 * k + 1), np.nan)
+        turning, (T, omega, turns), M = self.model.turning, self.turn, MOTION_SIZE
+        r, r_t, Q = film.bore.coordinates, film.bore.rates, film.bore.load
+        turned, size = turning.turned(r), r.size
+        change = np.zeros((M + 2 * size, M + 2 * k + 1))
+        change[:M, :M], place, rate = np.eye(M), change[M : M + size], change[M + size :]
+        place[:, M : M + k], place[:, -1] = T, turned
+        rate[:, M : M + k], rate[:, M + k : -1], rate[:, -1] = omega * turning.turned(T), T, turning.turned(r_t)
+        rate[:, 8] = turned * turns
+        by_film = elastic_tangent(film, self.model.bore, (1.0, 0.0), (0.0, 1.0)) @ change
+        back = turning.turned(Q)
+        out = np.concatenate((by_film[:6], T.T @ by_film[6:]))
+        out[6:, -1] -= T.T @ back
+        axis, by_tilt = _axis(self.motion)
+        out[3:6] += np.multiply.outer(axis, turned @ by_film[6:] - back @ place)
+        out[3:6, 2:4] += self.moment * by_tilt
+        return out
+
+    def _tangent(self, *combinations: tuple[float, float]) -> np.ndarray:
+        d, k, M = self.derivatives, self.bore.coordinates.size, MOTION_SIZE
+        blocks = [a * d[:, M : M + k] + b * d[:, M + k : M + 2 * k] for a, b in combinations]
+        return np.concatenate((d[:, :M], *blocks), axis=1)
+
+
+class TurningModel(ElasticBearingModel):
+    """Film on a journal whose modes turn under it; ``motion`` (10 + 2 k,) has the modes, ``spin`` the journal's angle.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+    turning : TurningJournal
+    start_angle, effects
+        As in `BearingModel`.
+
+    Attributes
+    ----------
+    turns : bool
+        False for shapes that stand in the joint's frame, as `evaluate_steady` looks for.
+    """
+
+    def __init__(
+        self, bearing: JournalBearing, turning: TurningJournal, start_angle: float = 0.0, effects: Effects | None = None
+    ) -> None:
+        self.turning, self.turns, self._spin = turning, True, 0.0
+        super().__init__(
+            bearing,
+            lambda grid: ModalBore(None, grid, turning.waves),
+            elasticity=Elasticity(lambda: turning.surface.stiffness_matrix),
+            start_angle=start_angle,
+            effects=effects,
+        )
+        self.needs_spin = True
+        self._coordinates = np.zeros(self.size)
+
+    @property
+    def size(self) -> int:
+        """k, the number of the body's modes."""
+        return self.turning.count
+
+    def _journal(self, motion: np.ndarray) -> JournalMotion:
+        """Take over a motion (10 + 2 k,), in waves; with (10,) the journal is undeformed and its modes at rest."""
+        given, k = np.zeros(MOTION_SIZE + 2 * self.size), self.size
+        given[: np.size(motion)] = motion
+        q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
+        T, omega = self.turning.map(self._spin), float(given[8]) * self.turns
+        r = T @ q
+        journal = super()._journal(np.concatenate((given[:MOTION_SIZE], r, T @ q_t + omega * self.turning.turned(r))))
+        self._coordinates, self._turn, self._given = q, (T, omega, self.turns), given
+        return journal
+
+    def _result(
+        self,
+        status: Status,
+        journal: JournalMotion,
+        wrench: np.ndarray,
+        iterations: int,
+        minimum_gap: float,
+        film: SolvedFilm | None,
+    ) -> TurningEvaluation:
+        waves = self._bore_state(journal, None, None) if film is None or film.bore is None else film.bore
+        (T, _, _), given, k = self._turn, self._given, self.size
+        moment = float(waves.load @ self.turning.turned(waves.coordinates))
+        q, q_t = given[MOTION_SIZE : MOTION_SIZE + k], given[MOTION_SIZE + k :]
+        bore = waves._replace(coordinates=q, rates=q_t, load=T.T @ waves.load)
+        whole = wrench.copy()
+        whole[3:] += moment * _axis(given)[0]
+        return TurningEvaluation(
+            status, given, whole, iterations, minimum_gap, film, self, bore, turn=self._turn, moment=moment
+        )
+
+    def evaluate(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
+        """As `ElasticBearingModel.evaluate`."""
+        self._spin = spin
+        return super().evaluate(motion, history, step, spin)
+
+    def evaluate_steady(
+        self, motion: np.ndarray, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> ElasticEvaluation:
+        """As `ElasticBearingModel.evaluate_steady`, with a shape that stands under the turning journal."""
+        turns, self.turns = self.turns, False
+        try:
+            return super().evaluate_steady(motion, history, step, spin)
+        finally:
+            self.turns = turns
+
+
+def _axis(motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Axis (3,) of the journal and its derivative (3, 2) to the slopes."""
+    slope = np.array([motion[2], motion[3], 1.0])
+    size = float(np.linalg.norm(slope))
+    return slope / size, (np.eye(3) - np.multiply.outer(slope, slope) / size**2)[:, :2] / size

@@ -221,6 +221,11 @@ class ElasticBearingModel(BearingModel):
         self._slopes = np.empty(self.grid.shape), np.empty(self.grid.shape)
         self._end_load = end_load(self.bore, self.grid, bearing.end_pressures) if any(bearing.end_pressures) else None
 
+    @property
+    def size(self) -> int:
+        """k, the number of coordinates in its motion."""
+        return self.bore.size
+
     @cached_property
     def bore_forces(self) -> BoreForces:
         """Of a nodal bore: what carries the film's forces to its nodes."""
