@@ -113,6 +113,7 @@ def moving(housing_moves=True):
     return mbs, joint, np.concatenate((q, q[n_h + 6 :])), np.concatenate((q_t, q_t[n_h + 6 :]))
 
 
+@pytest.mark.slow
 def test_jacobian_is_the_derivative_of_the_force():
     """With housing, frame and modes moved together, as Exudyn moves them.
 
@@ -138,6 +139,7 @@ def test_jacobian_is_the_derivative_of_the_force():
                 assert np.abs(numeric - expected)[part].max() < 1e-4 * size + 1e-9 * np.abs(expected).max()
 
 
+@pytest.mark.slow
 def test_film_power_is_that_of_all_coordinates():
     """Generalized forces times rates: what wrench, relative motion, and modal loads have."""
     mbs, joint, q, q_t = moving()

@@ -13,6 +13,7 @@ from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.fe_faces import BoreFaces
 from exudyn_ehd.solid.journal.turning import TurningJournal
 from exudyn_ehd.status import InputError, Status
+from tests.sampling import sample
 
 R, L, C = 0.03, 0.04, 30e-6
 
@@ -154,18 +155,48 @@ def test_single_mode_is_the_plain_field_of_its_angle(measured):
     measured("moment", abs(found.moment / moment - 1.0), 1e-3)
 
 
-@pytest.mark.parametrize("closure", [ehd.SwiftStieber(), ehd.FullSommerfeld(), ehd.Gumbel()])
-def test_tangent_is_the_derivative(closure):
+THINS = ehd.ReynoldsTemperature(point=(313.15, 0.01), coefficient=0.03)
+OPTIONS = {
+    "plain": {},
+    "no cavity": {"cavitation": ehd.FullSommerfeld()},
+    "Gumbel": {"cavitation": ehd.Gumbel()},
+    "mass": {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)},
+    "wall": {"contact": ehd.RegularisedWall(onset=15e-6)},
+    "asperities": {"asperity": ehd.GreenwoodTripp(composite_roughness=1e-6, composite_modulus=1e11)},
+    "rough": {"roughness": ehd.PatirCheng(composite_roughness=1e-6, journal_share=0.9)},
+    "heat": {
+        "lubricant": ehd.Lubricant(viscosity=0.01, temperature_law=THINS),
+        "thermal": ehd.FilmEnergy(supply_temperature=313.15),
+    },
+    "pressure": {
+        "lubricant": ehd.Lubricant(viscosity=0.01, pressure_law=ehd.RoelandsPressure(coefficient=2e-8)),
+    },
+    "shear": {
+        "lubricant": ehd.Lubricant(viscosity=0.01, shear_law=ehd.CarreauShear(relaxation_time=1e-6, exponent=0.6)),
+    },
+    "density": {"lubricant": ehd.Lubricant(viscosity=0.01, density_law=ehd.DowsonHigginson())},
+    "turbulent": {"turbulence": ehd.NgPan()},
+    "groove": {"supply": (ehd.AxialGroove(angle=1.0, width_angle=0.4, pressure=1e5),)},
+    "ends": {"end_pressures": (1e5, 3e4)},
+    "oval": {"profile": ehd.OutOfRound(order=2, amplitude=3e-6)},
+    "short": {"film": ehd.ShortBearing()},
+}
+
+
+@pytest.mark.parametrize("name", sample(list(OPTIONS), 0))
+def test_tangent_is_the_derivative(name):
     """Of wrench and loads to motion, modes, rates and angle; steps of 1e-6 of the scales, and films whose sets of
     cavities change within a step are drawn again."""
-    model, rng, checked = model_of(journal(waves), cavitation=closure, contact=None), np.random.default_rng(8), 0
+    model, rng, checked = model_of(journal(waves), **OPTIONS[name]), np.random.default_rng(8), 0
     k = 5
     unit = np.concatenate(([C, C, 1e-3, 1e-3, 0.1, 0.1, 1.0, 1.0, 300.0, 1.0], np.full(k, C), np.full(k, 0.1), [1.0]))
     while checked < 4:
         motion, spin = random_motion(rng, k), rng.uniform(-3, 3)
-        if model.evaluate(motion, spin=spin).status is not Status.CONVERGED:
+        history = model.initial_history(motion)
+        here = model.evaluate(motion, history, 1e-4, spin)
+        if here.status is not Status.CONVERGED:
             continue
-        exact = model.evaluate(motion, spin=spin).derivatives * unit
+        exact = here.derivatives * unit
         scale = np.abs(exact).max(axis=1)
         numeric = np.empty_like(exact)
         for i, size in enumerate(unit):
@@ -173,7 +204,7 @@ def test_tangent_is_the_derivative(closure):
             for h in (1e-6, -1e-6):
                 at = np.append(motion, spin)
                 at[i] += h * size
-                found = model.evaluate(at[:-1], spin=at[-1])
+                found = model.evaluate(at[:-1], history, 1e-4, at[-1])
                 ends.append(np.concatenate((found.wrench, found.bore_load)))
             numeric[:, i] = (ends[0] - ends[1]) / 2e-6
         errors = np.abs(numeric - exact) / scale[:, None]
