@@ -13,11 +13,13 @@ and held by the tests, which compare whole runs. The Jacobian is assembled from 
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
-with their exact tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F
-J0^-1) y = r``, d = J0^-1 y, by GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r.
-The bush deflects little under a film's short waves, so that some eight products do. Newton then takes the iterations it
-takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The matrix is put
-together in `system_matrix`.
+with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
+zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
+deflects little under a film's short waves, so that some seven products do. What they tell of F preconditions the next
+iteration's (`exudyn_ehd.coupling.bush.recycled`). Newton then takes the iterations it takes with a full Jacobian, and
+the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as a journal that turns, is
+small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.factor`). The
+matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
 Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -47,7 +49,7 @@ from exudyn_ehd.coupling.run.solve import (
     start_guess,
     step_control,
 )
-from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
@@ -365,8 +367,9 @@ class _Newton:
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
         square = solver.newmarkBeta * h * h
         dq = d[:n]
-        data.SetODE2Coordinates((data.GetODE2Coordinates() - dq).tolist())
-        data.SetODE2Coordinates_t((data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq).tolist())
-        data.SetODE2Coordinates_tt((data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square)).tolist())
+        places, velocities, accelerations = motion(mbs)
+        places -= dq
+        velocities -= solver.newmarkGamma * h / square * dq
+        accelerations -= dq / (solver.factJacAlgorithmic * square)
         if len(d) > n:
             data.SetAECoordinates((data.GetAECoordinates() - d[n:] / square).tolist())
