@@ -13,6 +13,7 @@ total_lagrange      a mesh with a material: force, tangent, mass, energy
 loads               loads on lines and surfaces, pressures
 static_equilibrium  equilibrium of a solid on its own; its stiffness with the outer surface held
 stress              Cauchy and von Mises stress at nodes and at any point
+linear              factors of a mesh's matrices
 modes               a bush reduced to modes: static ones of its bore, what these lack in motion
 journal             elastic journals: cylinders by harmonics, their modes
 fe_bore             the bore of a body that a user has reduced to modes; `add_bore_modes`

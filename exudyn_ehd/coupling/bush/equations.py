@@ -60,10 +60,10 @@ class BushEquations:
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at a state of Exudyn."""
         u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)
-        u[self._moving] = q[: self._count].reshape(-1, 3)
-        v[self._moving] = q_t[: self._count].reshape(-1, 3)
+        u[self._moving] = q[: self.count].reshape(-1, 3)
+        v[self._moving] = q_t[: self.count].reshape(-1, 3)
         if self.carrier is not None:
-            self.carrier.move(q[self._count :], q_t[self._count :], configuration)
+            self.carrier.move(q[self.count :], q_t[self.count :], configuration)
             u[self.slaved] = self.carrier.positions() - self.solid.mesh.nodes[self.slaved]
             v[self.slaved] = self.carrier.velocities()
         return u, v
@@ -74,15 +74,15 @@ class BushEquations:
         nodal = self._nodal_forces(t, u, v)
         if self.carrier is not None:
             acceleration = np.zeros_like(u)
-            acceleration[self.slaved] = self.carrier.velocity_accelerations(q[self._count :], q_t[self._count :])
+            acceleration[self.slaved] = self.carrier.velocity_accelerations(q[self.count :], q_t[self.count :])
             nodal -= self.solid.scalar_mass @ acceleration
         result = np.empty(len(q))
-        result[: self._count] = nodal[self._moving].ravel()
+        result[: self.count] = nodal[self._moving].ravel()
         if self.carrier is not None:
             B = self.carrier.jacobian()
-            result[self._count :] = B.T @ nodal[self.slaved].ravel()
+            result[self.count :] = B.T @ nodal[self.slaved].ravel()
             if self.contained is not None:
-                result[self._count :] += self.contained.velocity_force(self.carrier.side, q_t[self._count :])
+                result[self.count :] += self.contained.velocity_force(self.carrier.side, q_t[self.count :])
         result[self._held] = -self._spring * q[self._held]
         return result
 
@@ -106,12 +106,12 @@ class BushEquations:
         K.data[self._cut_diagonal] = position_factor * self._spring
         if self.carrier is None:
             return K
-        qc = q[self._count :]
+        qc = q[self.count :]
         B = self.carrier.jacobian()
         coupling, transposed, slaved = (block.matrix(values) for block in self._carrier_blocks)
         along, across = coupling @ B, (transposed.T @ B).T
         along[self._held] = across[:, self._held] = 0.0
-        turn = self.carrier.force_derivative(qc, q_t[self._count :], self._nodal_forces(t, u, v)[self.slaved])
+        turn = self.carrier.force_derivative(qc, q_t[self.count :], self._nodal_forces(t, u, v)[self.slaved])
         own = B.T @ (slaved @ B) - position_factor * turn
         return bmat([[K, along], [across, own]], format="csr")
 
@@ -119,7 +119,7 @@ class BushEquations:
         """Return the mass matrix: constant without a carrier, else T^T M T at the carrier's coordinates."""
         if self.carrier is None or q is None:
             return self._moving_mass
-        qc = q[self._count :]
+        qc = q[self.count :]
         self.carrier.move(qc, np.zeros_like(qc))
         B = self.carrier.jacobian()
         M = self.solid.mass
@@ -135,7 +135,7 @@ class BushEquations:
 
         Nodes on a carrier have the rounding of their places in the model, which are those of the last evaluation.
         """
-        size = float(reach[: self._count].max(initial=0.0))
+        size = float(reach[: self.count].max(initial=0.0))
         if self.carrier is None:
             return self._rounding * size
         places = float(np.abs(self.carrier.positions()).max(initial=0.0))
@@ -154,7 +154,7 @@ class BushEquations:
         """Warn if the carrier must contain the bush and has less mass than it, once the system is assembled."""
         if self.contained is None or self.carrier is None:
             return
-        M, k = self.mass(q).tocsc(), self._count
+        M, k = self.mass(q).tocsc(), self.count
         coupling = M[:k, k:].toarray()
         change = M[k:, k:].toarray() - coupling.T @ splu(M[:k, :k]).solve(coupling)
         warn_if_indefinite(mbs, self.carrier.side.nodes, change, self.contained.describe(), name)
@@ -180,7 +180,8 @@ class BushEquations:
         return ~self.slaved & ~self.held.all(axis=1)
 
     @cached_property
-    def _count(self) -> int:
+    def count(self) -> int:
+        """Coordinates of the mesh's own nodes, which come first."""
         return 3 * int(self._moving.sum())
 
     @cached_property
@@ -217,14 +218,14 @@ class BushEquations:
     @cached_property
     def _moving_mass(self) -> csr_matrix:
         M = self.solid.mass[self._moving_rows][:, self._moving_rows].tocsr()
-        keep = np.ones(self._count)
+        keep = np.ones(self.count)
         keep[self._held] = 0.0
-        mask = csr_matrix((keep, (np.arange(self._count), np.arange(self._count))))
+        mask = csr_matrix((keep, (np.arange(self.count), np.arange(self.count))))
         # the held coordinates swing far above every frequency of the mesh
         inertia = self._spring / (100.0 * self._highest_frequency_squared)
         M = (mask @ M @ mask).tocsr()
         M.eliminate_zeros()
-        return (M + inertia * (identity(self._count, format="csr") - mask)).tocsr()
+        return (M + inertia * (identity(self.count, format="csr") - mask)).tocsr()
 
     @cached_property
     def _mass_values(self) -> np.ndarray:
@@ -269,7 +270,7 @@ class BushEquations:
     @cached_property
     def _cut(self) -> np.ndarray:
         """Entries of the moving block in a row or column of a held coordinate."""
-        held = np.zeros(self._count, dtype=bool)
+        held = np.zeros(self.count, dtype=bool)
         held[self._held] = True
         block = self._moving_block
         return np.flatnonzero(held[block.rows] | held[block.indices])

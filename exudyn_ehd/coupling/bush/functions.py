@@ -24,13 +24,13 @@ class BushFunctions:
         self._watched = np.nan
         self._weighed = False
 
-    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
-        """Generalised force (n,); raises where an element of the last accepted state is inside out."""
+    def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
+        """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
         start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
         if start != self._watched:
             self._watched = start
             self.equations.require_upright(mbs, item, start, self.name)
-        return self.equations.force(t, np.array(q), np.array(q_t))
+        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float

@@ -13,11 +13,13 @@ and held by the tests, which compare whole runs. The Jacobian is assembled from 
 factor is kept over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
-with their exact tangent costs one film solve. With J0 everything else and F the films, every iteration solves ``(1 + F
-J0^-1) y = r``, d = J0^-1 y, by GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856) to a thousandth of r.
-The bush deflects little under a film's short waves, so that some eight products do. Newton then takes the iterations it
-takes with a full Jacobian, and the factor of the bush alone, sparse and hardly changing, lasts. The matrix is put
-together in `system_matrix`.
+with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
+zero at the films' coordinates alone, solves ``(1 + F J0^-1) z = -F J0^-1 r`` by GMRES to a thousandth of r; the bush
+deflects little under a film's short waves, so that some seven products do. What they tell of F preconditions the next
+iteration's (`exudyn_ehd.coupling.bush.recycled`). Newton then takes the iterations it takes with a full Jacobian, and
+the factor of the bush alone, sparse and hardly changing, lasts. What is beside the bushes, as a journal that turns, is
+small and has its factor anew in every iteration where only films join the two (`exudyn_ehd.coupling.bush.factor`). The
+matrix is put together in `system_matrix`.
 
 Additive coordinates only: Lie group nodes and first-order coordinates are refused, and so is what Exudyn knows about a
 Jacobian and does not tell: sliding joints, `GeneralContact`, loads that depend on coordinates.
@@ -27,13 +29,14 @@ from __future__ import annotations
 
 import time
 import weakref
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
-from scipy.sparse.linalg import LinearOperator, SuperLU, gmres, splu
 
+from exudyn_ehd.coupling.bush.factor import SystemFactor
+from exudyn_ehd.coupling.bush.recycled import RecycledSolver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -46,7 +49,7 @@ from exudyn_ehd.coupling.run.solve import (
     start_guess,
     step_control,
 )
-from exudyn_ehd.coupling.run.start_guess import StartGuess
+from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
@@ -55,6 +58,8 @@ from exudyn_ehd.status import InputError, require_integer, require_number
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
 # products.
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
+# Iterations of a step that are slow for its films' sake, not for an old factor of meshes that only films load.
+FILMS_FIRST = 4
 
 # Exudyn's stubs lack the self of its solvers' methods.
 Solver: TypeAlias = Any
@@ -239,7 +244,8 @@ class _Newton:
     guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
-    factor: SuperLU | None = None
+    factor: SystemFactor | None = None
+    recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
     excess: int = 0
@@ -268,6 +274,8 @@ class _Newton:
                     break
                 # the films' tangents follow every iteration: a factor of this very step is not to blame for slow ones
                 age, renewable = 0, False
+            elif not self._renew_rest(solver, mbs, settings):
+                break
             self._update(solver, mbs)
             solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
@@ -280,7 +288,9 @@ class _Newton:
                 return True
             if iteration == 1 and newton.adaptInitialResidual:
                 first = max(first, error)
-            if error > self.reuse.contractivity * previous and (renewable or not self.matrix.films):
+            coupled = self.factor is None or self.factor.coupled
+            for_films = self.matrix.films and (not renewable or (not coupled and iteration <= FILMS_FIRST))
+            if error > self.reuse.contractivity * previous and not for_films:
                 self.factor = None
         self.factor = None
         self.run.rejected += 1
@@ -290,43 +300,63 @@ class _Newton:
         """Renew the factor; False if the matrix is singular, upon which the step is rejected."""
         start = time.perf_counter()
         self.factor = None
+        self.recycled.forget()
         index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
         try:
-            self.factor = splu(
-                system,
-                permc_spec="MMD_AT_PLUS_A",
-                diag_pivot_thresh=0.01 if constraints else 0.0,
-                options={"SymmetricMode": True},
-            )
+            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
         except RuntimeError:
             return False
         self.baseline = self.excess = 0
         self.run.jacobians += 1
         solver.it.newtonJacobiCount += 1
-        self.run.factor_bytes = 12 * (self.factor.nnz)
+        self.run.factor_bytes = self.factor.nbytes
         self.run.seconds_jacobian += time.perf_counter() - start
+        return True
+
+    def _renew_rest(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
+        """Renew what is beside the meshes, where only films join the two; False if that is singular."""
+        assert self.factor is not None
+        if self.factor.coupled or not self.matrix.films:
+            return True
+        start = time.perf_counter()
+        index2 = settings.timeIntegration.generalizedAlpha.useIndex2Constraints
+        try:
+            self.factor.renew_rest(self.matrix.assemble(mbs, solver, index2=index2, meshes=False))
+        except RuntimeError:
+            return False
+        finally:
+            self.run.seconds_jacobian += time.perf_counter() - start
         return True
 
     def _solve(self, solver: Solver, mbs: exu.MainSystem, residual: np.ndarray) -> np.ndarray:
         """Newton's step: with the factor, or with it and the films' operators."""
         assert self.factor is not None
         films = self.matrix.film_operators(mbs, solver)
+        factor, d = self.factor, self.factor.solve(residual)
         if not films:
-            return self.factor.solve(residual)
-        factor = self.factor
+            return d
+        touched = np.unique(np.concatenate([places for places, _ in films]))
+        load, moves = np.zeros(len(d)), []
 
-        def product(v: np.ndarray) -> np.ndarray:
-            d, out = factor.solve(v), v.copy()
+        def forces(d: np.ndarray) -> np.ndarray:
+            out = np.zeros(len(d))
             for places, film in films:
                 out[places] += film(d[places])
             self.run.products += 1
-            return out
+            return out[touched]
 
-        operator = LinearOperator((residual.size, residual.size), matvec=product, dtype=float)
-        y, _ = gmres(operator, residual, rtol=FILM_TOLERANCE, atol=0.0, restart=FILM_PRODUCTS, maxiter=1)
-        return factor.solve(y)
+        def product(z: np.ndarray) -> np.ndarray:
+            load[touched] = z
+            moves.append(factor.solve(load))
+            return z + forces(moves[-1])
+
+        wanted = FILM_TOLERANCE * float(np.linalg.norm(residual))
+        _, weights = self.recycled.solve(product, -forces(d), wanted, FILM_PRODUCTS)
+        for weight, move in zip(weights, moves, strict=True):
+            d += weight * move
+        return d
 
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
@@ -337,8 +367,9 @@ class _Newton:
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size
         square = solver.newmarkBeta * h * h
         dq = d[:n]
-        data.SetODE2Coordinates((data.GetODE2Coordinates() - dq).tolist())
-        data.SetODE2Coordinates_t((data.GetODE2Coordinates_t() - solver.newmarkGamma * h / square * dq).tolist())
-        data.SetODE2Coordinates_tt((data.GetODE2Coordinates_tt() - dq / (solver.factJacAlgorithmic * square)).tolist())
+        places, velocities, accelerations = motion(mbs)
+        places -= dq
+        velocities -= solver.newmarkGamma * h / square * dq
+        accelerations -= dq / (solver.factJacAlgorithmic * square)
         if len(d) > n:
             data.SetAECoordinates((data.GetAECoordinates() - d[n:] / square).tolist())

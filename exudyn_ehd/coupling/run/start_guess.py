@@ -96,7 +96,7 @@ class StartGuess:
                 if discontinuous == 0:
                     self._set_start(mbs, solver)
                 elif self.ended:
-                    for values, ended in zip(_motion(mbs), self.ended, strict=True):
+                    for values, ended in zip(motion(mbs), self.ended, strict=True):
                         values[:] = ended
                 self.limit.start(mbs)
         if self.before is not None:
@@ -104,7 +104,7 @@ class StartGuess:
 
     def keep(self, mbs: exu.MainSystem) -> None:
         """Let a further pass of the step start where this one has ended."""
-        self.ended = [values.copy() for values in _motion(mbs)]
+        self.ended = [values.copy() for values in motion(mbs)]
 
     def _set_start(self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder) -> None:
         data = mbs.systemData
@@ -125,7 +125,7 @@ class StartGuess:
             return
         h = solver.it.currentStepSize
         change = (1.0 - solver.alphaF) / (1.0 - solver.alphaM) * self.guess
-        places, velocities, accelerations = _motion(mbs)
+        places, velocities, accelerations = motion(mbs)
         places += solver.newmarkBeta * h * h * change
         velocities += solver.newmarkGamma * h * change
         accelerations += self.guess
@@ -177,7 +177,7 @@ class ConstraintJumps:
         return list(GO_ON) if np.abs(opening - self.accepted).max() > largest else [error, size]
 
 
-def _motion(mbs: exu.MainSystem) -> list[np.ndarray]:
+def motion(mbs: exu.MainSystem) -> list[np.ndarray]:
     """Coordinates of second order, velocities and accelerations now, not copied."""
     state = mbs.systemData.GetSystemStateDict(_CURRENT, True)
     return [state[name] for name in ("ODE2Coords", "ODE2Coords_t", "ODE2Coords_tt")]

@@ -10,6 +10,7 @@ import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix
 
+from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
@@ -63,6 +64,10 @@ class SystemMatrix:
         Second-order coordinates and algebraic equations.
     parts : tuple
         One function (mbs, Factors) -> (rows, columns, values) per object.
+    meshes : tuple
+        The same of nodal bushes.
+    mesh : (n,) array of bool
+        Coordinates and equations that are those of bushes' nodes.
     films : tuple
         Films on nodal bushes, and the places of their coordinates.
     """
@@ -70,6 +75,8 @@ class SystemMatrix:
     coordinates: int
     constraints: int
     parts: tuple[Callable, ...]
+    meshes: tuple[Callable, ...]
+    mesh: np.ndarray
     films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
 
     @classmethod
@@ -91,6 +98,8 @@ class SystemMatrix:
                 )
         n = len(data.GetODE2Coordinates())
         films: list[tuple[NodalFilmElement, np.ndarray]] = []
+        meshes: list[Callable] = []
+        mesh = np.zeros(n + len(data.GetAECoordinates()), dtype=bool)
         parts: list[Callable] = [
             _euler_parameters(mbs, NodeIndex(number), n)
             for number in range(data.NumberOfNodes())
@@ -106,14 +115,24 @@ class SystemMatrix:
             places = np.array(data.GetObjectLTGODE2(item), dtype=np.int32)
             if len(places) == 0:
                 continue
-            film = _nodal_film(mbs, item)
-            if film is not None:
-                films.append((film, places))
+            owner = _owner(mbs, item)
+            if isinstance(owner, NodalFilmElement):
+                films.append((owner, places))
+            elif isinstance(owner, BushFunctions):
+                meshes.append(_generic(mbs, item, places))
+                mesh[places[: owner.equations.count]] = True
             elif mbs.GetObject(item)["objectType"] == "GenericODE2":
                 parts.append(_generic(mbs, item, places))
             else:
                 parts.append(_standard(mbs, item, places, n + np.array(data.GetObjectLTGAE(item), dtype=np.int32)))
-        return cls(coordinates=n, constraints=len(data.GetAECoordinates()), parts=tuple(parts), films=tuple(films))
+        return cls(
+            coordinates=n,
+            constraints=len(data.GetAECoordinates()),
+            parts=tuple(parts),
+            meshes=tuple(meshes),
+            mesh=mesh,
+            films=tuple(films),
+        )
 
     def film_operators(
         self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder
@@ -128,17 +147,24 @@ class SystemMatrix:
         return [(places, operator) for places, operator in made if operator is not None]
 
     def assemble(
-        self, mbs: exu.MainSystem, solver: exu.MainSolverImplicitSecondOrder, *, index2: bool = False
+        self,
+        mbs: exu.MainSystem,
+        solver: exu.MainSolverImplicitSecondOrder,
+        *,
+        index2: bool = False,
+        meshes: bool = True,
     ) -> csc_matrix:
         """Return the iteration matrix of the current state, scaled by beta h^2.
 
-        ``index2`` says that all constraints are solved for velocities (``useIndex2Constraints``).
+        ``index2`` says that all constraints are solved for velocities (``useIndex2Constraints``); without ``meshes``
+        the rows of bushes' nodes lack them.
         """
         h, rate = solver.it.currentStepSize, solver.newmarkGamma / solver.newmarkBeta / solver.it.currentStepSize
         square = solver.newmarkBeta * h * h
         factors = Factors(1 / solver.factJacAlgorithmic, square, solver.newmarkGamma * h, rate if index2 else 1.0, rate)
         own = mbs.GetSystemJacobianUserFunction()
-        triplets = [part(mbs, factors) for part in self.parts]
+        empty: tuple = (np.zeros(0, dtype=np.int32), np.zeros(0, dtype=np.int32), np.zeros(0))
+        triplets = [empty, *(part(mbs, factors) for part in (self.parts + self.meshes if meshes else self.parts))]
         if isinstance(own, dict):
             scales = (-square, -factors.damping, -square)
             added = as_sparse(own["function"](mbs, mbs.systemData.GetTime(), *scales))
@@ -149,20 +175,17 @@ class SystemMatrix:
         system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
         if self.constraints:
             # rows of inactive constraints are lambda = 0
-            empty = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
-            system = (
-                system + coo_matrix((np.full(len(empty), 1 / square), (empty, empty)), shape=(size, size))
-            ).tocsc()
+            idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)
+            system = (system + coo_matrix((np.full(len(idle), 1 / square), (idle, idle)), shape=(size, size))).tocsc()
         return system
 
 
-def _nodal_film(mbs: exu.MainSystem, item: Index) -> NodalFilmElement | None:
-    """The film element behind an object, if its bore is that of a nodal bush."""
+def _owner(mbs: exu.MainSystem, item: Index) -> object:
+    """Whose method the Jacobian of an object is: a film's element, a bush's functions, or None."""
     if mbs.GetObject(item)["objectType"] != "GenericODE2":
         return None
     jacobian = mbs.GetObjectParameter(item, "jacobianUserFunction")
-    element = getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
-    return element if isinstance(element, NodalFilmElement) else None
+    return getattr(jacobian["function"], "__self__", None) if isinstance(jacobian, dict) else None
 
 
 def _generic(mbs: exu.MainSystem, item: Index, places: np.ndarray) -> Callable:

@@ -56,16 +56,14 @@ def test_iterations_and_jacobians_of_rigid_liner_and_modal_bores(modified, state
 
 @pytest.mark.slow
 def test_iterations_and_factors_of_nodal_bores():
-    """`SolveDynamicSparse` keeps the mesh's factor while it is reusable: one in every fourth step.
+    """`SolveDynamicSparse` keeps the mesh's factor while it is reusable: two in the first twenty steps.
 
-    These are the first steps of a run, in which cavities move: a flexible bore of any kind takes 4.4 iterations for the
-    rigid bore's 3.1. A nodal bore does so too, 4.45, if every iteration has a factor of its own, 3.6 a step; what it
-    takes beyond, 5.1, is the price of factors of the solid as it was some steps before: 0.2 of the residual is left by
-    an iteration then, near the solution.
+    These are the first steps of a run, in which cavities move: a flexible bore of any kind takes 4.5 iterations for the
+    rigid bore's 3.1. The mesh hardly changes; the journal turns, and has its own factor in every iteration.
     """
     modal = counts("`ModalBush`, tilted", False, 20)[0]
     for name in ("`ANCFBush`, 4 x 1 x 24 elements", "`ANCFBush`, 4 x 2 x 40 elements"):
         iterations, factors = counts(name, False, 20)
         print(f"{name}: {iterations:.2f} iterations, {factors:.2f} factors per step, modal {modal:.2f}")
-        assert iterations < modal + 1.0
-        assert factors <= 0.5
+        assert iterations < modal + 0.5
+        assert factors <= 0.25
