@@ -99,7 +99,8 @@ def total(mbs, modes=(), matrix=None):
     the `SystemMatrix`."""
     q_t = np.array(mbs.systemData.GetODE2Coordinates_t())
     n, flow = len(q_t), np.zeros(len(q_t))
-    for part in (SystemMatrix.of(mbs) if matrix is None else matrix).parts:
+    matrix = SystemMatrix.of(mbs) if matrix is None else matrix
+    for part in matrix.parts + matrix.meshes:
         rows, columns, values = (np.asarray(a) for a in part(mbs, Factors(1.0, 0.0, 0.0, 1.0, 1.0)))
         own = (rows < n) & (columns < n)
         np.add.at(flow, rows[own], values[own] * q_t[columns[own]])

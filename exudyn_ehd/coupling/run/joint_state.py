@@ -98,7 +98,7 @@ class Joint(Protocol):
 
 def digest(bearing: JournalBearing) -> str:
     """Digest of a bearing's description, arrays by content; modes of a body are told by `bore_modes_of`."""
-    bush, pin = bearing.bush, bearing.journal
+    bush, pin = bearing.bush, getattr(bearing, "journal", None)
     if isinstance(bush, ReducedBore):
         return fingerprint((dataclasses.replace(bearing, bush=None), bush.radius, bush.length))
     if isinstance(pin, TurningJournal):

@@ -49,7 +49,7 @@ def put(mbs, q, q_t):
 
 def state(bush):
     """Coordinates and rates of the carrier."""
-    n = bush.equations._count
+    n = bush.equations.count
     return bush.coordinates()[n:], bush.coordinates_t()[n:]
 
 
@@ -92,7 +92,7 @@ def test_jacobian_of_a_bush_at_rest_is_the_derivative_of_its_force(kind, measure
     zero = np.zeros_like(q)
     exact = equations.jacobian(0.0, q[places], zero[places], 1.0, 0.0).toarray()
     rng = np.random.default_rng(5)
-    size, count = len(places), equations._count
+    size, count = len(places), equations.count
     for part in (slice(0, count), slice(count, size)):
         d = np.zeros(size)
         d[part] = rng.normal(size=d[part].size)
