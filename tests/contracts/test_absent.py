@@ -273,7 +273,7 @@ def test_a_plain_film_calls_no_effect(closure, monkeypatch):
 
 
 # Kernels that no other test of the default run compiles.
-SLOW = {"line", "line on a liner"}
+SLOW = {"line", "line on a liner", "line of a film that conserves mass"}
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in EFFECTS])
