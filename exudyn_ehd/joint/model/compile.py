@@ -16,7 +16,7 @@ from exudyn_ehd.kernels.ahead import compile_ahead
 from exudyn_ehd.progress import announced
 
 MESSAGE = (
-    "exudyn_ehd: compiling the film's kernels; this happens once (6 to 12 s, some effects more), later runs read "
+    "exudyn_ehd: compiling the film's kernels; this happens once (15 to 30 s, some effects more), later runs read "
     "them from numba's cache ..."
 )
 
