@@ -185,8 +185,11 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", sample(list(OPTIONS), 0))
 def test_tangent_is_the_derivative(name):
-    """Of wrench and loads to motion, modes, rates and angle; steps of 1e-6 of the scales, and films whose sets of
-    cavities change within a step are drawn again."""
+    """Of wrench and loads to motion, modes, rates and angle.
+
+    Differences over 1e-6 of the scales have errors of 1e-7 where films are thin; a film whose set of cavities changes
+    within them would show as 1e-3.
+    """
     model, rng, checked = model_of(journal(waves), **OPTIONS[name]), np.random.default_rng(8), 0
     k = 5
     unit = np.concatenate(([C, C, 1e-3, 1e-3, 0.1, 0.1, 1.0, 1.0, 300.0, 1.0], np.full(k, C), np.full(k, 0.1), [1.0]))
@@ -208,9 +211,8 @@ def test_tangent_is_the_derivative(name):
                 ends.append(np.concatenate((found.wrench, found.bore_load)))
             numeric[:, i] = (ends[0] - ends[1]) / 2e-6
         errors = np.abs(numeric - exact) / scale[:, None]
-        assert np.quantile(errors, 0.9) < 1e-6
-        checked += errors.max() < 2e-5
-        assert errors.max() < 1e-2
+        assert errors.max() < 2e-6
+        checked += 1
 
 
 def test_combined_tangent_is_the_sum_of_its_parts():
