@@ -141,7 +141,7 @@ class SwiftStieber(SymmetricClosure):
 
     Inside the cells of the grid the line lies where it is, and stiffness and damping are of second order, within 1.5 %
     in any direction (default grid, eccentricity ratio up to 0.9, L/D 0.25 to 2). On the vertices of the
-    grid they are up to 13 % off, in three fifths of the time. Loads differ by 0.1 %.
+    grid they are up to 13 % off, in two thirds of the time. Loads differ by 0.1 %.
 
     ``line_in_cells=None`` is inside the cells, but for `ShortBearing`, whose film has no line in theta (see `Gumbel`).
     On an `ElasticLiner` and with density laws the line is where the film has the cavity's pressure
