@@ -25,6 +25,7 @@ from matplotlib.text import Text
 import exudyn_ehd as ehd
 from exudyn_ehd.joint.model.build import build_model
 from exudyn_ehd.solid.modes.static import bore_modes
+from tests.sampling import is_long_to_compile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RADIUS = 0.025
@@ -49,6 +50,12 @@ def pytest_xdist_make_scheduler(config, log):
     from xdist.scheduler import WorkStealingScheduling
 
     return WorkStealingScheduling(config, log) if config.getoption("dist") == "load" else None
+
+
+def pytest_itemcollected(item):
+    """Tests whose kernels take long to compile are slow."""
+    if is_long_to_compile(item.nodeid) and item.get_closest_marker("benchmark") is None:
+        item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -92,8 +99,10 @@ def _use_of_joint():
     mbs.SolveDynamic(settings)
 
 
-def _uses_of_kernels():
+def _uses_of_kernels(slow):
     """Calls that compile the kernels of nearly all tests: a plain film, what no film uses, and two rows of films.
+
+    ``slow``: of the slow tests too.
 
     What several films of a row share is compiled by the first of them, what both rows share at different times; the
     rows take as long as each other.
@@ -115,9 +124,12 @@ def _uses_of_kernels():
     modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
     nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
     rows = (
-        [conserving, conserving | modal, dense, conserving | dense, conserving | thin],
-        [thin, modal, nodal, rough, touching, energy, liner, liner | touching, liner | energy, conserving | liner],
+        [conserving, conserving | modal, thin, rough, touching],
+        [liner, liner | touching, modal, nodal, energy],
     )
+    if slow:
+        rows[0].extend([dense, conserving | dense])
+        rows[1].extend([conserving | thin, liner | energy, conserving | liner])
     return (
         {"plain": _use_of_film},
         {"joint": _use_of_joint, "solid": functools.partial(bore_modes, modal["bush"])},
@@ -129,7 +141,7 @@ def _uses_of_kernels():
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _kernels_compiled_once(_own_cache, tmp_path_factory):
+def _kernels_compiled_once(request, _own_cache, tmp_path_factory):
     """The workers of a parallel run share the compilation of the kernels, and find each other's in numba's cache.
 
     Else every worker compiles nearly all of them. What one has taken the others leave out, but all films wait for the
@@ -139,7 +151,8 @@ def _kernels_compiled_once(_own_cache, tmp_path_factory):
     if worker is None:
         return
     folder = tmp_path_factory.getbasetemp().parent
-    plain, apart, *rows = _uses_of_kernels()
+    slow = any(item.get_closest_marker("slow") for item in request.session.items)
+    plain, apart, *rows = _uses_of_kernels(slow)
     own = int(worker.removeprefix("gw")) % 2
     start = apart | plain if own else plain
     # what the compiler and all tests are made of stays: a tenth of the time goes into looking for what could go

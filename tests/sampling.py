@@ -1,6 +1,26 @@
 """Samples of long tables of cases: the default run takes some, the slow tests take the rest."""
 
+import re
+
 import pytest
+
+# Folders whose tests solve films, and words of such a test's name that go together: kernels for a density law, and for
+# two effects that solve a film's nonlinear equations together, take as long to compile as those of all other films.
+# An audit tries every effect on its film.
+OF_FILMS = re.compile("tests/(benchmarks|contracts|coupling|film/solvers|hard_cases|joint|mechanisms)/")
+LONG_TO_COMPILE = (
+    ("densi|dense|compress|dowson", ""),
+    ("elrod|conserv", "audit|carreau|thinning|liner"),
+    ("liner", "audit|carreau|thinning|energy|heat|store"),
+    ("audit", "all laws|elasticity|keep_their_oil|remembers|says_the_same|shear thinning"),
+    ("line in its cells", ""),
+)
+
+
+def is_long_to_compile(name):
+    """Whether the film of a test of this name (`item.nodeid`) has kernels that take long to compile."""
+    words = name.lower().replace("-", "")
+    return bool(OF_FILMS.match(name)) and any(re.search(a, words) and re.search(b, words) for a, b in LONG_TO_COMPILE)
 
 
 def but_slow(cases, *names):

@@ -106,6 +106,7 @@ def test_fe_connecting_rod(example, tmp_path):
     assert wide["peak_MPa"] < 0.95 * rigid["peak_MPa"]
 
 
+@pytest.mark.slow
 def test_modes_of_the_connecting_rod_deform_as_the_mesh_does(example):
     """The whole mesh under a pressure that the modes weren't made for: 59 um at the bore, 0.19 um beyond the modes."""
     module = example("fe_connecting_rod")
@@ -361,6 +362,7 @@ def test_thrust_reversal(example, tmp_path):
     assert rows["plane faces: thinnest film on the faces [um]"] < rows["taper lands: thinnest film on the faces [um]"]
 
 
+@pytest.mark.slow
 def test_reading_results(example, tmp_path):
     found = example("reading_results").main(quick=True, results=tmp_path)
     assert [path.name for path in found["files"]] == [

@@ -11,8 +11,9 @@ GUIDES = sorted(path for folder in ("exudyn_ehd", "examples", "tests") for path 
     ROOT / "README.md"
 ]
 TEXTS = {str(path.relative_to(ROOT)): path.read_text(encoding="utf-8") for path in GUIDES}
-# An audit tries every effect, a bush takes the kernels of the solid: long to compile.
+# An audit tries every effect, a bush takes the kernels of the solid: long to compile; studies solve many films.
 SLOW = {"exudyn_ehd/coupling/README.md", "exudyn_ehd/joint/README.md", "exudyn_ehd/solid/README.md"}
+SLOW |= {"exudyn_ehd/studies/README.md"}
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 
 

@@ -181,6 +181,7 @@ def _check_mass(model, evaluation, history, step):
     assert inflow.sum() == pytest.approx(gain, abs=1e-10 * np.abs(inflow).sum() + 1e-10 * abs(gain) + 1e-9)
 
 
+@pytest.mark.slow
 def test_most_pairs_are_allowed(monkeypatch):
     """The refusals are exceptions: the same slot twice."""
     monkeypatch.setattr("exudyn_ehd.joint.model.build.compile_kernels", lambda model: None)

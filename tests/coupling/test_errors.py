@@ -275,6 +275,7 @@ def test_static_solution_without_stiffness_says_what_is_missing():
         ehd.SolveStatic(mbs, settings())
 
 
+@pytest.mark.slow
 def test_a_film_that_heats_beyond_any_oil_ends_the_run():
     """Asperities rub where hardly any oil flows, between adiabatic surfaces: a viscosity of nothing would follow
     without a sign."""

@@ -50,6 +50,7 @@ def test_impedance_map_runs_as_its_film(make_bearing, measured):
     assert steps <= film_steps + 0.2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     sample(

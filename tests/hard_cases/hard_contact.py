@@ -113,7 +113,7 @@ def edge_tilt(contact):
     return rotor
 
 
-@hard_case("edge contact under tilt", rejected=40)
+@hard_case("edge contact under tilt", rejected=40, slow=True)
 def edge_contact():
     """A load near one end tilts the journal until its edge touches: contact at a corner of the film."""
     rotor = edge_tilt(WALL)

@@ -87,7 +87,7 @@ def soft_step():
     return run
 
 
-@hard_case("thin shell", rejected=20, newton=5.0)
+@hard_case("thin shell", rejected=20, newton=5.0, slow=True)
 def thin_shell():
     """A bush of 0.5 mm: bent rather than compressed if it were free, here laid
     into the housing, where only its thickness deflects."""
@@ -157,7 +157,7 @@ def liner_on_its_edges():
     return run
 
 
-@hard_case("starved soft liner under oscillating rotation", newton=5.0)
+@hard_case("starved soft liner under oscillating rotation", newton=5.0, slow=True)
 def starved_liner():
     """Mass-conserving: the swinging journal's cavities drain and fill on a
     liner that deflects by the size of its film."""

@@ -225,7 +225,7 @@ def crank(made, *, speed, turns, steps_per_turn, big_end=False):
 PIN = {"journal_radius": 0.01, "length": 0.02, "radial_clearance": 2e-5}
 
 
-@hard_case("slider-crank at 20 000 rpm", newton=5.0)
+@hard_case("slider-crank at 20 000 rpm", newton=5.0, slow=True)
 def fast_crank():
     """70 kN of inertia on a 20 mm pin that only swings: twice a turn the film has neither wedge nor time."""
     speed = 20000.0 * 2.0 * math.pi / 60.0

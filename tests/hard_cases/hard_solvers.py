@@ -35,7 +35,7 @@ def coarse():
     return fine, plain, watched
 
 
-@hard_case("fine steps")
+@hard_case("fine steps", slow=True)
 def fine():
     """Steps of a ten-millionth of a second: nothing moves within one, and rates are differences of next to nothing."""
     made = bearing()

@@ -201,6 +201,7 @@ def test_liner_lowers_the_peak(compare):
 SOFT = ehd.ElasticLiner(thickness=0.002, youngs_modulus=1e9)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "contact",
     sample([{"contact": ehd.RegularisedWall(onset=2e-6)}, {"asperity": ASPERITY}], 0),
@@ -228,6 +229,7 @@ LAWS_ON_LINERS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sample(list(LAWS_ON_LINERS), 1, 4))
 def test_laws_on_a_liner(compare, name):
     # hot oil carries less before the ends touch, which do not deflect

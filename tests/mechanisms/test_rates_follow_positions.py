@@ -182,6 +182,7 @@ def alternation(planar_rotor, bearing, rho, steps=400):
     return np.sqrt(np.mean(size[:k] ** 2)), np.sqrt(np.mean(size[-k:] ** 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rho", [0.9, 0.5])
 def test_memory_adds_no_ringing(planar_rotor, rho):
     """Step load: as much as without a memory; the difference quotient has 40 % more in the first tenth at 0.9."""

@@ -108,6 +108,7 @@ def test_maps_can_share_a_figure_and_are_written(film, tmp_path):
     assert (tmp_path / "new" / "both.png").stat().st_size > 10_000
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     sample(

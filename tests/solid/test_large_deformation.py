@@ -51,6 +51,7 @@ def along(line):
     return line.nodes[np.argsort(MESH.nodes[line.nodes, 2])][:5]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", sample(list(PINNED), -1))
 @pytest.mark.parametrize(("rule", "tolerance"), sample([(GAUSS27, 1e-6), (IRONS14, 2e-4), (GAUSS8, 0.01)], 1))
 def test_displacements_agree_with_the_other_code(load, rule, tolerance):

@@ -60,6 +60,12 @@ def test_force_is_that_of_the_energy_and_tangent_that_of_the_force(seed):
     numeric = (SOLID.force(u + 1e-5 * d) - SOLID.force(u - 1e-5 * d)) / 2e-5
     exact = (SOLID.tangent(u) @ d.ravel()).reshape(-1, 3)
     np.testing.assert_allclose(exact, numeric, atol=1e-7 * np.abs(numeric).max())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(2))
+def test_threads_change_no_bit(seed):
+    u = random_state(seed)
     parallel = dataclasses.replace(SOLID, parallel=True)
     assert np.array_equal(parallel.force(u), SOLID.force(u))
     assert np.array_equal(parallel.tangent_values(u), SOLID.tangent_values(u))

@@ -140,6 +140,7 @@ def test_a_film_that_fails_is_named():
     assert "BarusPressure" in advice.reason
 
 
+@pytest.mark.slow
 def test_a_film_that_runs_dry_has_no_errors():
     advice = ehd.recommend(_bearing(cavitation=ehd.ElrodAdams()), eccentricity_ratio=0.5)
     assert not advice.found

@@ -159,6 +159,7 @@ def test_squeeze_opens_and_closes_within_one_step(squeeze):
     assert abs(times[open_][-1] + step - 0.73239) <= step
 
 
+@pytest.mark.slow
 def test_squeeze_cavity_edge(squeeze, measured):
     _, times, edges, *_ = squeeze
     ref = np.genfromtxt(DATA / "jfo_oscillating_squeeze_sigma.csv", delimiter=",", names=True, usecols=(0, 3))

@@ -3,7 +3,8 @@
 Every balance looks where a vertex would meet its own one between the pressures of its neighbours, ``met`` with its s:
 the tangent of N is taken there, where the pressure itself may be far from it or, on vertices that join, none. With an
 older factor the same ``met`` is what a step leads to if the neighbours stay. Symbols of
-`exudyn_ehd.film.cavitation.rupture_line`; ``line`` is (f, k, s, whole, shift, met), flat.
+`exudyn_ehd.film.cavitation.rupture_line`; ``line`` is (f, k, s, whole, shift, met), flat, and `NO_LINE` of a film that
+has none: another type would have every kernel that is handed a line compiled twice.
 """
 
 from __future__ import annotations
@@ -16,6 +17,13 @@ from exudyn_ehd.film.cavitation.rupture_line import LEAST
 # Steps after which vertices no longer leave the film at once, since two may drive each other out and in again for ever;
 # what is left of an s that would vanish. Steps after which pressures are the unknowns everywhere.
 PATIENT, KEPT, SAFE = 8, 0.1, 25
+NO_LINE = (np.empty(0),) * 6
+
+
+@njit(cache=True)
+def is_there(line):
+    """Whether a film has a line inside its cells."""
+    return line[0].size > 0
 
 
 @njit(cache=True)

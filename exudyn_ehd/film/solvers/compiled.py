@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from exudyn_ehd.film.cavitation.line_kernels import meet_line
+from exudyn_ehd.film.cavitation.line_kernels import is_there, meet_line
 from exudyn_ehd.film.lubricant.density_field import density_at, density_slope_at
 from exudyn_ehd.film.reynolds.balance import film_balance, terms_of, violation
 from exudyn_ehd.film.solvers.liner.elements import plain_slopes
@@ -41,7 +41,7 @@ WHOLE_STEPS, TO_THE_END = 16, 0.9
 def _balance(P, fill, fixed, numbers, kinds, terms, liner, oil, residual, line):
     """Norm of what does not hold, and the smallest gap, at P."""
     norm, gap = _balance_alone(P, fill, fixed, numbers, kinds, terms, liner, oil, residual)
-    if line is not None and gap > 0.0:
+    if is_there(line) and gap > 0.0:
         meet_line(P, numbers[0], terms[0], terms[1], line, residual)
         norm = violation(residual, P, fixed, numbers[0], True)
     return norm, gap
@@ -142,7 +142,7 @@ def solve(u, trial, fixed, numbers, kinds, terms, rate, liner, oil, matrix, resi
     matrix : (slopes, number, factored) of `factor_film`
     active : unknown vertices
     start : (whether a factor is there, whether the sets are, count, width)
-    line : that of `line_kernels`, or None
+    line : that of `line_kernels`
     """
     pc, P, fill = numbers[0], u[0], u[1]
     clips, chooses = kinds

@@ -28,6 +28,7 @@ from __future__ import annotations
 import numpy as np
 
 from exudyn_ehd.film.banded.assemble import dense_band
+from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.grid import FilmGrid
 from exudyn_ehd.film.lubricant.density import CompressibleLaw, DensityTable
 from exudyn_ehd.film.lubricant.density_field import pressure_at, viscosity_at
@@ -178,9 +179,9 @@ class CompressibleFilmSolver(NewtonFilmSolver):
             self.edge.take((self.H, self.HF), s.kx, s.b, self.grid.fixed)
 
     @property
-    def _line(self) -> tuple[np.ndarray, ...] | None:
+    def _line(self) -> tuple[np.ndarray, ...]:
         """The line inside the cells as kernels take it."""
-        return None if self.edge is None else self.edge.state
+        return NO_LINE if self.edge is None else self.edge.state
 
     def _set_store(self) -> None:
         """Coefficients of a mass-conserving film's storage term; see `FilmTerms`."""

@@ -15,7 +15,7 @@ from exudyn_ehd.film.banded.assemble import add_corners, add_tangents, assemble,
 from exudyn_ehd.film.banded.lu import factor_lu
 from exudyn_ehd.film.banded.numbering import number_cells, number_with_corners
 from exudyn_ehd.film.banded.substitution import solve_lu_one
-from exudyn_ehd.film.cavitation.line_kernels import add_line, bend_to_line, lean_to_line
+from exudyn_ehd.film.cavitation.line_kernels import add_line, bend_to_line, is_there, lean_to_line
 from exudyn_ehd.film.reynolds.balance import film_slopes, terms_of
 from exudyn_ehd.film.solvers.liner.elements import Rates, load_of, slopes_of
 from exudyn_ehd.film.solvers.liner.gap_response import add_gap_slopes
@@ -46,12 +46,12 @@ _FAST = {"reassoc", "contract", "nsz", "arcp"}
 
 
 @njit(cache=True, nogil=True)
-def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None, line=None):
+def factor_film(u, density, terms, fixed, liner, matrix, active, thin, line):
     """Newton's matrix of the ``active`` vertices, factored; returns (ok, count, width).
 
     ``density``: (rho, drho/dP), None of a constant one; ``liner``: (gap slopes, load, rates, beta, by)
-    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure;
-    ``line`` of `line_kernels`.
+    of one, ``by`` of `link_gradients`; ``thin``: `ShearThinning.response` of conductances that follow the pressure,
+    or None; ``line`` of `line_kernels`.
     """
     P, fill, full = u
     rho, rho_P = density
@@ -71,7 +71,7 @@ def factor_film(u, density, terms, fixed, liner, matrix, active, thin=None, line
     if liner is not None:
         gap_slopes, load, rates, beta, by = liner
         add_gap_slopes(P, fill, full, rho, film, slopes_of(gap_slopes), load_of(load), Rates(*rates), beta, by, slopes)
-    if line is not None:
+    if is_there(line):
         add_line(line, active, slopes[4])
     L, U = dense_band(lower, count, width), dense_band(upper, count, width)
     assemble(links, film.kz, slopes, number, order, count, L, U)
@@ -126,12 +126,12 @@ def _solve(residual, factored, count, width, P, pc, line, taken):
     flat = residual.reshape(-1)
     for r in range(count):
         x[r] = -flat[order[r]]
-    if line is not None:
+    if is_there(line):
         lean_to_line(P, pc, order, count, line, x)
     if count > 0:
         L, U = dense_band(lower, count, width), dense_band(upper, count, width)
         solve_lu_one(L, U, inv_diag, count, width, x)
-    if line is None:
+    if not is_there(line):
         return 0.0
     return bend_to_line(P, pc, order, count, line, taken, x)
 
@@ -185,7 +185,7 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
     elements : (load, gaps, gap slopes), as fields
     end, kinds : as in `take_step`; (clips, whether vertices at pc are no unknowns)
     levels : (pc, pc on the elements, least peak, opening, least suction)
-    line, taken : that of `line_kernels` or None, and steps before
+    line, taken : that of `line_kernels`, and steps before
     """
     clips, chooses = kinds
     pc, base, least, opening, suction = levels
@@ -193,7 +193,7 @@ def newton_step(residual, u, elements, end, factored, count, width, kinds, level
     largest, filled, peak, pressing, share = _sizes(u[0], u[2], elements, factored[0], factored[1], count, base, least)
     if not largest < np.inf:
         return np.inf, np.inf, peak, 1.0, 0
-    if line is not None:
+    if is_there(line):
         largest = max(largest, CURVED * along_line * np.sqrt(peak))
     unit = min(pressing, opening) if clips else peak
     share = 1.0 if clips else share

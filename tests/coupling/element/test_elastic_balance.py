@@ -11,6 +11,7 @@ from elastic_scene import CYLINDER, STEEL, Scene, bearing
 from scenes import settings
 
 import exudyn_ehd as ehd
+from tests.sampling import sample
 
 NODAL = ehd.ANCFBush(mesh=CYLINDER, material=STEEL)
 BUSHES = {
@@ -36,6 +37,7 @@ def slow(*case):
     return pytest.param(*case, marks=pytest.mark.slow)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bush", "moving", "steps", "least"),
     [
@@ -61,7 +63,9 @@ def test_work_on_the_film_is_heat_elastic_and_kinetic_energy_to_the_order_of_the
     assert fine < coarse / least
 
 
-@pytest.mark.parametrize(("bush", "steps"), [("rigid", 20), ("modal", 20), ("dynamic", 20), ("nodal", 10)])
+@pytest.mark.parametrize(
+    ("bush", "steps"), sample([("rigid", 20), ("modal", 20), ("dynamic", 20), ("nodal", 10)], 0, 1)
+)
 def test_momentum_of_journal_bush_and_an_accelerating_housing_is_the_impulse_of_the_loads(bush, steps):
     linear, angular = run(bush, True, steps, 5e-5 * steps).momentum_errors()
     # trapezoidal rule of the loads' course; spin of 314 rad/s in steps of the integrator, second order (below)

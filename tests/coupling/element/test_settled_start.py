@@ -55,7 +55,7 @@ def rotor(kind, grid=(45, 6), **options):
 
 @pytest.mark.parametrize(
     ("kind", "grid", "ends"),
-    sample(list(itertools.product(BUSHES, [(45, 6), (96, 10)], [(1e5, 1e5), (2e6, 0.0)])), 0, 3, 5),
+    sample(list(itertools.product(BUSHES, [(45, 6), (96, 10)], [(1e5, 1e5), (2e6, 0.0)])), 0),
 )
 def test_start_with_end_pressures_is_the_steady_film(kind, grid, ends):
     mbs, joint, bearing = rotor(kind, grid, end_pressures=ends)

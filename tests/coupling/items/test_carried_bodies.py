@@ -157,6 +157,7 @@ def test_energy_of_a_planar_model_closes_to_the_order_of_the_integrator(measured
 MODAL = ehd.ModalBush(mesh=CYLINDER, material=STEEL, tolerance=0.2, tilted=False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dynamics", [False, True])
 def test_modal_bushes_on_a_link_of_a_tree_start_and_run_as_on_a_planar_body(dynamics, measured):
     """The same equations in other coordinates, from the same start in equilibrium, which a tree's marker knows by
@@ -230,6 +231,7 @@ def held_by(kind, bush, steps=10):
     return total(mbs)[0] - before, joint.history, mbs.sys["dynamicSolver"].it.newtonStepsCount
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "kind", sample(["ANCF beam element", "cable 2D element", "exact beam element", "reduced FE body Rxyz"], 0)
 )

@@ -102,6 +102,7 @@ def journal_run(kind, youngs_modulus=5e10, steps=60, step=1e-4):
     return joint.history
 
 
+@pytest.mark.slow
 def test_reduced_body_is_the_modal_bush_of_the_same_mesh(measured):
     """Same mesh, modes and film, but that the body's modes have mass and its frame follows the bore; both start
     settled."""

@@ -33,6 +33,7 @@ def random_row(rng, time):
     return make_row(time, rng.normal(size=10), (0.3, 0.4), rng.normal(size=6), values, rng.normal(size=(6, 10)))
 
 
+@pytest.mark.slow
 def test_any_course_gives_the_record_in_memory(tmp_path):
     """Repeated last times, times that run back, readings in between, a restored state."""
     for seed in range(6):

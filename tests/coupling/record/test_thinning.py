@@ -51,6 +51,7 @@ def require_thinned(whole, thinned, rule):
             assert values[kept].max() == values[own].max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("on_disk", [False, True], ids=["memory", "file"])
 @pytest.mark.parametrize("name", sample(list(RULES), 0, 2))
 def test_any_course_gives_steps_of_the_whole_record(name, on_disk, tmp_path):
@@ -176,6 +177,7 @@ def test_rules_that_make_no_sense_are_refused(make, words):
         make()
 
 
+@pytest.mark.slow
 def test_a_history_of_a_file_reads_what_is_asked(tmp_path):
     """A column of 57 that stays, and of others nothing."""
     whole, record = Record(Bearing), Record(Bearing)

@@ -99,6 +99,7 @@ def test_a_steel_ring_that_flies_without_a_joint_halves_no_step(solve):
     assert np.abs(ring.velocities() - falls).max() < 1e-7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", sample([[0.0, 0.0, 0.0], [-70.0, 10.0, 80.0]], 1), ids=["near", "far"])
 @pytest.mark.parametrize("solve", sample([ehd.SolveDynamic, ehd.SolveDynamicSparse], 1))
 def test_a_housing_that_falls_with_its_nodal_bush_halves_no_step(solve, place):

@@ -32,6 +32,7 @@ def run(mbs, settings, solver=None):
     mbs.SolveDynamic(settings, **({} if solver is None else {"solverType": solver}))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ground", sample([True, False], 1))
 def test_node_types_give_the_same_motion(ground):
     histories = []

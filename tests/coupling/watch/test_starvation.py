@@ -70,8 +70,8 @@ def test_a_film_without_a_source_of_oil_says_when_it_runs_dry():
     [
         (0.01, {"cavitation": VENTED}),
         (0.1, {"cavitation": VENTED, "supply": GROOVE}),
-        (0.1, {"cavitation": VENTED, "end_pressures": (1e4, 0.0)}),
-        (0.1, {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)}),
+        pytest.param(0.1, {"cavitation": VENTED, "end_pressures": (1e4, 0.0)}, marks=pytest.mark.slow),
+        pytest.param(0.1, {"cavitation": ehd.ElrodAdams(cavity_pressure=-1e5)}, marks=pytest.mark.slow),
         (0.1, {}),
     ],
     ids=["short", "groove", "end", "below ambient", "Swift-Stieber"],

@@ -175,6 +175,7 @@ def test_cavities_that_keep_their_oil_are_solved_for(sizes, viscosity, speed, ep
     assert on.matters and not on.advice
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("speed", "eps"), sample([(628.0, 0.85), (314.0, 0.4)], 0))
 def test_steel_gives_way(speed, eps):
     made = sized((0.03, 0.066, 30e-6), 9e-3)
@@ -263,6 +264,7 @@ def test_effects_that_do_not_matter_are_unneeded(effect):
     assert f"{finding.time_share:.0%}" in str(found)
 
 
+@pytest.mark.slow
 def test_heat_into_walls():
     """Off: what walls of steel would change. On: the shares of the heat that they take."""
     made = bearing(thermal=ehd.FilmEnergy(supply_temperature=313.15), lubricant=ehd.oil("ISO VG 46"))
@@ -405,7 +407,9 @@ def orbit(n, radius=0.6, whirl=150.0):
     return motion, angle / whirl
 
 
-@pytest.mark.parametrize("cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)])
+@pytest.mark.parametrize(
+    "cavitation", [ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)], ids=["swift", "elrod"]
+)
 def test_step_of_a_record_against_the_gap(cavitation):
     made = bearing(cavitation=cavitation)
     found = []

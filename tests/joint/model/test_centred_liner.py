@@ -47,6 +47,7 @@ def test_a_journal_centred_but_for_rounding_has_a_film(cavitation, contact):
         assert np.hypot(*found.wrench[:2]) <= long * (0.5 * abs(motion[8]) * offset + rate) + rounding
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("contact", [None, ehd.RegularisedWall(onset=2e-6)], ids=["plain", "contact"])
 def test_slight_films_rupture_without_turning_in_circles(contact):
     """Steps are measured by a pressure that the speed could make, not by the rounding next to it (400 solves)."""

@@ -35,6 +35,7 @@ def _masses(closure, ratio, eccentricity_ratio, n, m):
     return values["critical mass"], np.array([critical_mass_error(bearing, K, C) for K, C in found])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closure", [ehd.SwiftStieber, pytest.param(ehd.Gumbel, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("place", but_slow(PLACES, "L/D 0.25", "L/D 1", "L/D 2"))
 def test_the_estimate_is_a_bound_and_not_a_loose_one(closure, place):

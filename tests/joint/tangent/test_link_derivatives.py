@@ -31,7 +31,9 @@ EFFECTS = {
 @pytest.mark.parametrize("effect", EFFECTS)
 @pytest.mark.parametrize("remembered", [True, False])
 @pytest.mark.parametrize(
-    "cavitation", [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)]
+    "cavitation",
+    [ehd.FullSommerfeld(), ehd.Gumbel(), ehd.SwiftStieber(), ehd.ElrodAdams(cavity_pressure=-1e5)],
+    ids=lambda closure: type(closure).__name__,
 )
 def test_gradients_are_the_sums_of_the_fields(cavitation, effect, remembered):
     options = {"lubricant": ehd.Lubricant(viscosity=0.02), "film": ehd.FiniteLength(n_theta=48, n_z=8)} | EFFECTS[

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from exudyn_ehd.film.cavitation.elrod_adams import LARGEST_DEFICIT
+from exudyn_ehd.film.cavitation.line_kernels import NO_LINE
 from exudyn_ehd.film.reynolds.links import FilmState, add_squeeze, right_hand_side
 from exudyn_ehd.film.solvers.compiled import SMALLEST_PEAK, solve
 from exudyn_ehd.film.solvers.linear import FilmSolver
@@ -137,7 +138,7 @@ class LinerBalance(LinerFilm):
             self.residual,
             w.active,
             (start, w.warm, w.count, w.width),
-            None if self.met is None else self.met.state,
+            NO_LINE if self.met is None else self.met.state,
         )  # fmt: skip
         self.reusable = ok
         return ok, steps
@@ -186,7 +187,7 @@ class LinerBalance(LinerFilm):
             self.matrix,
             w.active if self._chooses() else ~g.fixed,
             None if self.thin is None else self.thin.response(),
-            None if self.met is None else self.met.state,
+            NO_LINE if self.met is None else self.met.state,
         )
         return bool(ok)
 
@@ -213,7 +214,7 @@ class LinerBalance(LinerFilm):
             (self.clips, self._chooses()),
             (pc, self.cavity_load, max(least, self.slight), opening, ROUNDED * self.slight),
             self._sides(self.trial),
-            None if self.met is None else self.met.state,
+            NO_LINE if self.met is None else self.met.state,
             self.taken,
         )
         self.taken += 1

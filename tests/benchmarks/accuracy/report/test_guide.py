@@ -21,6 +21,7 @@ def test_the_guides_say_what_the_tables_say(name):
     assert _marked(text, name) == guide.BLOCKS[name](DATA)
 
 
+@pytest.mark.slow
 def test_guides_are_renewed_and_nothing_else_of_their_files(tmp_path):
     paths, picture = [tmp_path / "first.md", tmp_path / "second.md"], tmp_path / "picture.png"
     stale = [f"Before {name}.\n\n<!-- {name} -->\nstale numbers\n<!-- end -->\n\n" for name in guide.BLOCKS]
