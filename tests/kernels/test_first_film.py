@@ -1,4 +1,4 @@
-"""First films from empty caches: with a helper, without one, and where nothing can be written."""
+"""First films from empty caches: with a helper, and where nothing can be written; the tests' own films have none."""
 
 import os
 import pathlib
@@ -47,11 +47,18 @@ def first_film(folder, **environment):
     return int(lines[-2].split()[0]), np.array(lines[-1].split(), dtype=float), done.stderr
 
 
+def test_a_variable_switches_the_helper_off(monkeypatch):
+    monkeypatch.delenv("PYTEST_XDIST_WORKER", raising=False)
+    for switch, wanted in (("0", False), ("1", HELPERS == 1)):
+        monkeypatch.setenv(ahead.HELPER_VARIABLE, switch)
+        assert ahead._may_start() == wanted
+
+
 @pytest.mark.slow
 def test_first_films_are_the_same_with_and_without_a_helper(tmp_path):
-    # a second process with the first cache has nothing to compile
-    for name, switch, wanted in (("with", "1", HELPERS), ("with", "1", 0), ("without", "0", 0)):
-        found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path / name), EXUDYN_EHD_HELPER=switch)
+    # a second process with the first's cache has nothing to compile
+    for wanted in (HELPERS, 0):
+        found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path), EXUDYN_EHD_HELPER="1")
         assert found == wanted and not errors
         # arrays lie elsewhere in every process, which a vectorised sum rounds otherwise
         np.testing.assert_allclose(force, expected(), rtol=1e-12, atol=1e-9)
