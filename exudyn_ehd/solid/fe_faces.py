@@ -33,6 +33,7 @@ class BodyMesh(Protocol):
     surface: list
     modeBasis: dict[str, Any]
     stiffnessMatrix: spmatrix
+    massMatrix: spmatrix
 
     def VolumeToSurfaceElements(self) -> None:
         """Find the triangles of the surface."""

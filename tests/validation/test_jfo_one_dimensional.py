@@ -170,6 +170,7 @@ def test_squeeze_cavity_edge(squeeze, measured):
     measured("Sigma_min", abs(edges.min() - 0.02301), 0.002)
 
 
+@pytest.mark.slow
 def test_squeeze_balances_the_oil_and_keeps_the_fill_in_bounds(squeeze):
     _, _, _, balances, fills, _ = squeeze
     # Content 0.25 to 0.5; the sum of all errors over 2960 steps.

@@ -116,8 +116,8 @@ def undeformed(mbs: exu.MainSystem, housing: Item, side: FloatingBoreSide) -> It
 def settle_body(mbs: exu.MainSystem, model: ElasticBearingModel, sides: tuple[Side, Side]) -> None:
     """Let the modes of a reduced body start in equilibrium with all of its films, unless the scene has set them.
 
-    The body's frame is held; the sides' frames are those of the undeformed body. The shape of a journal that turns
-    starts at rest in the joint's frame.
+    The body's frame is held; the sides' frames are those of the undeformed body. A journal that turns starts with what
+    centrifugal forces make it grow by, and with its shape at rest in the joint's frame.
     """
     pin = model.bearing.journal
     surface, side = (pin.surface, sides[1]) if isinstance(pin, TurningJournal) else (model.bearing.bush, sides[0])
@@ -150,8 +150,11 @@ def _starting_film(
         bearing = dataclasses.replace(bearing, cavitation=closure)
     effects = collect_effects(bearing)
     if held is not None and isinstance(model, TurningModel):
-        film = TurningModel(bearing, TurningJournal(surface=held), effects=effects)
+        journal = dataclasses.replace(model.turning, surface=held)
+        film = TurningModel(bearing, journal, effects=effects)
         film.turns = False
+        spin = float(sides[1].frame[:, 2] @ sides[1].frame[:, 5])
+        film.elasticity = Elasticity(lambda: held.stiffness_matrix, spin**2 * journal.mass)
     else:
         make = model.make_bore if held is None else lambda grid: ModalBore(held, grid)
         film = ElasticBearingModel(bearing, make, elasticity=model.elasticity, effects=effects)
@@ -177,5 +180,8 @@ def _standing_rates(films: list[StartingFilm], q: np.ndarray) -> np.ndarray:
     if not turning:
         return np.zeros_like(q)
     maps = [journal.map(film.spin) for journal, film in turning]
+    # what spin alone makes of a journal goes round with it
+    elasticity = turning[0][1].model.elasticity
+    q = q - np.linalg.solve(elasticity.stiffness, elasticity.load)
     carried = [film.motion[8] * journal.turned(T @ q) for (journal, film), T in zip(turning, maps, strict=True)]
     return np.asarray(np.linalg.lstsq(np.concatenate(maps), -np.concatenate(carried), rcond=1e-6)[0])

@@ -11,6 +11,7 @@ import dataclasses
 
 import exudyn as exu
 import numpy as np
+from scipy.sparse import csr_matrix
 from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.bearing import JournalBearing
@@ -73,8 +74,20 @@ def hold_fe_journal(
             "with the mean of the journal's surface; give another joint the faces, or leave them out."
         )
     size = bearing.journal_radius, bearing.length
-    reduced, journal = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
-    return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced)), journal
+    reduced, held = _find_surface(mbs, pin, "journal", journal, size, (point, rotation))
+    mass = _centrifugal_mass(mbs, pin, journal, point, rotation)
+    return dataclasses.replace(bearing, journal=TurningJournal(surface=reduced, mass=mass)), held
+
+
+def _centrifugal_mass(
+    mbs: exu.MainSystem, pin: FEJournal, item: Item, point: np.ndarray, rotation: np.ndarray
+) -> np.ndarray:
+    """Phi^T M x (k,) of the places x across the joint's axis, from which centrifugal forces push the modes, kg m."""
+    data = mbs.GetObject(item.body)
+    local = item.node_rotation.T @ rotation
+    places = np.asarray(data["referencePositions"], dtype=float).reshape(-1, 3)
+    across = (places - item.node_rotation.T @ (point - item.node_position)) @ local[:, :2] @ local[:, :2].T
+    return np.asarray(data["modeBasis"], dtype=float).T @ (csr_matrix(pin.fem.massMatrix) @ across.ravel())
 
 
 def _find_surface(

@@ -44,6 +44,8 @@ class Elasticity:
     ----------
     make : function
         Returns the matrix (k, k), N/m; called when it is first needed.
+    load : (k,) array or float
+        Generalised force on the bore besides the film's, N.
 
     Attributes
     ----------
@@ -56,8 +58,8 @@ class Elasticity:
     failure = ""
     straight = False
 
-    def __init__(self, make: Callable[[], np.ndarray]) -> None:
-        self._make = make
+    def __init__(self, make: Callable[[], np.ndarray], load: np.ndarray | float = 0.0) -> None:
+        self._make, self.load = make, load
 
     @cached_property
     def stiffness(self) -> np.ndarray:
@@ -209,7 +211,7 @@ class Newton(Generic[Result]):
             (MOVING_STEPS, MOVING_TOLERANCE) if slowness else (LARGEST_SETTLING_STEPS, SETTLING_TOLERANCE)
         )
         scale = max(float(np.linalg.norm(evaluation.bore.load)), 1e-300)
-        residual = evaluation.bore.load - elasticity.force(q)
+        residual = evaluation.bore.load + elasticity.load - elasticity.force(q)
         error, last = float(np.linalg.norm(residual)), np.inf
         for _ in range(steps):
             # stop at the tolerance, or where rounding keeps a converged residual from falling
@@ -224,7 +226,7 @@ class Newton(Generic[Result]):
                 self.trials += 1
                 if evaluation.status is Status.CONVERGED:
                     resisted = elasticity.force(q + step) + elasticity.force(q + step - old) * slowness
-                    residual = evaluation.bore.load - resisted
+                    residual = evaluation.bore.load + elasticity.load - resisted
                     error = float(np.linalg.norm(residual))
                     if error < 2.0 * last or error <= 1e-8 * scale:
                         break

@@ -77,6 +77,8 @@ class TurningJournal:
     ----------
     surface : ReducedBore
         Outward displacements.
+    mass : ndarray (k,)
+        Centrifugal forces on the modes, over the square of the spin [kg m].
 
     Attributes
     ----------
@@ -85,6 +87,7 @@ class TurningJournal:
     """
 
     surface: ReducedBore
+    mass: np.ndarray
 
     def require_fit(self, radius: float, length: float, bush: object) -> None:
         """Nothing: its description did."""

@@ -50,7 +50,8 @@ def journal(displacement, around=24, along=4, turn=0.0):
             stiffness_matrix=np.diag(np.full(local.shape[2], 1e9)),
             radius=R,
             length=L,
-        )
+        ),
+        mass=np.zeros(local.shape[2]),
     )
 
 
