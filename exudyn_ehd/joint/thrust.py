@@ -138,6 +138,15 @@ class ThrustModel:
         return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
 
 
+def no_film(found: ThrustEvaluation, where: str) -> str:
+    """What to say of an evaluation without a film at a prescribed position, in the name of ``where``."""
+    gap, (bx, by) = min(state.minimum_gap for state in found.states), found.motion[2:4]
+    return (
+        f"{where}: {found.status.name} on a thrust face at the axial position {found.position:.4g} m, tilt = "
+        f"({bx:.3g}, {by:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+    )
+
+
 def face_motion(motion: np.ndarray, position: float, height: float) -> np.ndarray:
     """Motion (9,) of the collar at a face at z = ``height``, as in `exudyn_ehd.film.thrust.face`."""
     x, y, bx, by, x_t, y_t, bx_t, by_t, omega, w = motion.tolist()

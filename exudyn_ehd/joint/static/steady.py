@@ -87,8 +87,7 @@ class SteadyResult(Film, FilmPictures):
     bore_coordinates : (k,) array or None
         Of a flexible bore, m.
     faces : ThrustResult or None
-        Films on the end faces, which the other values leave out; None without ``bearing.thrust``, and in an
-        `equilibrium`.
+        Films on the end faces, which the other values leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
@@ -229,8 +228,9 @@ def steady(
     if bearing.thrust is None and place == 0.0:
         return result_at(model, motion, "steady")
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.static.thrust import thrust_result
+    from exudyn_ehd.joint.static.thrust import require_faces, thrust_result
 
+    require_faces(bearing, "steady", axial_position=place)
     faces = thrust_result(bearing, motion, place, "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
 

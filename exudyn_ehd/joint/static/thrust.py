@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.thrust import ADVICE, ThrustModel
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import FilmError, InputError, Status
 
@@ -73,26 +73,31 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def thrust_result(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult | None:
-    """The films on the faces; None for a bearing without them, of which the journal's position may be 0 only."""
-    if bearing.thrust is None:
-        if position != 0.0:
-            raise InputError(
-                f"{where}: axial_position is that between the faces of JournalBearing.thrust=ThrustFaces(...), which "
-                f"the bearing does not have, got {position!r} m; without faces nothing depends on it."
-            )
-        return None
-    model = ThrustModel(bearing)
-    found = model.evaluate(motion, position)
+def thrust_result(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult:
+    """The films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none."""
+    found = ThrustModel(bearing).evaluate(motion, position)
     if found.status is not Status.CONVERGED:
-        gap = min(state.minimum_gap for state in found.states)
-        raise FilmError(
-            f"{where}: {found.status.name} on a thrust face at the axial position {position:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+        raise FilmError(no_film(found, where))
+    return result_of(found)
+
+
+def require_faces(bearing: JournalBearing, where: str, **arguments: float | None) -> None:
+    """Refuse arguments that only faces give a meaning to, of a bearing without them."""
+    given = [f"{name} = {value!r}" for name, value in arguments.items() if value]
+    if bearing.thrust is None and given:
+        raise InputError(
+            f"{where}: {', '.join(given)}: axial_position is that between the faces of "
+            "JournalBearing.thrust=ThrustFaces(...), which the bearing does not have; without faces nothing depends on "
+            "it, and nothing carries along the axis."
         )
+
+
+def result_of(found: ThrustEvaluation) -> ThrustResult:
+    """The result of the last evaluation of its model, which has films."""
+    model = found.model
     tangent, values, first = found.tangent(), found.quantities(), model.faces[0]
     return ThrustResult(
-        axial_position=position,
+        axial_position=found.position,
         force=found.wrench[:3],
         moment=found.wrench[3:],
         axial_force=float(found.wrench[2]),

@@ -1,0 +1,125 @@
+"""Films on the end faces beside a journal's film whose position under a load is sought.
+
+Their wrench acts at the journal's place z along the axis, which is given, or that in which film and faces carry an
+axial load F_a::
+
+    F_z(x, y, z) + F_a = 0,    dz/d(x, y) = -(dF_z/dz)^-1 dF_z/d(x, y).
+
+For every position (x, y) it is found by Newton's method between places of either sign of the sum. A step may use up 60
+% of the smallest gap.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
+from exudyn_ehd.status import FilmError, Status
+
+LARGEST_PLACE_STEPS = 100
+# Share of the load that is left along the axis, below what the search for x and y leaves.
+AXIAL_TOLERANCE = 1e-12
+# Of the clearance: step with a wall, and what two places differ by at rounding.
+WALL_STEP, SAME_PLACE = 0.3, 1e-13
+# Smallest gaps beyond which no place is looked for, over the clearance.
+CLOSED, FARTHEST = 1e-3, 100.0
+
+
+@dataclass(frozen=True, eq=False)
+class FacesShare:
+    """What the faces add at one position of the journal.
+
+    Attributes
+    ----------
+    evaluation : ThrustEvaluation
+    tangent : (6, 11) array
+        d wrench / d (motion, axial position).
+    slope : (2, 2) array
+        What they add to dF/d(x, y) of the journal's film, with an axial load at the place that follows (x, y).
+    """
+
+    evaluation: ThrustEvaluation
+    tangent: np.ndarray
+    slope: np.ndarray
+
+
+class FacesUnderLoad:
+    """The films on the end faces of a bearing in a search for a position.
+
+    Parameters
+    ----------
+    bearing : JournalBearing
+        With ``thrust``.
+    position : float
+        Axial position, m, where the search for it starts if there is an axial load.
+    load : float or None
+        Force on the journal along z, N; None: the position is held.
+    size : float
+        Of the whole load, N.
+    where : str
+        Who asks, for messages.
+    """
+
+    def __init__(self, bearing: JournalBearing, position: float, load: float | None, size: float, where: str) -> None:
+        assert bearing.thrust is not None
+        self.model, self.options = ThrustModel(bearing), bearing.thrust
+        self.position, self.load, self.size, self.where = position, load, size, where
+
+    def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
+        """The faces beside a film of this wrench (6,) and tangent (6, >= 4) at a motion.
+
+        Raises
+        ------
+        FilmError
+            Without a film, or a place that carries the axial load.
+        """
+        if self.load is None:
+            found = self.model.evaluate(motion, self.position)
+            self._require_film(found)
+            own = found.tangent()
+            return FacesShare(found, own, own[:2, :2])
+        found = self._carried(motion, self.load + float(wrench[2]))
+        own, self.position = found.tangent(), found.position
+        slope, stiffness = own[:2, :2], own[2, 10]
+        if stiffness != 0.0:
+            slope = slope - np.outer(own[:2, 10], own[2, :2] + tangent[2, :2]) / stiffness
+        return FacesShare(found, own, slope)
+
+    def _carried(self, motion: np.ndarray, rest: float) -> ThrustEvaluation:
+        """The films at the place in which they carry ``rest``, N along z."""
+        below, above, place = -math.inf, math.inf, self.position
+        for _ in range(LARGEST_PLACE_STEPS):
+            found = self.model.evaluate(motion, place)
+            self._require_film(found)
+            unbalance = float(found.wrench[2]) + rest
+            below, above = (place, above) if unbalance > 0.0 else (below, place)
+            same = above - below <= SAME_PLACE * self.options.clearance
+            if abs(unbalance) <= AXIAL_TOLERANCE * self.size or same:
+                return found
+            gap = min(state.minimum_gap for state in found.states) / self.options.clearance
+            closed = self.options.contact is None and gap < CLOSED
+            if (closed or gap > FARTHEST) and math.isinf(above - below):
+                break
+            place = self._next(found, unbalance, below, above)
+        raise FilmError(
+            f"{self.where}: no axial position found in which the thrust faces carry {rest:.4g} N; at "
+            f"{found.position:.4g} m their force is {found.wrench[2]:.4g} N. One face carries in one direction, plane "
+            "faces no steady load: give them pads that carry (profile=TaperLand(...)), "
+            "contact=RegularisedWall(onset=...), or less load."
+        )
+
+    def _next(self, found: ThrustEvaluation, unbalance: float, below: float, above: float) -> float:
+        """The next place to try; without a change of sign so far no further than films reach."""
+        slope, gap = float(found.tangent()[2, 10]), min(state.minimum_gap for state in found.states)
+        longest = 0.6 * gap if self.options.contact is None else WALL_STEP * self.options.clearance
+        step = -unbalance / slope if slope < 0.0 else math.copysign(math.inf, unbalance)
+        place = found.position + math.copysign(min(abs(step), longest), unbalance)
+        return place if below < place < above else 0.5 * (below + above)
+
+    def _require_film(self, found: ThrustEvaluation) -> None:
+        if found.status is not Status.CONVERGED:
+            raise FilmError(no_film(found, self.where))
