@@ -17,6 +17,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.joint.balance.film import evaluate_at
+from exudyn_ehd.joint.feed.films import FedEvaluation, FedFilms
+from exudyn_ehd.joint.model.rigid import BearingModel
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.status import FilmError, Status
 
@@ -40,11 +43,18 @@ class FacesShare:
         d wrench / d (motion, axial position).
     slope : (2, 2) array
         What they add to dF/d(x, y) of the journal's film, with an axial load at the place that follows (x, y).
+    own : (6, 11) array
+        d wrench / d (motion, axial position) of the faces alone; of fed ones ``tangent`` also has what their feed
+        changes in the journal's film.
+    fed : (k,) array or None
+        Flow that the journal's film gives every face, m3/s; None without ``feed``.
     """
 
     evaluation: ThrustEvaluation
     tangent: np.ndarray
     slope: np.ndarray
+    own: np.ndarray
+    fed: np.ndarray | None = None
 
 
 class FacesUnderLoad:
@@ -69,42 +79,47 @@ class FacesUnderLoad:
         self.model, self.options = ThrustModel(bearing), bearing.thrust
         self.position, self.load, self.size, self.where = position, load, size, where
 
+    def settle(self, motion: np.ndarray) -> None:
+        """Bring what the journal's film has to know of the faces to a motion."""
+
     def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
-        """The faces beside a film of this wrench (6,) and tangent (6, >= 4) at a motion.
+        """The faces beside a film of this wrench (6,) and tangent (6, >= 4) at a motion, after `settle`.
 
         Raises
         ------
         FilmError
             Without a film, or a place that carries the axial load.
         """
-        if self.load is None:
-            found = self.model.evaluate(motion, self.position)
-            self._require_film(found)
-            own = found.tangent()
-            return FacesShare(found, own, own[:2, :2])
-        found = self._carried(motion, self.load + float(wrench[2]))
-        own, self.position = found.tangent(), found.position
-        slope, stiffness = own[:2, :2], own[2, 10]
-        if stiffness != 0.0:
-            slope = slope - np.outer(own[:2, 10], own[2, :2] + tangent[2, :2]) / stiffness
-        return FacesShare(found, own, slope)
+        found = self._found(motion, float(wrench[2]))
+        own = found.tangent()
+        return FacesShare(found, own, self._slope(own, tangent), own)
 
-    def _carried(self, motion: np.ndarray, rest: float) -> ThrustEvaluation:
-        """The films at the place in which they carry ``rest``, N along z."""
-        below, above, place = -math.inf, math.inf, self.position
+    def _slope(self, own: np.ndarray, film: np.ndarray) -> np.ndarray:
+        """`FacesShare.slope` of what the faces add to the tangent (6, >= 4) of the film."""
+        if self.load is None or own[2, 10] == 0.0:
+            return np.asarray(own[:2, :2])
+        return np.asarray(own[:2, :2] - np.outer(own[:2, 10], own[2, :2] + film[2, :2]) / own[2, 10])
+
+    def _found(self, motion: np.ndarray, film: float) -> ThrustEvaluation:
+        """The films at the given place or that of the load, beside a film with this axial force, N."""
+        if self.load is None:
+            return self._at(motion, self.position)[0]
+        below, above, place, rest = -math.inf, math.inf, self.position, self.load + film
         for _ in range(LARGEST_PLACE_STEPS):
-            found = self.model.evaluate(motion, place)
-            self._require_film(found)
-            unbalance = float(found.wrench[2]) + rest
-            below, above = (place, above) if unbalance > 0.0 else (below, place)
+            found, force, slope = self._at(motion, place)
+            below, above = (place, above) if force + rest > 0.0 else (below, place)
             same = above - below <= SAME_PLACE * self.options.clearance
-            if abs(unbalance) <= AXIAL_TOLERANCE * self.size or same:
+            if abs(force + rest) <= AXIAL_TOLERANCE * self.size or same:
+                self.position = place
                 return found
             gap = min(state.minimum_gap for state in found.states) / self.options.clearance
             closed = self.options.contact is None and gap < CLOSED
             if (closed or gap > FARTHEST) and math.isinf(above - below):
                 break
-            place = self._next(found, unbalance, below, above)
+            step = -(force + rest) / slope if slope < 0.0 else math.copysign(math.inf, force + rest)
+            longest = self.options.clearance * (0.6 * gap if self.options.contact is None else WALL_STEP)
+            place += math.copysign(min(abs(step), longest), force + rest)
+            place = place if below < place < above else 0.5 * (below + above)
         raise FilmError(
             f"{self.where}: no axial position found in which the thrust faces carry {rest:.4g} N; at "
             f"{found.position:.4g} m their force is {found.wrench[2]:.4g} N. One face carries in one direction, plane "
@@ -112,14 +127,59 @@ class FacesUnderLoad:
             "contact=RegularisedWall(onset=...), or less load."
         )
 
-    def _next(self, found: ThrustEvaluation, unbalance: float, below: float, above: float) -> float:
-        """The next place to try; without a change of sign so far no further than films reach."""
-        slope, gap = float(found.tangent()[2, 10]), min(state.minimum_gap for state in found.states)
-        longest = 0.6 * gap if self.options.contact is None else WALL_STEP * self.options.clearance
-        step = -unbalance / slope if slope < 0.0 else math.copysign(math.inf, unbalance)
-        place = found.position + math.copysign(min(abs(step), longest), unbalance)
-        return place if below < place < above else 0.5 * (below + above)
-
-    def _require_film(self, found: ThrustEvaluation) -> None:
+    def _at(self, motion: np.ndarray, place: float) -> tuple[ThrustEvaluation, float, float]:
+        """The films at a place, their axial force, N, and its derivative to the place."""
+        found = self.model.evaluate(motion, place)
         if found.status is not Status.CONVERGED:
             raise FilmError(no_film(found, self.where))
+        return found, float(found.wrench[2]), float(found.tangent()[2, 10])
+
+
+class FedFacesUnderLoad(FacesUnderLoad):
+    """Faces that the journal's film feeds; arguments as for `FacesUnderLoad`, with the film's model."""
+
+    def __init__(
+        self,
+        model: BearingModel,
+        position: float,
+        load: float | None,
+        size: float,
+        where: str,
+    ) -> None:
+        super().__init__(model.bearing, position, load, size, where)
+        self.films = FedFilms(model, self.model)
+
+    def settle(self, motion: np.ndarray) -> None:
+        """Bring the ends of the journal's film to the pressures of the edges at a motion, and the place of the load."""
+        self._found(motion, 0.0)
+        found = self._both
+        journal, self._own = found.tangents()
+        self._added = journal - np.pad(found.journal.tangent(), ((0, 0), (0, 1))) + self._own
+
+    def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
+        """As `FacesUnderLoad.share`, after `settle` at this motion."""
+        found = self._both
+        return FacesShare(found.faces, self._added, self._slope(self._added, tangent), self._own, found.given)
+
+    def _at(self, motion: np.ndarray, place: float) -> tuple[ThrustEvaluation, float, float]:
+        """As `FacesUnderLoad._at`, with the force of the journal's film."""
+        found = self._both = require_fed(self.films, motion, place, self.where)
+        force = float(found.faces.wrench[2] + found.journal.wrench[2])
+        slope = 0.0 if self.load is None else float(sum(tangent[2, 10] for tangent in found.tangents()))
+        return found.faces, force, slope
+
+
+def require_fed(films: FedFilms, motion: np.ndarray, position: float, where: str) -> FedEvaluation:
+    """Both films at a motion (10,) and an axial position; `FilmError` if there are none."""
+    found = films.evaluate(motion, position)
+    if found.journal.status is not Status.CONVERGED:
+        evaluate_at(films.model, motion, where)
+    if found.faces.status is not Status.CONVERGED:
+        raise FilmError(no_film(found.faces, where))
+    if not found.settled:
+        raise FilmError(
+            f"{where}: no pressures found at which the journal's film gives its thrust faces what they take; the "
+            f"nearest are {found.pressures} Pa, with {found.given} and {found.taken} m3/s. A finer film grid may have "
+            "them; ThrustFaces.inner_pressures with JournalBearing.end_pressures needs no search."
+        )
+    return found

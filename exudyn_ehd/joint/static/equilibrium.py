@@ -16,7 +16,7 @@ from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
-from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
@@ -235,8 +235,8 @@ def equilibrium(
     if isinstance(bearing.inlet, MaximumGap):
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "equilibrium")
-    faces = _faces(bearing, place, axial_load, size)
     model = build_study_model(bearing, 0.0)
+    faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
     search = LoadSearch(model, force, "equilibrium", faces=faces)
@@ -257,7 +257,7 @@ def equilibrium(
     if found.faces is not None:
         from exudyn_ehd.joint.static.thrust import result_of
 
-        film = replace(film, faces=result_of(found.faces.evaluation))
+        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.own, found.faces.fed))
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -275,14 +275,15 @@ def equilibrium(
     )
 
 
-def _faces(bearing: JournalBearing, position: float, load: float | None, across: float) -> FacesUnderLoad | None:
+def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:
     """The films on end faces in the search, under a load of the size ``across`` in x and y, N."""
+    bearing = model.bearing
     if load is not None:
         load = require_number("equilibrium: axial_load", load, "N")
     if bearing.thrust is None and position == 0.0 and not load:
         return None
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
+    from exudyn_ehd.joint.balance.faces import FacesUnderLoad, FedFacesUnderLoad
     from exudyn_ehd.joint.static.thrust import require_faces
 
     require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
@@ -291,7 +292,10 @@ def _faces(bearing: JournalBearing, position: float, load: float | None, across:
             f"equilibrium: axial_position = {position!r} m and axial_load = {load!r} N exclude each other: the journal "
             "is held along the axis, or finds its place under a load; leave one out."
         )
-    return FacesUnderLoad(bearing, position, load, math.hypot(across, load or 0.0), "equilibrium")
+    size = math.hypot(across, load or 0.0)
+    if bearing.thrust is not None and bearing.thrust.feed is not None:
+        return FedFacesUnderLoad(model, position, load, size, "equilibrium")
+    return FacesUnderLoad(bearing, position, load, size, "equilibrium")
 
 
 def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:
