@@ -1,12 +1,20 @@
 """Flows out of both ends of a journal's film, with their derivatives to the motion and to the ends' pressures.
 
-With an end's vertices, which have its pressure p_e, and their half control volumes A, out of the film flows
+An end's vertices have its pressure p_e. What a film takes through the half control volume of one of them is
 
-    Q = sum k (p_1 - p_e) +- carried along z - A dh/dt,
+    q + B,    q = k (p_e - p_1),    B = divergence of what the turn carries + A dh/dt,
 
-k of the links to the next vertices; what the turn carries along the end cancels over the ring. By the adjoint solutions
-lam of the film's sums S over its pressures, ``dS/dp_e = sum lam_1 k`` of the next vertices plus what the end's own
-pressure does. Films between rigid surfaces of an oil of constant viscosity.
+with the conductance k to the next vertex and its pressure p_1. Where that lies in a cavity and B > q >= 0, film reaches
+from the end to a line closer than the next vertex: as far as its parabola of pressure falls to the cavity's. It takes
+
+    2 sqrt(q B)
+
+then, which joins q + B with its slope at q = B, where the line reaches the next vertex, and is nothing at an end with
+the cavity's pressure.
+
+By the adjoint solutions lam of the film's sums S over its pressures, ``dS/dp_e = sum lam_1 k`` of the next vertices
+plus what the end's own pressure does. Films between rigid surfaces of an oil of constant viscosity, with
+`FullSommerfeld` or `SwiftStieber`.
 """
 
 from __future__ import annotations
@@ -15,7 +23,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.film.cavitation.active_set import rows_of_linear
 from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.sensitivity.rigid import integral_weights
 from exudyn_ehd.joint.model.loads import film_loads
@@ -40,23 +47,50 @@ class EndDerivatives(NamedTuple):
     by_motion: np.ndarray
 
 
+class _Edge(NamedTuple):
+    """Vertices of an end (n,): k, q, and derivatives of what they take to q and B; and what they take in all."""
+
+    k: np.ndarray
+    q: np.ndarray
+    by_q: np.ndarray
+    by_B: np.ndarray
+    taken: float
+
+
 def end_flows(film: SolvedFilm) -> np.ndarray:
     """Flows (2,) out of lower and upper end, m3/s."""
-    inflow = film.solver.inflow()
-    return np.asarray(-film.parts.flow_scale * inflow[:, [0, -1]].sum(axis=0))
+    carried = [-film.solver.system.fz[:, 0].sum(), film.solver.system.fz[:, -2].sum()]
+    return film.parts.flow_scale * np.array([z - edge.taken for z, edge in zip(carried, _edges(film), strict=True)])
+
+
+def _edges(film: SolvedFilm) -> list[_Edge]:
+    s, out = film.solver, []
+    P, full = s.pressure, s.work.active | film.grid.fixed
+    for end, at, link in ENDS:
+        k, B = s.system.kz[:, link], s.system.fx[:, end] - np.roll(s.system.fx[:, end], 1)
+        q = k * (P[:, end] - P[:, at])
+        if s.squeeze:
+            B = B + s.H_t[:, end] * s.area[:, end]
+        near = ~full[:, at] & (q >= 0.0) & (q < B)
+        share = np.sqrt(np.where(near, q, 1.0) / np.where(near, B, 1.0))
+        # no slope where nothing flows: there a search goes on as from a film up to the next vertex
+        by_q = 1.0 / np.where(share > 0.0, share, 1.0)
+        out.append(_Edge(k, q, by_q, share, float(np.where(near, 2.0 * share * B, q + B).sum())))
+    return out
 
 
 def end_derivatives(film: SolvedFilm) -> EndDerivatives:
     """Derivatives of a solved film that still is its model's last."""
     s, p, scales = film.solver, film.parts, film.scales
-    links = np.array([s.system.kz[:, link] for _, _, link in ENDS])
+    edges = _edges(film)
+    links = np.array([edge.k for edge in edges])
     lam = s.adjoint(np.concatenate((_flow_rows(film, links), adjoint_rows(film))))
     # (k, 2): through the pressures inside the film
     inside = np.stack([lam[:, :, at] @ k for (_, at, _), k in zip(ENDS, links, strict=True)], axis=1)
-    flows = inside[:2] - np.diag(links.sum(axis=1))
+    flows = inside[:2] - np.diag([float(edge.by_q @ edge.k) for edge in edges])
     by_motion = np.zeros((2, MOTION_SIZE))
     sens = s.sensitivities(lam[:2])
-    _add_direct(film, sens)
+    _add_direct(film, edges, sens)
     add_by_motion(film, sens, by_motion)
     scale = p.flow_scale
     return EndDerivatives(
@@ -68,29 +102,26 @@ def end_derivatives(film: SolvedFilm) -> EndDerivatives:
 
 def _flow_rows(film: SolvedFilm, links: np.ndarray) -> np.ndarray:
     """Weights (2, count) of the unknown pressures in the flows."""
-    s, w, y = film.solver, film.solver.work, film.solver.system
-    fields, unknown = np.zeros((2, *film.grid.shape)), w.order[: w.count]
+    w, fields = film.solver.work, np.zeros((2, *film.grid.shape))
+    unknown = w.order[: w.count]
     for q, (_, at, _) in enumerate(ENDS):
         fields[q, :, at] = links[q]
-    rows = fields.reshape(2, -1)[:, unknown] * w.active.reshape(-1)[unknown]
-    if s.closure.clips and s.closure.line_in_cells:
-        rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
-    return rows
+    return np.asarray(fields.reshape(2, -1)[:, unknown] * w.active.reshape(-1)[unknown])
 
 
-def _add_direct(film: SolvedFilm, sens: Sensitivities) -> None:
+def _add_direct(film: SolvedFilm, edges: list[_Edge], sens: Sensitivities) -> None:
     """Add the flows' derivatives at fixed pressure."""
     s, g = film.solver, film.grid
-    for q, (end, at, link) in enumerate(ENDS):
-        side = 1.0 if end else -1.0
-        gap = 0.5 * (s.H[:, end] + s.H[:, at])
-        driven = 3.0 * s.system.kz[:, link] / gap * (s.pressure[:, at] - s.pressure[:, end])
-        half = 0.5 * (driven + side * s.vz * g.width_x)
+    for q, ((end, at, _), edge) in enumerate(zip(ENDS, edges, strict=True)):
+        side, width = 1.0 if end else -1.0, float(g.width_z[end])
+        gap, turned = 0.5 * (s.H[:, end] + s.H[:, at]), s.HF[:, end] - np.roll(s.HF[:, end], 1)
+        half = 0.5 * (side * s.vz * g.width_x - 3.0 * edge.by_q * edge.q / gap)
         sens.cell[q, :, end] += half
         sens.cell[q, :, at] += half
-        sens.speed[q, 1] += side * float(gap @ g.width_x)
+        sens.face[q, :, end] += s.vx * width * (np.roll(edge.by_B, -1) - edge.by_B)
+        sens.speed[q] += -width * float(edge.by_B @ turned), side * float(gap @ g.width_x)
         if s.squeeze:
-            sens.rate[q, :, end] -= s.area[:, end]
+            sens.rate[q, :, end] -= edge.by_B * s.area[:, end]
 
 
 def _weights(film: SolvedFilm) -> np.ndarray:

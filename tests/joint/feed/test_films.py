@@ -56,8 +56,6 @@ def test_two_resistances_in_series(pressure):
 
 CLOSURES = {
     "full": ehd.FullSommerfeld(),
-    "gumbel": ehd.Gumbel(cavity_pressure=-2e4),
-    "gumbel_in_cells": ehd.Gumbel(line_in_cells=True),
     "swift": ehd.SwiftStieber(cavity_pressure=-2e4, cavity_shear=0.4, line_in_cells=False),
     "swift_in_cells": ehd.SwiftStieber(),
 }
@@ -67,8 +65,9 @@ SCENES = {
     "walls": ({"contact": WALL}, {"contact": WALL, "profile": ehd.Crown(drop=5e-6)}),
     "one face": ({"upper": False}, {"end_pressures": (0.0, 1e5)}),
     "short": ({}, {"film": ehd.ShortBearing(n_theta=48, n_z=6)}),
+    "low pressures": ({"clearance": 2e-4}, {}),
 }
-FEW = [("swift_in_cells", scene) for scene in SCENES] + [(name, "walls") for name in CLOSURES if name[0] in "fg"]
+FEW = [("swift_in_cells", scene) for scene in SCENES] + [("full", "walls"), ("swift", "low pressures")]
 ALL = [
     pytest.param(name, scene, marks=[] if (name, scene) in FEW else pytest.mark.slow)
     for name in CLOSURES
@@ -106,8 +105,9 @@ def test_continuity_and_tangents(closure, scene):
             strict=True,
         ):
             error = np.abs(tangent @ d - (high - low) / 2e-6)
-            # truncation of central differences and rounding over 1e-6, of smooth states
-            assert np.all(error < 1e-6 * np.abs(tangent).max(axis=1))
+            # truncation of central differences and rounding over 1e-6; by roots of small flows they bend more
+            limit = 3e-6 if scene == "low pressures" else 1e-6
+            assert np.all(error < limit * np.abs(tangent).max(axis=1))
     assert balanced
     assert limited or scene != "walls"
 
@@ -212,7 +212,7 @@ def test_refused():
     for faces, options, names in (
         ({"inner_pressures": (0.0, 0.0)}, {}, "inner_pressures must be None"),
         ({}, {"film": ehd.LongBearing(), "supply": ()}, "film=LongBearing"),
-        ({}, {"film": ehd.ClassicSOR(), "supply": (), "cavitation": ehd.Gumbel()}, "film=ClassicSOR"),
+        ({}, {"film": ehd.ClassicSOR(), "supply": (), "cavitation": ehd.Gumbel()}, "film=ClassicSOR.*Gumbel"),
         ({}, {"inlet": ehd.MaximumGap(), "supply": ()}, r"inlet=MaximumGap"),
         ({}, {"bush": ehd.ElasticLiner(thickness=1e-3, youngs_modulus=2e9)}, r"JournalBearing\.bush"),
         (
