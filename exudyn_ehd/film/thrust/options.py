@@ -107,9 +107,10 @@ class JournalLeakage:
         p_e > p_0,  Q_film(p_e) = Q_face(p_e)    or    p_e = p_0,  Q_film(p_0) <= Q_face(p_0),
 
     with p_0 of the bearing's ``end_pressures``. Pads that press oil inwards give it to the channel, and the journal's
-    film takes it: a negative flow of both. The channel holds no oil, and what turns in it makes no pressure. Leakage
-    falls with p_e and the face's flow rises, so that there is one solution, which Newton's method finds with both films
-    in every evaluation.
+    film takes it: a negative flow of both. The channel holds no oil, what turns in it makes no pressure, and, as with
+    given pressures, what it presses on the collar is left out: p_e pi (r_i^2 - R^2) between the journal's radius and
+    the inner one. Leakage falls with p_e and the face's flow rises, so that there is one solution, which Newton's
+    method finds with both films in every evaluation.
 
     Cavities without a memory find oil where a film begins anew: name the ``supply`` that brings it. A cavity that
     reaches an end takes oil from the channel (`exudyn_ehd.joint.feed.ends`). With `SwiftStieber` on the default grid
