@@ -59,7 +59,7 @@ from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.film.surfaces.profile import AxialProfile, Crown, EdgeRelief, OutOfRound, ProfileTable
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.film.surfaces.wear import ArchardWear
-from exudyn_ehd.film.thrust.options import StepLand, TaperLand, ThrustFaces
+from exudyn_ehd.film.thrust.options import JournalLeakage, StepLand, TaperLand, ThrustFaces
 from exudyn_ehd.joint.audit.audit import Audit, Finding
 from exudyn_ehd.joint.model.fields import FilmFields
 from exudyn_ehd.joint.static.equilibrium import EquilibriumResult, equilibrium
@@ -242,6 +242,7 @@ __all__ = [
     "JointHistory",
     "JointState",
     "JournalBearing",
+    "JournalLeakage",
     "LastCycle",
     "LineLoad",
     "LongBearing",

@@ -152,7 +152,13 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
         "OnPlane.point",
     ),
     "clearance": ("JournalBearing.radial_clearance", "SphericalBearing.radial_clearance", "ThrustFaces.clearance"),
-    "gap": ("solve_film.gap", "solve_film.history", "steady_spherical.place", "steady.axial_position"),
+    "gap": (
+        "solve_film.gap",
+        "solve_film.history",
+        "steady_spherical.place",
+        "steady.axial_position",
+        "equilibrium.axial_position",
+    ),
     "form": (
         "OutOfRound.amplitude",
         "OnPlane.tolerance",
@@ -180,11 +186,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "tilt": ("steady.tilt", "equilibrium.tilt"),
     "viscosity": ("Lubricant.viscosity",),
     "oil density": ("Lubricant.density",),
-    "density": (
-        "SaintVenantKirchhoff.density",
-        "NeoHooke.density",
-        "Conduction.density",
-    ),
+    "density": ("SaintVenantKirchhoff.density", "NeoHooke.density", "Conduction.density"),
     "specific heat": ("Lubricant.specific_heat",),
     "specific heat of a solid": ("Conduction.specific_heat",),
     "temperature": (
@@ -283,6 +285,7 @@ _ARGUMENTS: dict[str, tuple[str, ...]] = {
     "mass": ("recommend_steps.mass",),
     "force": (
         "equilibrium.load",
+        "equilibrium.axial_load",
         "stribeck.load",
         "recommend_steps.load",
         "LubricatedJoint.place_in_equilibrium.load",

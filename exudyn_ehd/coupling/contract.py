@@ -160,5 +160,8 @@ class Faces(Protocol):
     def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
         """Scalars at a motion (10,), to which the sides' arrays belong."""
 
+    def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
+        """Axial position, m, at the state to which the sides' frames and a motion (10,) belong."""
+
     def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
         """Force and moment about O (6,) on the journal at the state to which the sides' arrays belong."""

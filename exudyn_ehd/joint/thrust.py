@@ -68,7 +68,7 @@ class ThrustEvaluation:
             return np.full((6, MOTION_SIZE + 1), np.nan)
         out = np.zeros((6, MOTION_SIZE + 1))
         for face in self.model.faces:
-            out += _about_origin(face.tangent(), self.model.height(face)) @ face_motion_map(
+            out += about_origin(face.tangent(), self.model.height(face)) @ face_motion_map(
                 self.motion, self.model.height(face)
             )
         return out
@@ -133,9 +133,18 @@ class ThrustModel:
         states = tuple(face.evaluate(face_motion(motion, position, self.height(face))) for face in self.faces)
         wrench = np.zeros(6)
         for face, state in zip(self.faces, states, strict=True):
-            wrench += _about_origin(state.wrench, self.height(face))
+            wrench += about_origin(state.wrench, self.height(face))
         status = max((state.status for state in states), key=lambda found: found.value)
         return ThrustEvaluation(status, motion, position, wrench, states, self, self.serial)
+
+
+def no_film(found: ThrustEvaluation, where: str) -> str:
+    """What to say of an evaluation without a film at a prescribed position, in the name of ``where``."""
+    gap, (bx, by) = min(state.minimum_gap for state in found.states), found.motion[2:4]
+    return (
+        f"{where}: {found.status.name} on a thrust face at the axial position {found.position:.4g} m, tilt = "
+        f"({bx:.3g}, {by:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+    )
 
 
 def face_motion(motion: np.ndarray, position: float, height: float) -> np.ndarray:
@@ -158,7 +167,7 @@ def face_motion_map(motion: np.ndarray, height: float) -> np.ndarray:
     return out
 
 
-def _about_origin(wrench: np.ndarray, height: float) -> np.ndarray:
+def about_origin(wrench: np.ndarray, height: float) -> np.ndarray:
     """Wrench (6, ...) about the face's centre at z = ``height`` to one about O."""
     out = wrench.copy()
     out[3] -= height * wrench[1]

@@ -104,6 +104,10 @@ class ThrustElement:
         """The films at frames (3, 6) of housing and journal, of the motion (10,)."""
         return self.model.evaluate(motion, self._position(frames, motion))
 
+    def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
+        """Axial position, m, at the state to which the frames of ``sides`` and the motion (10,) belong."""
+        return self._position((sides[0].frame, sides[1].frame), motion)
+
     def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
         """Force and moment about O (6,) on the journal at the state to which the arrays of ``sides`` belong."""
         frames, motion = (sides[0].frame, sides[1].frame), np.empty(MOTION_SIZE)

@@ -51,7 +51,13 @@ def place(
             "load; give speed=..., or the bodies an initial angular velocity."
         )
     bearing = element.model.bearing
-    result = equilibrium(bearing, speed=float(motion[8]), load=(force[0], force[1]), tilt=(motion[2], motion[3]))
+    result = equilibrium(
+        bearing,
+        speed=float(motion[8]),
+        load=(force[0], force[1]),
+        tilt=(motion[2], motion[3]),
+        axial_position=0.0 if element.faces is None else element.faces.place(element.sides, motion),
+    )
     housing = element.sides[0].frame[:, :3]
     coordinates = np.array(mbs.systemData.GetODE2Coordinates(_INITIAL), dtype=float)
     rates = np.array(mbs.systemData.GetODE2Coordinates_t(_INITIAL), dtype=float)

@@ -25,10 +25,12 @@ and y; E = -int h u . grad p for the turn and the shifts along x and y.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from exudyn_ehd.film.cavitation.active_set import rows_of_linear
+from exudyn_ehd.film.reynolds.link_derivatives import Sensitivities
 from exudyn_ehd.film.solvers.closure import Closure
 from exudyn_ehd.film.solvers.linear import FilmSolver
 from exudyn_ehd.film.surfaces.wall import WallContact
@@ -71,6 +73,19 @@ class FaceState:
     inflow: float = np.nan
     outflow: float = np.nan
     contact_load: float = np.nan
+
+
+class FaceFeed(NamedTuple):
+    """Derivatives about the inner edge of a face, SI units.
+
+    wrench : (6,) array, of the wrench to the edge's pressure
+    flow : float, of the flow through the edge to that pressure
+    by_motion : (9,) array, of that flow to the motion
+    """
+
+    wrench: np.ndarray
+    flow: float
+    by_motion: np.ndarray
 
 
 class FaceFilm:
@@ -155,6 +170,10 @@ class FaceFilm:
     def gap(self) -> np.ndarray:
         """That the film of the last solution has (n, m), m."""
         return self.solver.H * self.scales.c
+
+    def set_inner_pressure(self, pressure: float) -> None:
+        """Pressure at the inner radius from the next evaluation on, Pa."""
+        self.known[0] = pressure / self.scales.pressure
 
     def _set_gap(self, motion: np.ndarray) -> float:
         """Gaps and the weighed rate into the solver's buffers; the smallest scaled gap of the surfaces."""
@@ -242,22 +261,36 @@ class FaceFilm:
 
     def _gradients(self) -> np.ndarray:
         """Gradients (6, 9) of N, X, Y and E to the motion, SI units; contact included."""
-        s, a, k, w = self.solver, self.annulus, self.scales, self.solver.work
-        fields, unknown = np.concatenate((a.moments * a.weight, self.rows)), w.order[: w.count]
-        rows = fields.reshape(6, -1)[:, unknown] * w.active.reshape(-1)[unknown]
-        y = s.system
-        if self.closure.clips and self.closure.line_in_cells:
-            rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
-        sens = s.sensitivities(s.adjoint(rows))
-        cell, face = a.link_gradients(s.pressure)
+        a = self.annulus
+        sens = self.solver.sensitivities(self._adjoint(np.concatenate((a.moments * a.weight, self.rows))))
+        cell, face = a.link_gradients(self.solver.pressure)
         sens.cell[3:] += cell
         sens.face[3:] += face
-        rate = sens.rate * a.square
+        self._to_true_gap(sens)
         if self.limited:
-            sens.cell[:] = sens.cell * self.slope + rate * self.bend
+            sens.cell[:3] += a.moments * a.weight * self.contact_slope / self.scales.pressure
+        return self._by_motion(sens)
+
+    def _adjoint(self, fields: np.ndarray) -> np.ndarray:
+        """Adjoint fields (k, n, m) of sums over the pressure with the weights ``fields`` (k, n, m)."""
+        s, w, y = self.solver, self.solver.work, self.solver.system
+        unknown = w.order[: w.count]
+        rows = fields.reshape(len(fields), -1)[:, unknown] * w.active.reshape(-1)[unknown]
+        if self.closure.clips and self.closure.line_in_cells:
+            rows_of_linear(y.linear_pressure, y.fixed, y.linked, y.cavity_pressure, w.active, w.number, rows)
+        return s.adjoint(rows)
+
+    def _to_true_gap(self, sens: Sensitivities) -> None:
+        """From the film's gap and weighed rate to those of the surfaces, in place."""
+        sens.rate *= self.annulus.square
+        if self.limited:
+            sens.cell[:] = sens.cell * self.slope + sens.rate * self.bend
             sens.face[:] *= self.face_slope
-            rate *= self.slope
-            sens.cell[:3] += a.moments * a.weight * self.contact_slope / k.pressure
+            sens.rate *= self.slope
+
+    def _by_motion(self, sens: Sensitivities) -> np.ndarray:
+        """Gradients (k, 9) to the motion, SI units."""
+        rate, k = sens.rate, self.scales
         pose = products(sens.cell, self.shape) + products(sens.face, self.link_shape)
         through, whole = products(rate, self.shape), rate.sum(axis=(1, 2))
         # the shift's rate -side u . b / 2 in scaled tilt and shift
@@ -266,4 +299,27 @@ class FaceFilm:
         scale = np.array([1.0, k.R, k.R]) / k.c
         return np.concatenate(
             (pose * scale, self.squeeze * through * scale, 0.5 * sens.speed[:, :1], shift / k.R), axis=1
+        )
+
+    def feed(self) -> FaceFeed:
+        """What the inner edge's pressure does in the last evaluation, and the motion to the flow through it."""
+        s, a, k = self.solver, self.annulus, self.scales
+        y, count = s.system, 7
+        # the flow is the sum of k_z (p_0 - p_1) + area dh/dt over the edge
+        links, fields = y.kz[:, 0], np.zeros((count, *a.grid.shape))
+        fields[:3], fields[3:6] = a.moments * a.weight, self.rows
+        edge = fields[:, :, 0].sum(axis=1)
+        fields[6, :, 1] = -links
+        edge[6] = links.sum()
+        lam = self._adjoint(fields)
+        by_pressure = (edge + lam[:, :, 1] @ links) / k.pressure
+        sens = s.sensitivities(lam[6:])
+        gap, slope = 0.5 * (s.H[:, 0] + s.H[:, 1]), None if s.flux is None else s.flux.gz_h[:, 0] / s.flux.gz[:, 0]
+        half = 0.5 * links * (s.pressure[:, 0] - s.pressure[:, 1]) * (3.0 / gap if slope is None else slope)
+        sens.cell[0, :, :2] += half[:, None]
+        sens.rate[0, :, 0] += s.squeeze * s.area[:, 0]
+        self._to_true_gap(sens)
+        flow = k.c * k.R**2
+        return FaceFeed(
+            self._weights() @ by_pressure[:6], flow * float(by_pressure[6]), flow * self._by_motion(sens)[0]
         )

@@ -8,4 +8,5 @@ hot_oil      temperatures that oil does not bear
 overload     pressures that no material bears
 advice       what to do about films that can't be evaluated
 position     journal's position under a load
+faces        films on the end faces beside it
 """

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import History, SolvedFilm
 from exudyn_ehd.status import FilmError, Status
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.balance.faces import FacesShare, FacesUnderLoad
 
 LARGEST_LOAD_STEPS = 100
 LARGEST_CREEP_STEPS = 300
@@ -47,6 +51,8 @@ class Carried:
         Force of the film and load, N.
     tangent : (6, 10) array
         d wrench / d motion at the temperature of this film.
+    faces : FacesShare or None
+        What films on the end faces add, which ``unbalance`` contains.
     """
 
     motion: np.ndarray
@@ -54,6 +60,13 @@ class Carried:
     film: SolvedFilm
     unbalance: np.ndarray
     tangent: np.ndarray
+    faces: FacesShare | None = None
+
+    @property
+    def slope(self) -> np.ndarray:
+        """Derivative (2, 2) of the unbalance to the position."""
+        own = self.tangent[:2, :2]
+        return own if self.faces is None else own + self.faces.slope
 
 
 class LoadSearch:
@@ -75,10 +88,19 @@ class LoadSearch:
         Who asks, for messages.
     effort : int
         Film solves after which it gives up.
+    faces : FacesUnderLoad, optional
+        Films on the end faces, which carry their part.
     """
 
-    def __init__(self, model: BearingModel, force: np.ndarray, where: str, effort: int = LARGEST_EFFORT) -> None:
-        self.model, self.force, self.where, self.effort = model, force, where, effort
+    def __init__(
+        self,
+        model: BearingModel,
+        force: np.ndarray,
+        where: str,
+        effort: int = LARGEST_EFFORT,
+        faces: FacesUnderLoad | None = None,
+    ) -> None:
+        self.model, self.force, self.where, self.effort, self.faces = model, force, where, effort, faces
         self.size, self.carried = float(np.hypot(*force)), 0.0
         self.count, self.first = 0, model.parts.evaluations.count
         self._history: History | None = None
@@ -225,10 +247,15 @@ class LoadSearch:
     def at(self, motion: np.ndarray) -> Carried:
         """The steady film at a motion (10,), which is kept."""
         self.count += 1
+        if self.faces is not None:
+            self.faces.settle(motion)
         evaluation, film = evaluate_at(self.model, motion, self.where, self._history)
         self._history = film.history
-        unbalance = evaluation.wrench[:2] + self.force
-        return Carried(motion.copy(), evaluation, film, unbalance, evaluation.steady_tangent())
+        unbalance, tangent, share = evaluation.wrench[:2] + self.force, evaluation.steady_tangent(), None
+        if self.faces is not None:
+            share = self.faces.share(motion, evaluation.wrench, tangent)
+            unbalance += share.evaluation.wrench[:2]
+        return Carried(motion.copy(), evaluation, film, unbalance, tangent, share)
 
     def _moved(self, place: Carried, step: np.ndarray) -> Carried:
         """The film a step (2,), shortened, on; in a flexible bore after the part of the step that leaves a film."""
@@ -267,7 +294,7 @@ class LoadSearch:
             if residuals[-1] <= tolerance or stuck or self._spent() or resistance > highest:
                 break
             try:
-                slope = resistance * np.eye(2) - place.tangent[:2, :2] - self._follows
+                slope = resistance * np.eye(2) - place.slope - self._follows
                 reached = self._moved(place, np.linalg.solve(slope, place.unbalance))
             except (np.linalg.LinAlgError, FilmError):  # a film that carries nothing, or no film whatever the step
                 if not resistance:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,12 +16,15 @@ from exudyn_ehd.joint.balance.film import evaluate_at
 from exudyn_ehd.joint.balance.position import LoadSearch, first_guess
 from exudyn_ehd.joint.model.build import build_study_model
 from exudyn_ehd.joint.model.fields import remembered
-from exudyn_ehd.joint.model.rigid import Evaluation
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.static.dynamic_stiffness import FilmResponse, threshold
 from exudyn_ehd.joint.static.steady import SPEEDS, SteadyResult, require_oil, result_at
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import InputError, require_number, require_size, require_type, require_vector
+
+if TYPE_CHECKING:
+    from exudyn_ehd.joint.balance.faces import FacesUnderLoad
 
 # Of the difference quotients between settled films, as a share of the minimum film thickness.
 SETTLED_STEP = 1e-4
@@ -59,7 +63,7 @@ class EquilibriumResult:
         grid most: on the default film 1 to 5 % at an eccentricity ratio of 0.7, 3 to 20 % from 0.76 on, with its
         rupture line on the vertices some 15 % and several times.
     residual : float
-        Largest component of film force + load, divided by the load.
+        Largest component of film force + load in x and y, divided by the load there.
     iterations : int
         Positions tried, each with a film solve; with ``thermal`` temperatures are tried along with them. A flexible
         bore settles at each of them.
@@ -150,7 +154,13 @@ class EquilibriumResult:
 
 
 def equilibrium(
-    bearing: JournalBearing, *, speed: float, load: tuple[float, float], tilt: tuple[float, float] = (0.0, 0.0)
+    bearing: JournalBearing,
+    *,
+    speed: float,
+    load: tuple[float, float],
+    tilt: tuple[float, float] = (0.0, 0.0),
+    axial_position: float = 0.0,
+    axial_load: float | None = None,
 ) -> EquilibriumResult:
     """Position in which the film carries a steady load on the journal, with stiffness, damping and whirl threshold.
 
@@ -165,6 +175,12 @@ def equilibrium(
     steady film, and the damping that of a slow motion (liner) or of a sudden velocity (flexible bore with
     `ElrodAdams`). An `ANCFBush` strains as in `steady`, and stiffness and damping are those about its deformed state.
 
+    Films on end faces (``bearing.thrust``) carry their part, in x and y too: position, stiffness and damping are those
+    of all films together, ``film.faces`` those on the faces alone. The journal is held along the axis, or finds the
+    place in which they carry an ``axial_load``; stiffness and damping hold for motions across the axis there, those
+    along it are ``film.faces.axial_stiffness`` and ``axial_damping``. The tilt is given: a journal that moments tilt
+    is one of a system, `SolveEquilibrium`.
+
     Where asperities touch or the film heats, several positions may carry a load. The search starts where a full film
     would and returns the one that it comes to; `stribeck` follows a branch over the speed.
 
@@ -178,6 +194,10 @@ def equilibrium(
         Force on the journal in x and y, N, not zero.
     tilt : (float, float)
         Slopes (bx, by), held fixed, rad.
+    axial_position : float
+        Of the journal between the faces of ``bearing.thrust``, m; 0 without them, and with ``axial_load``.
+    axial_load : float, optional
+        Force on the journal along z, N, which the faces carry; None: the journal is held at ``axial_position``.
 
     Returns
     -------
@@ -186,7 +206,8 @@ def equilibrium(
     Raises
     ------
     InputError
-        For a zero load or speed, or an inlet that a moving journal can't have.
+        For a zero load or speed, an inlet that a moving journal can't have, an axial load without faces or at a given
+        axial position.
     FilmError
         If no equilibrium was found.
 
@@ -205,6 +226,7 @@ def equilibrium(
     force = require_vector("equilibrium: load", load, 2, "N")
     omega = require_number("equilibrium: speed", speed, "rad/s")
     b = require_vector("equilibrium: tilt", tilt, 2, "rad")
+    place = require_number("equilibrium: axial_position", axial_position, "m")
     size = float(np.hypot(*force))
     if size == 0.0 or omega * bearing.journal_radius == 0.0:
         raise InputError("equilibrium: load and speed must not be zero: without them every or no position is one.")
@@ -214,9 +236,10 @@ def equilibrium(
         raise InputError("equilibrium: inlet=MaximumGap() is for prescribed positions (`steady`); use Periodic().")
     require_oil(bearing, "equilibrium")
     model = build_study_model(bearing, 0.0)
+    faces = _faces(model, place, axial_load, size)
     motion = np.array([0.0, 0.0, *b, 0.0, 0.0, 0.0, 0.0, omega, 0.0])
     motion[:2] = first_guess(bearing, omega, force, b)
-    search = LoadSearch(model, force, "equilibrium")
+    search = LoadSearch(model, force, "equilibrium", faces=faces)
     found = search.find(motion)
     evaluation, tangent = found.evaluation, found.evaluation.steady_tangent(found.tangent)
     response, frequency = None, 0.0
@@ -227,8 +250,14 @@ def equilibrium(
         K, C = response.at(frequency).real, response.at(frequency).imag / frequency
     else:
         K, C = -tangent[:2, :2], -_rate_tangent(evaluation, tangent)[:2, 4:6]
+        if found.faces is not None:
+            K, C = K - found.faces.tangent[:2, :2], C - found.faces.tangent[:2, 4:6]
         ratio, mass = whirl_threshold(K, C, abs(omega))
     film = result_at(model, found.motion, "equilibrium", found.film.history)
+    if found.faces is not None:
+        from exudyn_ehd.joint.static.thrust import result_of
+
+        film = replace(film, faces=result_of(found.faces.evaluation, found.faces.own, found.faces.fed))
     return EquilibriumResult(
         position=found.motion[:2],
         eccentricity_ratio=float(np.hypot(*found.motion[:2])) / bearing.radial_clearance,
@@ -244,6 +273,29 @@ def equilibrium(
         frequency=frequency,
         response=response,
     )
+
+
+def _faces(model: BearingModel, position: float, load: float | None, across: float) -> FacesUnderLoad | None:
+    """The films on end faces in the search, under a load of the size ``across`` in x and y, N."""
+    bearing = model.bearing
+    if load is not None:
+        load = require_number("equilibrium: axial_load", load, "N")
+    if bearing.thrust is None and position == 0.0 and not load:
+        return None
+    # imported here: a bearing without faces needs none of it
+    from exudyn_ehd.joint.balance.faces import FacesUnderLoad, FedFacesUnderLoad
+    from exudyn_ehd.joint.static.thrust import require_faces
+
+    require_faces(bearing, "equilibrium", axial_position=position, axial_load=load)
+    if load is not None and position != 0.0:
+        raise InputError(
+            f"equilibrium: axial_position = {position!r} m and axial_load = {load!r} N exclude each other: the journal "
+            "is held along the axis, or finds its place under a load; leave one out."
+        )
+    size = math.hypot(across, load or 0.0)
+    if bearing.thrust is not None and bearing.thrust.feed is not None:
+        return FedFacesUnderLoad(model, position, load, size, "equilibrium")
+    return FacesUnderLoad(bearing, position, load, size, "equilibrium")
 
 
 def _rate_tangent(evaluation: Evaluation, tangent: np.ndarray) -> np.ndarray:

@@ -87,8 +87,7 @@ class SteadyResult(Film, FilmPictures):
     bore_coordinates : (k,) array or None
         Of a flexible bore, m.
     faces : ThrustResult or None
-        Films on the end faces, which the other values leave out; None without ``bearing.thrust``, and in an
-        `equilibrium`.
+        Films on the end faces, which the other values leave out; None without ``bearing.thrust``.
     bearing : JournalBearing
     motion : (10,) array
         Of the journal, as in `exudyn_ehd.joint.solved_film`; with a flexible bore followed by its coordinates and
@@ -147,7 +146,8 @@ class SteadyResult(Film, FilmPictures):
         """
         open_ring = isinstance(self.bearing.inlet, MaximumGap)
         start = math.atan2(self.motion[1], self.motion[0]) + math.pi if open_ring else 0.0
-        model = build_study_model(replace(self.bearing, thrust=None), start)
+        ends = self.bearing.end_pressures if self.faces is None else self.faces.ends(self.bearing)
+        model = build_study_model(replace(self.bearing, thrust=None, end_pressures=ends), start)
         near = None if self.temperature is None else remembered(self)
         if model.flexible:
             model.evaluate(self.motion, near)  # the search for its shape starts from this film's
@@ -229,9 +229,10 @@ def steady(
     if bearing.thrust is None and place == 0.0:
         return result_at(model, motion, "steady")
     # imported here: a bearing without faces needs none of it
-    from exudyn_ehd.joint.static.thrust import thrust_result
+    from exudyn_ehd.joint.static.thrust import faces_at, require_faces
 
-    faces = thrust_result(bearing, motion, place, "steady")
+    require_faces(bearing, "steady", axial_position=place)
+    faces = faces_at(model, motion, place, "steady")
     return replace(result_at(model, motion, "steady"), faces=faces)
 
 
@@ -271,6 +272,17 @@ def _warn_of_strain(film: SolvedFilm, where: str) -> None:
         )
 
 
+def _leakage(film: SolvedFilm, leakage: float) -> float:
+    """Leakage of a film with faces, m3/s: of one that feeds them counted as they take it."""
+    thrust = film.parts.bearing.thrust
+    if thrust is None or thrust.feed is None:
+        return leakage
+    # imported here: others need none of it
+    from exudyn_ehd.joint.feed.ends import end_flows
+
+    return float(end_flows(film).sum())
+
+
 def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> SteadyResult:
     """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
     evaluation, film = evaluate_at(model, motion, where, near)
@@ -295,7 +307,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         friction_torque_unbroken=q["friction_torque_unbroken"],
         friction_torque_bush=q["friction_torque_bush"],
         power_loss=q["power_loss"],
-        leakage=q["leakage"],
+        leakage=q["leakage"] if model.bearing.thrust is None else _leakage(film, q["leakage"]),
         contact_load=q["contact_load"],
         supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],

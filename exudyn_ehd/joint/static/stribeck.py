@@ -91,7 +91,8 @@ def stribeck(bearing: JournalBearing, *, load: float, speeds: Sequence[float] | 
     Every speed is a steady state with its own temperature (``thermal``) and shape of the bore (``bush``). Sliding
     lasts, so that boundary friction acts in full: ``GreenwoodTripp.transition_speed``, by which that of a joint passes
     through rest, takes no part. Speeds are worked through from the fastest to the slowest, each starting from the
-    last position; where no position is found, speeds in between lead to it.
+    last position; where no position is found, speeds in between lead to it. Load and friction are those of the
+    journal's film, without films on end faces (``bearing.thrust``).
 
     Parameters
     ----------

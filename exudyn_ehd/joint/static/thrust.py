@@ -7,7 +7,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.joint.thrust import ADVICE, ThrustModel
+from exudyn_ehd.joint.balance.faces import require_fed
+from exudyn_ehd.joint.feed.films import FedFilms
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, no_film
 from exudyn_ehd.pictures.units import shown
 from exudyn_ehd.status import FilmError, InputError, Status
 
@@ -28,6 +31,11 @@ class ThrustResult:
         -dF/dz, N/m, and -dF/dw, N s/m.
     minimum_gap, peak_pressure, power_loss, contact_load : float
         m, Pa, W, N, of all faces.
+    edge_pressures : (k,) array
+        Pa at the inner radius of every face, the lower one first; with ``feed`` those that the flows have led to.
+    feed : (k,) array or None
+        m3/s that the journal's film gives every face: what that takes in, or less where the edge has the pressure of
+        the bearing's end; None without ``feed``.
     inflow, outflow : (k,) arrays
         m3/s that every face takes in at its inner radius, and gives away at its outer one.
     theta, r : (n,), (m,) arrays
@@ -35,7 +43,8 @@ class ThrustResult:
     pressure, gap : (k, n, m) arrays
         Of every face, Pa (gauge) and m; the lower one first.
     tangent : (6, 11) array
-        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units.
+        Derivative of force and moment to the motion (`exudyn_ehd.joint.solved_film`) and the axial position, SI units;
+        with ``feed`` the edges' pressures follow.
 
     Examples
     --------
@@ -58,6 +67,8 @@ class ThrustResult:
     peak_pressure: float
     power_loss: float
     contact_load: float
+    edge_pressures: np.ndarray
+    feed: np.ndarray | None
     inflow: np.ndarray
     outflow: np.ndarray
     theta: np.ndarray = field(repr=False)
@@ -66,6 +77,16 @@ class ThrustResult:
     gap: np.ndarray = field(repr=False)
     tangent: np.ndarray = field(repr=False)
 
+    def ends(self, bearing: JournalBearing) -> tuple[float, float]:
+        """Pressures at the ends of the journal's film, Pa."""
+        lower, upper = bearing.end_pressures
+        if self.feed is None or bearing.thrust is None:
+            return lower, upper
+        return (
+            float(self.edge_pressures[0]) if bearing.thrust.lower else lower,
+            float(self.edge_pressures[-1]) if bearing.thrust.upper else upper,
+        )
+
     def __repr__(self) -> str:
         gap, peak = shown("length", self.minimum_gap), shown("pressure", self.peak_pressure)
         force, loss = shown("force", self.axial_force), shown("power", self.power_loss)
@@ -73,26 +94,38 @@ class ThrustResult:
         return f"<ThrustResult: axial force {force}, {film}>"
 
 
-def thrust_result(bearing: JournalBearing, motion: np.ndarray, position: float, where: str) -> ThrustResult | None:
-    """The films on the faces; None for a bearing without them, of which the journal's position may be 0 only."""
-    if bearing.thrust is None:
-        if position != 0.0:
-            raise InputError(
-                f"{where}: axial_position is that between the faces of JournalBearing.thrust=ThrustFaces(...), which "
-                f"the bearing does not have, got {position!r} m; without faces nothing depends on it."
-            )
-        return None
-    model = ThrustModel(bearing)
-    found = model.evaluate(motion, position)
+def faces_at(model: BearingModel, motion: np.ndarray, position: float, where: str) -> ThrustResult:
+    """Films on the faces of a bearing with ``thrust`` at a motion (10,); `FilmError` if there are none.
+
+    The ends of the journal's film are brought to the pressures at which it feeds them.
+    """
+    assert model.bearing.thrust is not None
+    faces = ThrustModel(model.bearing)
+    if model.bearing.thrust.feed is not None:
+        fed = require_fed(FedFilms(model, faces), motion, position, where)
+        return result_of(fed.faces, fed.tangents()[1], fed.given)
+    found = faces.evaluate(motion, position)
     if found.status is not Status.CONVERGED:
-        gap = min(state.minimum_gap for state in found.states)
-        raise FilmError(
-            f"{where}: {found.status.name} on a thrust face at the axial position {position:.4g} m, tilt = "
-            f"({motion[2]:.3g}, {motion[3]:.3g}), smallest gap {gap:.3g} m: {ADVICE}"
+        raise FilmError(no_film(found, where))
+    return result_of(found, found.tangent())
+
+
+def require_faces(bearing: JournalBearing, where: str, **arguments: float | None) -> None:
+    """Refuse arguments that only faces give a meaning to, of a bearing without them."""
+    given = [f"{name} = {value!r}" for name, value in arguments.items() if value]
+    if bearing.thrust is None and given:
+        raise InputError(
+            f"{where}: {', '.join(given)}: axial_position is that between the faces of "
+            "JournalBearing.thrust=ThrustFaces(...), which the bearing does not have; without faces nothing depends on "
+            "it, and nothing carries along the axis."
         )
-    tangent, values, first = found.tangent(), found.quantities(), model.faces[0]
+
+
+def result_of(found: ThrustEvaluation, tangent: np.ndarray, fed: np.ndarray | None = None) -> ThrustResult:
+    """The result of the last evaluation of its model, with its tangent (6, 11), and the flows (k,) that feed it."""
+    model, values, first = found.model, found.quantities(), found.model.faces[0]
     return ThrustResult(
-        axial_position=position,
+        axial_position=found.position,
         force=found.wrench[:3],
         moment=found.wrench[3:],
         axial_force=float(found.wrench[2]),
@@ -103,6 +136,8 @@ def thrust_result(bearing: JournalBearing, motion: np.ndarray, position: float, 
         peak_pressure=values["thrust_peak_pressure"],
         power_loss=values["thrust_power_loss"],
         contact_load=values["thrust_contact_load"],
+        edge_pressures=np.array([face.known[0] * face.scales.pressure for face in model.faces]),
+        feed=fed,
         inflow=np.array([state.inflow for state in found.states]),
         outflow=np.array([state.outflow for state in found.states]),
         theta=first.annulus.grid.x,

@@ -31,6 +31,7 @@ from exudyn_ehd.joint.tangent.drag import (
     drag_by_deflection,
     pulls_unevenly,
 )
+from exudyn_ehd.joint.tangent.fields import add_by_motion
 from exudyn_ehd.joint.tangent.line import by_fills, true_fills, true_line
 from exudyn_ehd.joint.tangent.plain import is_plain, plain_tangent
 
@@ -54,7 +55,7 @@ def wrench_tangent(film: SolvedFilm, slow_motion: bool = False, gradient: np.nda
     elif gradient is None:
         gradient = film_gradient(film, slow_motion)
     ds, dc, extra = _integral_gradients(film, gradient)
-    ends = _end_gradient(film) if _film_gap_slope(film) is not None and any(p.bearing.end_pressures) else _NO_ENDS
+    ends = _end_gradient(film) if _film_gap_slope(film) is not None and scales.ends.any() else _NO_ENDS
     out = np.empty((6, MOTION_SIZE))
     wrench_gradient(
         ds,
@@ -156,21 +157,11 @@ def gap_derivatives(film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, np.ndarra
 
 def field_gradient(film: SolvedFilm, lam: np.ndarray, gradient: np.ndarray, slow_motion: bool = False) -> Sensitivities:
     """Gradients (k, 10) of adjoint functionals lam (k, n, m) through fields of sensitivities, for any film."""
-    p, z = film.parts, film.grid.z
+    p = film.parts
     sens = p.solver.sensitivities(lam)
-    f = film.limited
-    if f is not None:
-        # to the film's gap -> to the true gap
-        sens.face[:] *= f.face_slope
-        sens.cell[:] = sens.cell * f.slope + sens.rate * f.bend
-        sens.rate[:] *= f.slope
-    pose, rates = np.zeros((lam.shape[0], 4)), np.zeros((lam.shape[0], 4))
-    contract_pose(sens.cell, p.directions.cos_x, p.directions.sin_x, z, pose)
-    contract_pose(sens.face, p.directions.cos_f, p.directions.sin_f, z, pose)
-    contract_pose(sens.rate, p.directions.cos_x, p.directions.sin_x, z, rates)
+    add_by_motion(film, sens, gradient)
     if slow_motion and p.liner is not None:
-        rates += _following_deflection(film, p.liner, p.liner.elements.deflection_weights(lam))
-    gradient[:, :4], gradient[:, 4:8], gradient[:, 8:] = pose, rates, sens.speed
+        gradient[:, 4:8] += _following_deflection(film, p.liner, p.liner.elements.deflection_weights(lam))
     return sens
 
 

@@ -129,6 +129,21 @@ def test_journal_floats_where_steady_says():
 
 
 @pytest.mark.slow
+def test_placed_in_equilibrium():
+    """Between the faces where it stands along the axis; their share keeps the journal of a heavy rotor there."""
+    bearing, load = _bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), (100.0, -800.0)
+    place = ehd.equilibrium(bearing, speed=200.0, load=load, axial_load=1500.0).film.faces.axial_position
+    mbs, joint, _ = _rotor(bearing, mass=300.0, load=(*load, 1500.0), start=place)
+    found = joint.place_in_equilibrium(load=load)
+    assert found.film.faces.axial_position == pytest.approx(place, rel=1e-12)
+    _run(mbs, 1e-3, 10)
+    history = joint.history
+    assert np.abs(history.eccentricity - found.position).max() < 1e-4 * 50e-6
+    # the spin falls by 1e-4
+    assert np.abs(history.axial_position - place).max() < 1e-4 * C
+
+
+@pytest.mark.slow
 def test_axial_damping():
     """A free rotor without pads loses its axial speed as two squeezed washers take it: v = v0 exp(-D t / m)."""
     s = RI / RO
@@ -260,6 +275,8 @@ def test_without_faces_nothing_changes():
 
 
 def test_refused():
+    with pytest.raises(ehd.InputError, match=r"feed=JournalLeakage\(\) is for ehd\.steady and ehd\.equilibrium"):
+        _rotor(_bearing(feed=ehd.JournalLeakage()))
     with pytest.raises(ehd.InputError, match=r"outside the thrust faces of 'main'.*axial position 5e-05"):
         _rotor(_bearing(), start=5e-5)
     mbs, _, _ = _rotor(_bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), load=(0, 0, 1e9))

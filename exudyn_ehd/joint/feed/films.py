@@ -1,0 +1,170 @@
+"""The journal's film and those on its end faces at the edge pressures at which their flows are the same.
+
+For the edges with a face, p_0 <= p the pressures, r = Q_face(p) - Q_film(p) what faces take more than the film gives:
+
+    p >= p_0,    r >= 0,    (p - p_0) r = 0.
+
+A higher pressure gives a face more, and lets less leave the film at its own end and more at the other: dr/dp is an
+M-matrix, and there is one solution. Newton's method finds it on the edges with p > p_0 or r < 0; a step that does not
+bring it nearer is halved. By the implicit function theorem the pressures of the balanced edges b follow the state
+x = (motion, axial position) as
+
+    dp_b/dx = -(dr_b/dp_b)^-1 dr_b/dx.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from exudyn_ehd.joint.feed.ends import end_derivatives, end_flows
+from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, about_origin, face_motion_map
+from exudyn_ehd.status import Status
+
+LARGEST_STEPS, HALVINGS = 60, 8
+# Flow that is left, over the flows, and over that which a change of the pressure by a Pascal makes.
+FLOW_TOLERANCE, PRESSURE_TOLERANCE = 1e-12, 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class FedEvaluation:
+    """Both films at one state.
+
+    Attributes
+    ----------
+    journal, faces : Evaluation, ThrustEvaluation
+        The last of their models.
+    pressures : (2,) array
+        At lower and upper end, Pa.
+    taken, given : (k,) arrays
+        Flows into every face and out of the film at its end, m3/s.
+    balanced : (k,) bool array
+        Whether they are to be the same.
+    settled : bool
+        Whether they are.
+    """
+
+    journal: Evaluation
+    faces: ThrustEvaluation
+    pressures: np.ndarray
+    taken: np.ndarray
+    given: np.ndarray
+    balanced: np.ndarray
+    films: FedFilms
+    settled: bool = False
+
+    @property
+    def found(self) -> bool:
+        """Whether both films were found at these pressures."""
+        return self.journal.status is Status.CONVERGED is self.faces.status
+
+    def tangents(self) -> tuple[np.ndarray, np.ndarray]:
+        """d wrench / d (motion, axial position) (6, 11) of the journal's film and of the faces, with their feed."""
+        to = self.derivatives()
+        journal = np.pad(self.journal.tangent(), ((0, 0), (0, 1)))
+        faces, b = self.faces.tangent(), np.flatnonzero(self.balanced)
+        if b.size:
+            followed = -np.linalg.solve(to.slope[np.ix_(b, b)], to.by_state[b])
+            journal += to.journal[:, b] @ followed
+            faces += to.faces[:, b] @ followed
+        return journal, faces
+
+    def derivatives(self) -> EdgeDerivatives:
+        """Derivatives about the edges; of the last evaluation only."""
+        film, at, motion = self.journal.film, self.films.ends, self.faces.motion
+        assert film is not None
+        ends, model = end_derivatives(film), self.faces.model
+        heights, feeds = [model.height(face) for face in model.faces], [face.feed() for face in model.faces]
+        both = list(zip(feeds, heights, strict=True))
+        taken = np.array([feed.by_motion @ face_motion_map(motion, height) for feed, height in both])
+        return EdgeDerivatives(
+            ends.wrench[:, at],
+            np.stack([about_origin(feed.wrench, height) for feed, height in both], axis=1),
+            np.diag([feed.flow for feed in feeds]) - ends.flows[np.ix_(at, at)],
+            taken - np.pad(ends.by_motion[at], ((0, 0), (0, 1))),
+        )
+
+
+class EdgeDerivatives(NamedTuple):
+    """Derivatives about the edges of k faces, SI units.
+
+    journal, faces : (6, k) arrays, of both wrenches to the edge pressures
+    slope : (k, k) array, of r to these
+    by_state : (k, 11) array, of r to motion and axial position
+    """
+
+    journal: np.ndarray
+    faces: np.ndarray
+    slope: np.ndarray
+    by_state: np.ndarray
+
+
+class FedFilms:
+    """A journal's film that feeds the films on its end faces.
+
+    Parameters
+    ----------
+    model : BearingModel
+        Of the journal's film; its ends have other pressures from here on.
+    faces : ThrustModel
+    """
+
+    def __init__(self, model: BearingModel, faces: ThrustModel) -> None:
+        self.model, self.faces = model, faces
+        self.ends = np.array([0 if face.side < 0 else 1 for face in faces.faces])
+        self.lowest = np.array(model.bearing.end_pressures)
+        self._pressures = self.lowest.copy()
+
+    def evaluate(self, motion: np.ndarray, position: float) -> FedEvaluation:
+        """The films at a motion (10,) that lasts and an axial position."""
+        found = self._at(motion, position, np.maximum(self._pressures, self.lowest))
+        if not found.found:
+            found = self._at(motion, position, self.lowest)
+        for _ in range(LARGEST_STEPS):
+            if not found.found:
+                break
+            slope = found.derivatives().slope
+            unit, missed, b = np.diag(slope), found.taken - found.given, np.flatnonzero(found.balanced)
+            left = FLOW_TOLERANCE * (np.abs(found.taken) + np.abs(found.given)) + PRESSURE_TOLERANCE * unit
+            if np.all(np.abs(missed[b]) <= left[b]):
+                self._pressures = found.pressures
+                return replace(found, settled=True)
+            step = np.zeros(2)
+            step[self.ends[b]] = -np.linalg.solve(slope[np.ix_(b, b)], missed[b])
+            found = self._nearer(found, step, unit)
+        return found
+
+    def _nearer(self, found: FedEvaluation, step: np.ndarray, unit: np.ndarray) -> FedEvaluation:
+        """The films a step (2,) of the pressures on, halved until it leaves less of `evaluate`'s conditions."""
+        motion, position = found.faces.motion, found.faces.position
+        for _ in range(HALVINGS):
+            near = self._at(motion, position, np.maximum(found.pressures + step, self.lowest))
+            if near.found and self._error(near, unit) < self._error(found, unit):
+                break
+            step = 0.5 * step
+        return near
+
+    def _error(self, found: FedEvaluation, unit: np.ndarray) -> float:
+        """The largest of what is left of the conditions, Pa."""
+        above = (found.pressures - self.lowest)[self.ends]
+        return float(np.abs(np.minimum(above, (found.taken - found.given) / unit)).max())
+
+    def _at(self, motion: np.ndarray, position: float, pressures: np.ndarray) -> FedEvaluation:
+        """The films at given pressures (2,) of the ends."""
+        self.model.set_end_pressures(pressures)
+        for face, end in zip(self.faces.faces, self.ends, strict=True):
+            face.set_inner_pressure(float(pressures[end]))
+        journal, faces = self.model.evaluate_steady(motion), self.faces.evaluate(motion, position)
+        taken, given, balanced = (
+            np.zeros(self.ends.size),
+            np.zeros(self.ends.size),
+            np.zeros(self.ends.size, dtype=bool),
+        )
+        if journal.film is not None and faces.status is Status.CONVERGED:
+            taken = np.array([state.inflow for state in faces.states])
+            given = end_flows(journal.film)[self.ends]
+            balanced = (pressures > self.lowest)[self.ends] | (taken < given)
+        return FedEvaluation(journal, faces, pressures, taken, given, balanced, self)

@@ -1,0 +1,66 @@
+"""Flows out of the ends of a journal's film against fine grids, and what cavities at an end take."""
+
+import math
+
+import numpy as np
+import pytest
+
+import exudyn_ehd as ehd
+from exudyn_ehd.joint.feed.ends import end_flows
+from exudyn_ehd.joint.model.build import build_model
+
+R, C = 0.025, 25e-6
+
+
+def _film(ratio, eccentricity, pressure, grid, supply):
+    bearing = ehd.JournalBearing(
+        journal_radius=R,
+        length=2 * R * ratio,
+        radial_clearance=C,
+        lubricant=ehd.Lubricant(viscosity=0.02),
+        end_pressures=(pressure, pressure),
+        film=grid,
+        supply=supply,
+    )
+    return build_model(bearing).evaluate(np.array([eccentricity * C, 0, 0, 0, 0, 0, 0, 0, 300.0, 0]))
+
+
+def _supply(kind, ratio):
+    if kind == "groove around":
+        return (ehd.CircumferentialGroove(width=0.2 * ratio * R, pressure=2e5),)
+    return (ehd.AxialGroove(angle=0.5 * math.pi, width_angle=0.5, pressure=1e5),) if kind == "axial groove" else ()
+
+
+FINE = ehd.FiniteLength(n_theta=384, n_z=40)
+CASES = [
+    pytest.param(ratio, kind, error, marks=pytest.mark.slow)
+    for ratio in (0.25, 1.0)
+    for kind, error in (("groove around", 0.02), ("axial groove", 0.04), ("none", 0.02))
+]
+
+
+@pytest.mark.parametrize(("ratio", "kind", "error"), CASES)
+def test_against_fine_grids(ratio, kind, error):
+    """The default grid, from an end with hardly more than the cavity's pressure to one with more than the supply's."""
+    supply, worst = _supply(kind, ratio), []
+    for eccentricity in (0.2, 0.5, 0.8, 0.9):
+        size = _film(ratio, eccentricity, 0.0, FINE, supply).quantities()["leakage"]
+        for pressure in (1e2, 1e4, 1e5, 5e5):
+            coarse, fine = (
+                end_flows(_film(ratio, eccentricity, pressure, grid, supply).film).sum()
+                for grid in (ehd.FiniteLength(), FINE)
+            )
+            worst.append(abs(coarse - fine) / size)
+    assert max(worst) < error
+
+
+def test_from_the_cavity_s_pressure_on_it_is_the_leakage():
+    """At an end with that pressure what leaves a film with `SwiftStieber` is its leakage; above, flows are steady."""
+    supply, grid = _supply("groove around", 1.0), ehd.FiniteLength(n_theta=48, n_z=6)
+    found = _film(1.0, 0.7, 0.0, grid, supply)
+    assert end_flows(found.film).sum() == pytest.approx(found.quantities()["leakage"], rel=1e-12)
+    pressures = np.concatenate(([0.0, 1e-6], np.geomspace(1.0, 3e5, 400)))
+    flows = [end_flows(_film(1.0, 0.7, p, grid, supply).film).sum() for p in pressures]
+    change = np.diff(flows)
+    assert np.all(change < 0.0)
+    assert np.abs(change).max() < 0.02 * flows[0]
