@@ -92,6 +92,7 @@ _LAZY = {
         "coupling.api": "CreateLubricatedJoint Free Held",
         "coupling.bush.object": "CarriedOuter CreateFlexibleBush FixedOuter FlexibleBush FreeOuter Support",
         "coupling.handle": "LubricatedJoint",
+        "coupling.items.own_equations": "ReplaceReducedBody",
         "coupling.record.history": "JointHistory Quantity",
         "coupling.record.on_disk": "File",
         "coupling.record.record": "load_history",
@@ -137,6 +138,7 @@ if TYPE_CHECKING:
         Support,
     )
     from exudyn_ehd.coupling.handle import LubricatedJoint
+    from exudyn_ehd.coupling.items.own_equations import ReplaceReducedBody
     from exudyn_ehd.coupling.record.history import JointHistory, Quantity
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.record import load_history
@@ -270,6 +272,7 @@ __all__ = [
     "RegularisedWall",
     "ReplaceJoint",
     "ReplaceJoints",
+    "ReplaceReducedBody",
     "Revolutions",
     "ReynoldsTemperature",
     "RingingWarning",
