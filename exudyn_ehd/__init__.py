@@ -92,13 +92,12 @@ _LAZY = {
         "coupling.api": "CreateLubricatedJoint Free Held",
         "coupling.bush.object": "CarriedOuter CreateFlexibleBush FixedOuter FlexibleBush FreeOuter Support",
         "coupling.handle": "LubricatedJoint",
-        "coupling.items.own_equations": "ReplaceReducedBody",
         "coupling.record.history": "JointHistory Quantity",
         "coupling.record.on_disk": "File",
         "coupling.record.record": "load_history",
         "coupling.record.revolutions": "Revolutions",
         "coupling.record.thinning": "Every Period",
-        "coupling.replace": "ReplaceJoint ReplaceJoints",
+        "coupling.replace": "ReplaceJoint ReplaceJoints ReplaceReducedBody",
         "coupling.rotor.api": "SolveEquilibrium SolveThreshold stability_map",
         "coupling.rotor.result": "RotorResult",
         "coupling.run.joint_state": "JointState",
@@ -138,13 +137,12 @@ if TYPE_CHECKING:
         Support,
     )
     from exudyn_ehd.coupling.handle import LubricatedJoint
-    from exudyn_ehd.coupling.items.own_equations import ReplaceReducedBody
     from exudyn_ehd.coupling.record.history import JointHistory, Quantity
     from exudyn_ehd.coupling.record.on_disk import File
     from exudyn_ehd.coupling.record.record import load_history
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.record.thinning import Every, Period
-    from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
+    from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints, ReplaceReducedBody
     from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
     from exudyn_ehd.coupling.rotor.result import RotorResult
     from exudyn_ehd.coupling.run.joint_state import JointState

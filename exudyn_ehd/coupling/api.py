@@ -241,10 +241,10 @@ def CreateLubricatedJoint(
     housing, journal = resolve_pair(mbs, itemNumbers)
     rotation = joint_rotation(housing, axis, rotationMatrixAxes, useGlobalFrame)
     points = joint_points(housing, journal, position, useGlobalFrame)
-    held, housing, journal = _on_its_bodies(mbs, bearing, (housing, journal), points, rotation)
+    bearing, housing, journal = _on_its_bodies(mbs, bearing, (housing, journal), points, rotation)
     joint = attach(
         mbs,
-        _model_of(held, housing, journal),
+        _model_of(bearing, housing, journal),
         housing,
         journal,
         points,
@@ -256,12 +256,6 @@ def CreateLubricatedJoint(
         color=color,
         gravity=gravity,
     )
-    for surface, item in ((bearing.bush, housing), (bearing.journal, journal)):
-        if item.body is not None and getattr(surface, "exact_jacobian", False):
-            # imported here: no other body has such equations
-            from exudyn_ehd.coupling.items.own_equations import take_over
-
-            take_over(mbs, item.body)
     _equip(joint, stepControl, record)
     if returnDict:
         return {"joint": joint, "objectNumber": joint.objectNumber, "constraintNumber": joint.constraintNumber}

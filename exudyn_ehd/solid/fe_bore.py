@@ -120,7 +120,7 @@ class ReducedBore:
         Of the modes, with the body's frame held.
     radius, length : float
         Of the film's area [m].
-    settled : bool
+    settled, exact_jacobian : bool
         As in `FEBore`.
     """
 
@@ -130,6 +130,7 @@ class ReducedBore:
     radius: float
     length: float
     settled: bool = True
+    exact_jacobian: bool = True
     rigid: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:

@@ -1,4 +1,4 @@
-"""`ReplaceReducedBody`: the equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian.
+"""The equations of a user's ObjectFFRFreducedOrder, with an exact Jacobian.
 
 Exudyn differentiates that object by differences, by each of its coordinates and rates. Without its own terms
 (``computeFFRFterms=False``) it has neither forces nor mass, and its differences cost next to nothing, while its
@@ -12,80 +12,15 @@ import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import Index, ObjectIndex, require_system
+from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.items.bodies import NODE_KINDS
 from exudyn_ehd.coupling.kinematics.floating_body import BodyIntegrals, FloatingBody
 from exudyn_ehd.coupling.kinematics.sides import NodeSide
 from exudyn_ehd.status import InputError
 
-_WHERE = "ReplaceReducedBody"
 
-
-def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
-    """Give an ObjectFFRFreducedOrder its exact Jacobian; before Assemble.
-
-    Exudyn differentiates the body numerically, which with many modes takes most of a step: at every Jacobian, two
-    evaluations of all its forces for each coordinate. Here an ObjectGenericODE2 beside it has the same equations with
-    their exact derivatives, and the body keeps all else: markers, sensors, loads, drawing. The body's matrices are read
-    anew by every run. Bodies of an `FEBore` or `FEJournal` come to it by themselves.
-
-    Exudyn's own equations lack a term on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``): the angular
-    acceleration at constant rates of the angles. It is zero while only one of the angles changes, as in a planar
-    mechanism; in a tumbling body Exudyn's loses its angular momentum, where this one keeps it. On the other types of
-    nodes both agree to rounding.
-
-    Parameters
-    ----------
-    mbs : exudyn.MainSystem
-    objectNumber : exudyn.ObjectIndex
-        An ObjectFFRFreducedOrder, as ``ObjectFFRFreducedOrderInterface.AddObjectFFRFreducedOrder`` makes it.
-
-    Returns
-    -------
-    exudyn.ObjectIndex
-        The object with the equations.
-
-    Raises
-    ------
-    InputError
-        For another object, one whose equations are user functions or replaced already, and an assembled system.
-
-    Examples
-    --------
-    After the example of `mesh_from_fem`:
-
-    >>> from exudyn.FEM import ObjectFFRFreducedOrderInterface
-    >>> fem.ComputeHurtyCraigBamptonModes([list(mesh.outer.nodes)], 4)
-    >>> mbs = exu.SystemContainer().AddSystem()
-    >>> parts = ObjectFFRFreducedOrderInterface(fem).AddObjectFFRFreducedOrder(mbs)
-    >>> equations = ehd.ReplaceReducedBody(mbs, parts["oFFRFreducedOrder"])
-    """
-    require_system(_WHERE, mbs)
-    if mbs.systemIsConsistent:
-        raise InputError(f"{_WHERE}: the system is assembled already; call it before mbs.Assemble().")
-    if not isinstance(objectNumber, ObjectIndex):
-        raise InputError(f"{_WHERE}.objectNumber must be an exudyn.ObjectIndex, got {objectNumber!r}.")
-    data = mbs.GetObject(objectNumber)
-    if data["objectType"] != "FFRFreducedOrder":
-        raise InputError(
-            f"{_WHERE}.objectNumber must be an ObjectFFRFreducedOrder, got object {int(objectNumber)} of type "
-            f"{data['objectType']}."
-        )
-    if not data["computeFFRFterms"]:
-        raise InputError(
-            f"{_WHERE}: the equations of object {int(objectNumber)} are those of user functions, or replaced already; "
-            "leave it as it is."
-        )
-    return _replaced(mbs, objectNumber)
-
-
-def take_over(mbs: exu.MainSystem, body: Index) -> None:
-    """`ReplaceReducedBody` for a body under a film, unless its equations are replaced or user functions already."""
-    if mbs.GetObjectParameter(body, "computeFFRFterms"):
-        _replaced(mbs, body)
-
-
-def _replaced(mbs: exu.MainSystem, body: Index) -> Index:
+def own_equations(mbs: exu.MainSystem, body: Index) -> Index:
+    """Move the equations of a body to an object of their own, before Assemble; returns that object."""
     equations = ReducedBody(mbs, body)
     mbs.SetObjectParameter(body, "computeFFRFterms", False)
     return mbs.AddObject(
@@ -112,7 +47,8 @@ class ReducedBody:
 
     def __init__(self, mbs: exu.MainSystem, body: Index) -> None:
         self.body = ObjectIndex(int(body))
-        node = mbs.GetObjectParameter(body, "nodeNumbers")[0]
+        self.nodes = _nodes(mbs, body)
+        node = NodeIndex(self.nodes[0])
         values = mbs.GetNode(node)
         reference = np.array(values["referenceCoordinates"], dtype=float)
         self.frame = NodeSide(NODE_KINDS[values["nodeType"]], node, reference, np.zeros(3), np.eye(3))
@@ -138,9 +74,22 @@ class ReducedBody:
         solvers = stored.get("dynamicSolver"), stored.get("staticSolver")
         at_work = any(solver is not None and not solver.output.finishedSuccessfully for solver in solvers)
         if not at_work or solvers[0] is not self._solvers[0] or solvers[1] is not self._solvers[1]:
+            if _nodes(mbs, self.body) != self.nodes:
+                raise InputError(
+                    f"ReplaceReducedBody: items of the system were deleted afterwards, and the body, object "
+                    f"{int(self.body)} on nodes {self.nodes}, has another number; delete items before."
+                )
             self._solvers = solvers
             self._body = FloatingBody(self.frame, body_integrals(mbs, self.body))
         return self._body
+
+
+def _nodes(mbs: exu.MainSystem, body: Index) -> list[int]:
+    """Nodes of a body, without its mesh; none if its number has become that of nothing with nodes."""
+    try:
+        return [int(node) for node in mbs.GetObjectParameter(body, "nodeNumbers")]
+    except (exu.ExudynError, RuntimeError):
+        return []
 
 
 def body_integrals(mbs: exu.MainSystem, body: Index) -> BodyIntegrals:

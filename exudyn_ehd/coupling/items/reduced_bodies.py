@@ -111,6 +111,7 @@ def _find_surface(
         radius=radius,
         length=length,
         settled=surface.settled,
+        exact_jacobian=surface.exact_jacobian,
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
