@@ -185,8 +185,8 @@ def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
 
     Exudyn's own equations lack a term on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``): the angular
     acceleration at constant rates of the angles. It is zero while only one of the angles changes, as in a planar
-    mechanism; in a tumbling body Exudyn's loses its angular momentum, where this one keeps it. On the other types of
-    nodes both agree to rounding.
+    mechanism; a tumbling body of Exudyn does not keep its angular momentum, where this one does. On the other types
+    of nodes both agree to rounding.
 
     Parameters
     ----------

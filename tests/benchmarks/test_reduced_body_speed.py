@@ -1,6 +1,6 @@
 """Time per step of a joint on a reduced finite-element body, over that on a rigid one, in turns.
 
-Without its exact Jacobian, the body is differentiated numerically by Exudyn.
+Without its exact Jacobian the body is differentiated by Exudyn. What is left is the film on the modes.
 """
 
 from __future__ import annotations
@@ -67,9 +67,10 @@ def run(modes, fem, *, exact=True):
     return (time.process_time() - start) / STEPS
 
 
-@pytest.mark.parametrize(("modes", "limit", "gain"), [(8, 3.0, 0.8), (20, 3.2, 1.1), (40, 3.8, 2.5)])
+@pytest.mark.parametrize(("modes", "limit", "gain"), [(8, 3.0, 0.85), (20, 3.5, 1.1), (40, 4.2, 2.0)])
 def test_reduced_body(modes, limit, gain):
-    """X."""
+    """2.3, 2.8 and 3.2 times the rigid one's time, and 2.4, 3.6 and 8.9 times by differences; a `ModalBush` takes as
+    long."""
     mesh = CYLINDER.mesh()
     fem = fem_of(mesh, STEEL)
     fem.ComputeHurtyCraigBamptonModes([list(mesh.outer.nodes)], modes)
@@ -79,6 +80,8 @@ def test_reduced_body(modes, limit, gain):
         best["exact"] = min(best["exact"], run(modes, fem))
         best["differences"] = min(best["differences"], run(modes, fem, exact=False))
     exact, differences = (best[k] / best["rigid"] for k in ("exact", "differences"))
-    print(f"{1e3 * best['rigid']:.2f} ms a step on a rigid body, {exact:.2f} and {differences:.2f} times that on {modes} modes")
+    print(
+        f"{1e3 * best['rigid']:.2f} ms a step on a rigid body, {modes} modes: {exact:.2f} and {differences:.2f} times"
+    )
     assert exact < limit
     assert differences > gain * exact
