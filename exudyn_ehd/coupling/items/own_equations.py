@@ -47,7 +47,7 @@ class ReducedBody:
 
     def __init__(self, mbs: exu.MainSystem, body: Index) -> None:
         self.body = ObjectIndex(int(body))
-        self.nodes = _nodes(mbs, body)
+        self.nodes = [int(node) for node in mbs.GetObjectParameter(body, "nodeNumbers")]
         node = NodeIndex(self.nodes[0])
         values = mbs.GetNode(node)
         reference = np.array(values["referenceCoordinates"], dtype=float)
@@ -74,22 +74,22 @@ class ReducedBody:
         solvers = stored.get("dynamicSolver"), stored.get("staticSolver")
         at_work = any(solver is not None and not solver.output.finishedSuccessfully for solver in solvers)
         if not at_work or solvers[0] is not self._solvers[0] or solvers[1] is not self._solvers[1]:
-            if _nodes(mbs, self.body) != self.nodes:
+            if not self._is_there(mbs):
                 raise InputError(
-                    f"ReplaceReducedBody: items of the system were deleted afterwards, and the body, object "
-                    f"{int(self.body)} on nodes {self.nodes}, has another number; delete items before."
+                    f"ReplaceReducedBody: the body, object {int(self.body)} on nodes {self.nodes}, has another number "
+                    "since items of the system were deleted, or has its own terms again; delete items before, and "
+                    "leave computeFFRFterms."
                 )
             self._solvers = solvers
             self._body = FloatingBody(self.frame, body_integrals(mbs, self.body))
         return self._body
 
-
-def _nodes(mbs: exu.MainSystem, body: Index) -> list[int]:
-    """Nodes of a body, without its mesh; none if its number has become that of nothing with nodes."""
-    try:
-        return [int(node) for node in mbs.GetObjectParameter(body, "nodeNumbers")]
-    except (exu.ExudynError, RuntimeError):
-        return []
+    def _is_there(self, mbs: exu.MainSystem) -> bool:
+        try:
+            nodes = [int(node) for node in mbs.GetObjectParameter(self.body, "nodeNumbers")]
+            return nodes == self.nodes and not mbs.GetObjectParameter(self.body, "computeFFRFterms")
+        except exu.ExudynError:
+            return False
 
 
 def body_integrals(mbs: exu.MainSystem, body: Index) -> BodyIntegrals:

@@ -13,6 +13,7 @@ from exudyn.advancedUtilities import NumericalJacobian
 from exudyn.FEM import ObjectFFRFreducedOrderInterface
 
 import exudyn_ehd as ehd
+from exudyn_ehd.coupling.items.object_mass import object_mass
 from exudyn_ehd.status import InputError
 from tests.finite_elements import fem_of
 
@@ -219,6 +220,7 @@ def test_other_solvers_find_what_they_found(measured):
 
 def test_matrices_are_read_anew():
     mbs = scenes.new_system()
+    ground = mbs.CreateGround()
     parts, item = add(mbs, "Rxyz", own=True)
     mbs.Assemble()
     body, q = parts["oFFRFreducedOrder"], np.zeros(12)
@@ -232,6 +234,12 @@ def test_matrices_are_read_anew():
     stiffness.SetWithDenseMatrix(2.0 * old, useDenseMatrix=True)
     mbs.SetObjectParameter(body, "stiffnessMatrixReduced", stiffness)
     np.testing.assert_allclose(mbs.ComputeItem(item, KIND.ODE2LHS), 2.0 * before, rtol=1e-14)
+    # a bush with mass asks for that of what carries it
+    np.testing.assert_array_equal(object_mass(mbs, item), mbs.ComputeItem(item, KIND.MassMatrix))
+    mbs.DeleteObject(ground)
+    mbs.Assemble()
+    with pytest.raises(exu.ExudynError, match="delete items before"):
+        mbs.ComputeItem(exu.ObjectIndex(int(item) - 1), KIND.ODE2LHS)
 
 
 def test_other_objects_are_refused():
