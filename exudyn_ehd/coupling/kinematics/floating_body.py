@@ -203,7 +203,7 @@ def _mass_matrix(of, frame, at, out):
 
 
 @njit(cache=True)
-def _motion(of, at, bryan, q_t):
+def _motion(S, at, bryan, q_t):
     """Tuples w, alpha and S z_t; fills ``sum z_t,i R_i^T``."""
     n, k = at.G.shape[1], at.R.shape[0]
     for i in range(3):
@@ -218,7 +218,7 @@ def _motion(of, at, bryan, q_t):
         alpha = _sum(cross(first, _sum(second, q_t[4], third, q_t[5])), q_t[3], cross(second, third), q_t[4] * q_t[5])
     for a in range(k):
         rate = q_t[n + a]
-        flow = _sum(flow, 1.0, column(of.S, a), rate)
+        flow = _sum(flow, 1.0, column(S, a), rate)
         for i in range(3):
             for j in range(3):
                 at.growth[i, j] += rate * at.R[a, j, i]
@@ -238,7 +238,7 @@ def _force_and_moment(at, w, alpha, flow):
 def _left_hand_side(of, frame, at, bryan, q, q_t, out):
     """Fill the left-hand side."""
     n, k = at.G.shape[1], at.R.shape[0]
-    w, alpha, flow = _motion(of, at, bryan, q_t)
+    w, alpha, flow = _motion(of.S, at, bryan, q_t)
     f, m = _force_and_moment(at, w, alpha, flow)
     out[0], out[1], out[2] = times(frame, f)
     for c in range(3, n):
@@ -274,7 +274,7 @@ def _alpha_changes(at, bryan, q_t, f_q, f_qt):
 def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
     """Fill the derivative, without that of G^T at a fixed moment, and that moment m, global (3,)."""
     n = at.G.shape[1]
-    w, alpha, flow = _motion(of, at, bryan, q_t)
+    w, alpha, flow = _motion(of.S, at, bryan, q_t)
     f, m = _force_and_moment(at, w, alpha, flow)
     moment_out[0], moment_out[1], moment_out[2] = times(frame, m)
     _by_modes(of, frame, at, w, alpha, q_t, f_q, f_qt, out)
@@ -300,18 +300,18 @@ def _derivative(of, frame, jac, at, bryan, q, q_t, f_q, f_qt, moment_out, out):
             out[i, c] = df[i]
         for d in range(3, n):
             out[d, c] = _dot(column(at.G, d), dm)
-        _modes_by_motion(of, at, w, q_t, dw, da, c, out)
+        _modes_by_motion(of.C, at, w, q_t, dw, da, c, out)
 
 
 @njit(cache=True)
-def _modes_by_motion(of, at, w, q_t, dw, da, c, out):
+def _modes_by_motion(C, at, w, q_t, dw, da, c, out):
     """Fill column c of g's rows: its change with w and alpha."""
     n, k = at.G.shape[1], at.R.shape[0]
     for a in range(k):
         R = at.R[a]
         g = -_dot(dw, times(R, w)) - _dot(w, times(R, dw)) - _dot(da, column(at.turned, a))
         for b in range(k):
-            g -= 2.0 * q_t[n + b] * (dw[0] * of.C[b, a, 0] + dw[1] * of.C[b, a, 1] + dw[2] * of.C[b, a, 2])
+            g -= 2.0 * q_t[n + b] * (dw[0] * C[b, a, 0] + dw[1] * C[b, a, 1] + dw[2] * C[b, a, 2])
         out[n + a, c] = g
 
 
