@@ -97,7 +97,7 @@ _LAZY = {
         "coupling.record.record": "load_history",
         "coupling.record.revolutions": "Revolutions",
         "coupling.record.thinning": "Every Period",
-        "coupling.replace": "ReplaceJoint ReplaceJoints",
+        "coupling.replace": "ReplaceJoint ReplaceJoints ReplaceReducedBody",
         "coupling.rotor.api": "SolveEquilibrium SolveThreshold stability_map",
         "coupling.rotor.result": "RotorResult",
         "coupling.run.joint_state": "JointState",
@@ -142,7 +142,7 @@ if TYPE_CHECKING:
     from exudyn_ehd.coupling.record.record import load_history
     from exudyn_ehd.coupling.record.revolutions import Revolutions
     from exudyn_ehd.coupling.record.thinning import Every, Period
-    from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints
+    from exudyn_ehd.coupling.replace import ReplaceJoint, ReplaceJoints, ReplaceReducedBody
     from exudyn_ehd.coupling.rotor.api import SolveEquilibrium, SolveThreshold, stability_map
     from exudyn_ehd.coupling.rotor.result import RotorResult
     from exudyn_ehd.coupling.run.joint_state import JointState
@@ -271,6 +271,7 @@ __all__ = [
     "RegularisedWall",
     "ReplaceJoint",
     "ReplaceJoints",
+    "ReplaceReducedBody",
     "Revolutions",
     "ReynoldsTemperature",
     "RingingWarning",

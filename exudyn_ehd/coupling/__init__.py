@@ -4,7 +4,7 @@ Module map
 ----------
 api         `CreateLubricatedJoint`, axial options `Free` and `Held`
 spherical   `CreateLubricatedSphericalJoint`: a ball in its socket
-replace     `ReplaceJoint`: films in the place of joints that a model has
+replace     `ReplaceJoint`: films in the place of joints that a model has; `ReplaceReducedBody`
 handle      `LubricatedJoint`: what a user has of a joint
 rotor       rotors in several films: equilibria over the speed, eigenvalues, unbalance
 run         Exudyn's solvers with this package's errors and start of Newton's method; restarts; settings

@@ -1,4 +1,4 @@
-"""`ReplaceJoint`: a film in the place of a joint that a model already has.
+"""`ReplaceJoint`: a film in the place of a joint that a model already has; `ReplaceReducedBody`.
 
 A joint of two markers with the frames A R (A of the marker, R the joint's ``rotationMarker``) gives all that
 `CreateLubricatedJoint` asks for: the markers are the two sides, the frame of the first with z along the free rotation
@@ -20,6 +20,7 @@ from exudyn_ehd.coupling.contract import Data, Index, MarkerIndex, ObjectIndex, 
 from exudyn_ehd.coupling.handle import LubricatedJoint
 from exudyn_ehd.coupling.items.bodies import MASS_POINTS, POINT_KINDS
 from exudyn_ehd.coupling.items.markers import marker_item
+from exudyn_ehd.coupling.items.own_equations import own_equations
 from exudyn_ehd.status import InputError, require_type
 
 TYPES = ("JointRevoluteZ", "JointGeneric", "JointRevolute2D")
@@ -172,6 +173,57 @@ def ReplaceJoints(
             "the joints first, or put films in place with CreateLubricatedJoint."
         )
     return films
+
+
+def ReplaceReducedBody(mbs: exu.MainSystem, objectNumber: Index) -> Index:
+    """Give an ObjectFFRFreducedOrder its exact Jacobian; before Assemble.
+
+    Exudyn differentiates the body numerically, which with many modes takes most of a step: at every Jacobian, two
+    evaluations of all its forces for each coordinate. Here an ObjectGenericODE2 beside it has the same equations with
+    their exact derivatives, and the body keeps all else: markers, sensors, loads, drawing. The body's matrices are read
+    anew by every run. Bodies of an `FEBore` or `FEJournal` come to it by themselves.
+
+    Exudyn's own equations lack a term on nodes of Tait-Bryan angles (``NodeType.RotationRxyz``): the angular
+    acceleration at constant rates of the angles. It is zero while only one of the angles changes, as in a planar
+    mechanism; a tumbling body of Exudyn does not keep its angular momentum, where this one does. On the other types
+    of nodes both agree to rounding.
+
+    Parameters
+    ----------
+    mbs : exudyn.MainSystem
+    objectNumber : exudyn.ObjectIndex
+        An ObjectFFRFreducedOrder, as ``ObjectFFRFreducedOrderInterface.AddObjectFFRFreducedOrder`` makes it.
+
+    Returns
+    -------
+    exudyn.ObjectIndex
+        The object with the equations.
+
+    Raises
+    ------
+    InputError
+        For another object, one whose equations are user functions or replaced already, and an assembled system.
+
+    Examples
+    --------
+    After the example of `add_bore_modes`:
+
+    >>> from exudyn.FEM import ObjectFFRFreducedOrderInterface
+    >>> mbs = exu.SystemContainer().AddSystem()
+    >>> parts = ObjectFFRFreducedOrderInterface(fem).AddObjectFFRFreducedOrder(mbs)
+    >>> equations = ehd.ReplaceReducedBody(mbs, parts["oFFRFreducedOrder"])
+    """
+    require_system("ReplaceReducedBody", mbs)
+    require_type("ReplaceReducedBody.objectNumber", objectNumber, ObjectIndex)
+    if mbs.systemIsConsistent:
+        raise InputError("ReplaceReducedBody: the system is assembled already; call it before mbs.Assemble().")
+    body = mbs.GetObject(objectNumber)
+    where = f"ReplaceReducedBody: object {int(objectNumber)} '{body['name']}' ({body['objectType']})"
+    if body["objectType"] != "FFRFreducedOrder":
+        raise InputError(f"{where} is no ObjectFFRFreducedOrder, the only body that has other equations.")
+    if not body["computeFFRFterms"]:
+        raise InputError(f"{where} has user functions for equations, or is replaced already; leave it as it is.")
+    return own_equations(mbs, objectNumber)
 
 
 def _joint(mbs: exu.MainSystem, number: Index) -> tuple[Data, str]:

@@ -34,7 +34,7 @@ from exudyn_ehd.solid.modes.static import (
     sample_pressures,
 )
 from exudyn_ehd.solid.static_equilibrium import symmetric_factor
-from exudyn_ehd.status import InputError, require_number, require_vector
+from exudyn_ehd.status import InputError, require_bool, require_number, require_vector
 
 # Vertices around and along of the quadrature over a bore: beyond the orders of the pressures.
 AROUND, ALONG = 144, 16
@@ -53,13 +53,14 @@ class FESurface:
     nodes: tuple[int, ...] | None = None
     radius_tolerance: float = 0.02
     settled: bool = True
+    exact_jacobian: bool = True
 
     def __post_init__(self) -> None:
         own = type(self).__name__
         if not hasattr(self.fem, "elements"):
             raise InputError(f"{own}.fem must be the FEMinterface that the body was made of, got {self.fem!r}.")
-        if not isinstance(self.settled, bool):
-            raise InputError(f"{own}.settled must be True or False, got {self.settled!r}.")
+        require_bool(f"{own}.settled", self.settled)
+        require_bool(f"{own}.exact_jacobian", self.exact_jacobian)
         require_number(f"{own}.radius_tolerance", self.radius_tolerance, above=0.0)
         if self.nodes is not None:
             try:
@@ -92,6 +93,9 @@ class FEBore(FESurface):
     settled : bool
         Start with the modes in equilibrium with the film of the initial configuration, the body's frame held; only
         where the body's modes start at zero. False starts undeformed, with the oscillation that this brings.
+    exact_jacobian : bool
+        The joint gives the body its exact Jacobian (`ReplaceReducedBody`); False leaves the body to Exudyn and its
+        differences.
 
     Examples
     --------
@@ -116,7 +120,7 @@ class ReducedBore:
         Of the modes, with the body's frame held.
     radius, length : float
         Of the film's area [m].
-    settled : bool
+    settled, exact_jacobian : bool
         As in `FEBore`.
     """
 
@@ -126,6 +130,7 @@ class ReducedBore:
     radius: float
     length: float
     settled: bool = True
+    exact_jacobian: bool = True
     rigid: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:

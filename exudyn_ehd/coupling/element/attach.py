@@ -15,12 +15,14 @@ from exudyn_ehd.coupling.element.settled_start import initial_coordinates, settl
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
 from exudyn_ehd.coupling.items.object_mass import require_heavy_housing
+from exudyn_ehd.coupling.items.own_equations import own_equations
 from exudyn_ehd.coupling.items.reduced_bodies import FloatingBoreSide
 from exudyn_ehd.joint.bore.shapes import ModalBore
 from exudyn_ehd.joint.bore.solid import SolidElasticity
 from exudyn_ehd.joint.model.build_flexible import TurningModel
 from exudyn_ehd.joint.model.flexible import ElasticBearingModel
 from exudyn_ehd.solid.bush import ANCFBush
+from exudyn_ehd.solid.fe_bore import ReducedBore
 from exudyn_ehd.solid.loads import Gravity
 from exudyn_ehd.solid.modes.static import BoreModes
 from exudyn_ehd.status import InputError
@@ -76,10 +78,12 @@ def attach_bush(
         )
     if isinstance(model, TurningModel):
         settle_body(mbs, model, sides)
+        _equip_body(mbs, items[1], model.turning.surface)
         return TurningFilmElement(model, *sides, sides[1].nodes[-1:], name), {}
     if isinstance(sides[0], FloatingBoreSide):
         # the body has nodes, mass and stiffness for the modes
         settle_body(mbs, model, sides)
+        _equip_body(mbs, items[0], model.bore.modes)
         return ModalFilmElement(model, *sides, sides[0].nodes[-1:], name, model.bore), {}
     settled = initial_coordinates(model, sides)
     k = model.bore.size
@@ -105,6 +109,13 @@ def attach_bush(
     # the sides of markers find their size after Assemble only
     rigid = sum(len(mbs.GetNodeParameter(node, "referenceCoordinates")) for side in sides for node in side.nodes)
     return element, {"massMatrix": _mass_matrix(rigid, mass)}
+
+
+def _equip_body(mbs: exu.MainSystem, item: Item, surface: object) -> None:
+    """Give a body under the film its exact Jacobian, unless it shall keep Exudyn's or has user functions."""
+    assert isinstance(surface, ReducedBore) and item.body is not None
+    if surface.exact_jacobian and mbs.GetObjectParameter(item.body, "computeFFRFterms"):
+        own_equations(mbs, item.body)
 
 
 def _attach_nodes(

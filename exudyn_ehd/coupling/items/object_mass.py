@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import exudyn as exu
 import numpy as np
 from scipy.sparse import coo_matrix, csc_matrix, issparse
 
 from exudyn_ehd.coupling.contract import Index, ObjectIndex
+from exudyn_ehd.coupling.items.own_equations import ReducedBody
 from exudyn_ehd.coupling.items.resolve import body_of_node
 from exudyn_ehd.status import InputError
 
@@ -21,6 +23,11 @@ def object_mass(mbs: exu.MainSystem, item: Index) -> np.ndarray | csc_matrix | N
     """Mass matrix (n, n) of an object in its own coordinates; None if Exudyn returns none and it is not constant."""
     data = mbs.GetObject(item)
     if data["objectType"] == "GenericODE2":
+        function: Any = data["massMatrixUserFunction"]
+        body = getattr(function["function"], "__self__", None) if isinstance(function, dict) else None
+        if isinstance(body, ReducedBody):
+            q = np.asarray(mbs.systemData.GetODE2Coordinates())[mbs.systemData.GetObjectLTGODE2(int(item))]
+            return body.mass(mbs, 0.0, int(item), q.tolist(), [])
         matrix = as_sparse(data["massMatrix"])
         return None if matrix is None or matrix.nnz == 0 else matrix.tocsc()
     if data["objectType"].startswith("MassPoint"):

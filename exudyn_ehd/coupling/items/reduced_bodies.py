@@ -12,7 +12,6 @@ import dataclasses
 import exudyn as exu
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.spatial.transform import Rotation
 
 from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.coupling.contract import Index
@@ -125,6 +124,7 @@ def _find_surface(
         radius=radius,
         length=length,
         settled=surface.settled,
+        exact_jacobian=surface.exact_jacobian,
     )
 
     def build(point: np.ndarray, rotation: np.ndarray) -> FloatingBoreSide:
@@ -177,15 +177,16 @@ class FloatingBoreSide:
             return
         floating.update(mbs, q[:n], q_t[:n], configuration)
         A, omega = floating.frame[:, :3], floating.frame[:, 5]
-        angle = self.turn @ q[n:]
+        turned, rate = _rotation(self.turn @ q[n:])
         self.jac[:2, :, :n] = floating.jac[:2]
         self.jac[0, :, n:] = A @ self.shift
-        self.jac[1, :, n:] = A @ (_rate_of_rotation(angle) @ self.turn)
+        self.jac[1, :, n:] = A @ (rate @ self.turn)
         self.arm = A @ (self.origin + self.shift @ q[n:])
-        self.jac[0, :, :n] += np.cross(floating.jac[1].T, self.arm).T
-        self.frame[:, :3] = A @ Rotation.from_rotvec(angle).as_matrix() @ self.rotation
+        S = skew(self.arm)
+        self.jac[0, :, :n] -= S @ floating.jac[1]
+        self.frame[:, :3] = A @ turned @ self.rotation
         self.frame[:, 3] = floating.frame[:, 3] + self.arm
-        self.frame[:, 4] = floating.frame[:, 4] + np.cross(omega, self.arm) + self.jac[0, :, n:] @ q_t[n:]
+        self.frame[:, 4] = floating.frame[:, 4] - S @ omega + self.jac[0, :, n:] @ q_t[n:]
         self.frame[:, 5] = omega + self.jac[1, :, n:] @ q_t[n:]
 
     def vary(self, mbs: exu.MainSystem | None, q: np.ndarray, q_t: np.ndarray) -> None:
@@ -201,11 +202,15 @@ class FloatingBoreSide:
         out[:] = np.einsum("iab,i->ab", self.change, np.concatenate([force, moment]))
 
 
-def _rate_of_rotation(angle: np.ndarray) -> np.ndarray:
-    """T (3, 3) with angular velocity T d(angle)/dt of exp(angle), in the frame before the rotation."""
+def _rotation(angle: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """exp(angle) (3, 3), and T (3, 3) with its angular velocity T d(angle)/dt, in the frame before the rotation."""
     size = float(np.linalg.norm(angle))
     S = skew(angle)
+    square = S @ S
     if size < 1e-4:
-        # to 1e-12: the next terms are of fourth order
-        return np.eye(3) + S * (0.5 - size**2 / 24.0) + S @ S * (1.0 / 6.0 - size**2 / 120.0)
-    return np.eye(3) + S * ((1.0 - np.cos(size)) / size**2) + S @ S * ((size - np.sin(size)) / size**3)
+        # to 1e-16 and 1e-12: the next terms are of fourth order
+        first, second, third = 1.0 - size**2 / 6.0, 0.5 - size**2 / 24.0, 1.0 / 6.0 - size**2 / 120.0
+    else:
+        first, second = np.sin(size) / size, 2.0 * (np.sin(0.5 * size) / size) ** 2
+        third = (1.0 - first) / size**2
+    return np.eye(3) + first * S + second * square, np.eye(3) + second * S + third * square

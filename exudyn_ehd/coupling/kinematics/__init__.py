@@ -2,12 +2,13 @@
 
 Module map
 ----------
-sides         pose, rates and Jacobians of a side
-rigid_nodes   nodes of rigid bodies
-beam_sides    points of beams
-cables        points of cables
-fitted_sides  best rigid fit of the nodes of finite elements
-relative      motion of the journal in the housing's frame
-spherical     motion of a ball in the frame of its socket
-bore_gap      smallest gap of the rigid surfaces
+sides          pose, rates and Jacobians of a side
+rigid_nodes    nodes of rigid bodies
+beam_sides     points of beams
+cables         points of cables
+floating_body  equations of motion of a body in a floating frame with modes
+fitted_sides   best rigid fit of the nodes of finite elements
+relative       motion of the journal in the housing's frame
+spherical      motion of a ball in the frame of its socket
+bore_gap       smallest gap of the rigid surfaces
 """

@@ -24,6 +24,14 @@ def skew(v: np.ndarray) -> np.ndarray:
     return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
 
 
+def skews(vectors: np.ndarray) -> np.ndarray:
+    """Matrices (n, 3, 3) of the cross products with the columns of ``vectors`` (3, n)."""
+    out = np.zeros((vectors.shape[1], 3, 3))
+    out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -vectors[2], vectors[1], -vectors[0]
+    out[:, 1, 0], out[:, 2, 0], out[:, 2, 1] = vectors[2], -vectors[1], vectors[0]
+    return out
+
+
 @njit(cache=True)
 def _minus(a, b):
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]

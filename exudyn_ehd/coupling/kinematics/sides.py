@@ -16,8 +16,10 @@ import numpy as np
 
 from exudyn_ehd.coupling.contract import Index, Side
 from exudyn_ehd.coupling.kinematics import rigid_nodes
+from exudyn_ehd.coupling.kinematics.relative import skew, skews
 
 _CURRENT = exu.ConfigurationType.Current
+_NONE, _UNITS = np.zeros(3), np.eye(3)
 SideType = TypeVar("SideType", bound=Side)
 
 
@@ -208,17 +210,18 @@ def floating_change(floating: NodeSide, q: np.ndarray, arm: np.ndarray, jac: np.
         Jp and Jr of the point: the node's columns, then those of local coordinates.
     """
     n, size = floating.size, jac.shape[2]
-    turn = jac[1, :, :n].T
+    # (n, 3, 3): cross products with the columns of Jr, vectors standing behind them
+    turns = skews(jac[1, :, :n])
     change = np.zeros((6, size, size))
-    for i, unit in enumerate(np.eye(3)):
-        floating.geometric(None, q, np.zeros(3), unit, change[3 + i, :n, :n])
-        floating.geometric(None, q, np.zeros(3), np.cross(arm, unit), change[i, :n, :n])
+    # row i of the cross product with the arm is arm x e_i, negative
+    for i, crossed in enumerate(-skew(arm)):
+        floating.geometric(None, q, _NONE, _UNITS[i], change[3 + i, :n, :n])
+        floating.geometric(None, q, _NONE, crossed, change[i, :n, :n])
     # J_k = turn_k x arm: its change is that of turn_k at this arm, above, and that of the arm
-    change[:3, :n, :n] += np.cross(turn[:, None, :], np.cross(turn, arm)[None, :, :]).transpose(2, 0, 1)
+    change[:3, :n, :n] += (turns @ (turns @ arm).T).transpose(1, 0, 2)
     for first in (0, 3):
-        columns = jac[first // 3, :, n:].T
-        change[first : first + 3, n:, :n] = np.cross(turn[None, :, :], columns[:, None, :]).transpose(2, 0, 1)
-    change[:3, :n, n:] = np.cross(turn[:, None, :], jac[0, :, n:].T[None, :, :]).transpose(2, 0, 1)
+        change[first : first + 3, n:, :n] = (turns @ jac[first // 3, :, n:]).transpose(1, 2, 0)
+    change[:3, :n, n:] = (turns @ jac[0, :, n:]).transpose(1, 0, 2)
     return change
 
 

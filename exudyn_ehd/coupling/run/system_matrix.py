@@ -259,6 +259,8 @@ def _standard(mbs: exu.MainSystem, item: Index, places: np.ndarray, equations: n
                 f"type {object_type} without {what.name}; use mbs.SolveDynamic for this model."
             ) from error
     differs = kind.ODE2LHS in offered and kind.JacobianODE2 not in offered and object_type not in _SIMPLE
+    # a reduced body without its own terms has no forces but a user's
+    differs = differs and (values.get("computeFFRFterms", True) or values["forceUserFunction"] != 0)
     rows, columns = (x.ravel() for x in np.meshgrid(places, places, indexing="ij"))
 
     def part(mbs, factors: Factors):

@@ -52,6 +52,8 @@ class FEJournal(FESurface):
         How far a node's radius may be from the bearing's journal radius, over that radius.
     settled : bool
         As in `FEBore`, with a shape that stands under the turning journal. Stiff modes that start undeformed ring.
+    exact_jacobian : bool
+        As in `FEBore`.
 
     Examples
     --------
