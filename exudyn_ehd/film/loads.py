@@ -227,28 +227,34 @@ def scatter(values, order, count, out):
 def end_flows(P, kz, fz, fx, H_t, width_x, width_z, squeeze, full):
     """Scaled volume flow that leaves through z = -L/2 and z = +L/2.
 
-    The flux through the link next to the end, corrected by the balance of the end's half control volume where the film
-    next to it is ``full`` (n, m): unbroken, or fed by a supply area.
+    The end's half control volume takes q + B: q through the link to the next vertex, B for the divergence of what the
+    turn carries and for the squeeze. That is so where the film next to the end is ``full`` (n, m): unbroken, or fed by
+    a supply area. Next to a cavity an end with more than its pressure has a film up to a line closer than the next
+    vertex: as far as its parabola of pressure falls. For q < B it takes ``2 sqrt(q B)``, which joins q + B with its
+    slope at q = B, where the line reaches the next vertex.
     """
     n, m = P.shape
     lower = 0.0
     upper = 0.0
+    e = m - 1
     for i in range(n):
         prv = i - 1 if i > 0 else n - 1
-        q = -(fz[i, 0] - kz[i, 0] * (P[i, 1] - P[i, 0]))
-        if full[i, 1]:
-            q -= fx[i, 0] - fx[prv, 0]
-            if squeeze:
-                q -= H_t[i, 0] * width_x[i] * width_z[0]
-        lower += q
-        e = m - 1
-        q = fz[i, e - 1] - kz[i, e - 1] * (P[i, e] - P[i, e - 1])
-        if full[i, e - 1]:
-            q -= fx[i, e] - fx[prv, e]
-            if squeeze:
-                q -= H_t[i, e] * width_x[i] * width_z[e]
-        upper += q
+        flow, q, carried = -fz[i, 0], kz[i, 0] * (P[i, 0] - P[i, 1]), fx[i, 0] - fx[prv, 0]
+        rate = H_t[i, 0] * width_x[i] * width_z[0] if squeeze else 0.0
+        lower += flow - _taken(q, carried, rate, full[i, 1])
+        flow, q, carried = fz[i, e - 1], kz[i, e - 1] * (P[i, e] - P[i, e - 1]), fx[i, e] - fx[prv, e]
+        rate = H_t[i, e] * width_x[i] * width_z[e] if squeeze else 0.0
+        upper += flow - _taken(q, carried, rate, full[i, e - 1])
     return lower, upper
+
+
+@njit(cache=True)
+def _taken(q, carried, rate, full):
+    """What an end's half control volume takes, see `end_flows`."""
+    B = carried + rate
+    if full or (q > 0.0 and q >= B):
+        return q + B
+    return 2.0 * np.sqrt(q * B) if q > 0.0 else q
 
 
 @njit(cache=True, fastmath=_FAST)

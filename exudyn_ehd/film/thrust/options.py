@@ -113,7 +113,7 @@ class JournalLeakage:
     method finds with both films in every evaluation.
 
     Cavities without a memory find oil where a film begins anew: name the ``supply`` that brings it. A cavity that
-    reaches an end takes oil from the channel (`exudyn_ehd.joint.feed.ends`). With `SwiftStieber` on the default grid
+    reaches an end takes oil from the channel (`exudyn_ehd.film.loads`). With `SwiftStieber` on the default grid
     the flow out of the journal's film is right to 2 % of what leaves into a cavity's pressure, or to 4 % beside an
     axial groove. `Gumbel`, whose pressures end without a balance of the oil, is refused.
 

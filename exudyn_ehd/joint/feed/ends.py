@@ -1,20 +1,9 @@
-"""Flows out of both ends of a journal's film, with their derivatives to the motion and to the ends' pressures.
+"""Derivatives of the flows out of both ends of a journal's film to the motion and to the ends' pressures.
 
-An end's vertices have its pressure p_e. What a film takes through the half control volume of one of them is
-
-    q + B,    q = k (p_e - p_1),    B = divergence of what the turn carries + A dh/dt,
-
-with the conductance k to the next vertex and its pressure p_1. Where that lies in a cavity and B > q >= 0, film reaches
-from the end to a line closer than the next vertex: as far as its parabola of pressure falls to the cavity's. It takes
-
-    2 sqrt(q B)
-
-then, which joins q + B with its slope at q = B, where the line reaches the next vertex, and is nothing at an end with
-the cavity's pressure.
-
-By the adjoint solutions lam of the film's sums S over its pressures, ``dS/dp_e = sum lam_1 k`` of the next vertices
-plus what the end's own pressure does. Films between rigid surfaces of an oil of constant viscosity, with
-`FullSommerfeld` or `SwiftStieber`.
+An end's vertices have its pressure p_e; symbols of `exudyn_ehd.film.loads.end_flows`, whose flows these are, with the
+conductance k to the next vertex, q = k (p_e - p_1). By the adjoint solutions lam of the film's sums S over its
+pressures, ``dS/dp_e = sum lam_1 k`` of the next vertices plus what the end's own pressure does. Films between rigid
+surfaces of an oil of constant viscosity, with `FullSommerfeld` or `SwiftStieber`.
 """
 
 from __future__ import annotations
@@ -48,19 +37,12 @@ class EndDerivatives(NamedTuple):
 
 
 class _Edge(NamedTuple):
-    """Vertices of an end (n,): k, q, and derivatives of what they take to q and B; and what they take in all."""
+    """Vertices of an end (n,): k, q, and derivatives of what they take to q and B."""
 
     k: np.ndarray
     q: np.ndarray
     by_q: np.ndarray
     by_B: np.ndarray
-    taken: float
-
-
-def end_flows(film: SolvedFilm) -> np.ndarray:
-    """Flows (2,) out of lower and upper end, m3/s."""
-    carried = [-film.solver.system.fz[:, 0].sum(), film.solver.system.fz[:, -2].sum()]
-    return film.parts.flow_scale * np.array([z - edge.taken for z, edge in zip(carried, _edges(film), strict=True)])
 
 
 def _edges(film: SolvedFilm) -> list[_Edge]:
@@ -75,7 +57,7 @@ def _edges(film: SolvedFilm) -> list[_Edge]:
         share = np.sqrt(np.where(near, q, 1.0) / np.where(near, B, 1.0))
         # no slope where nothing flows: there a search goes on as from a film up to the next vertex
         by_q = 1.0 / np.where(share > 0.0, share, 1.0)
-        out.append(_Edge(k, q, by_q, share, float(np.where(near, 2.0 * share * B, q + B).sum())))
+        out.append(_Edge(k, q, by_q, np.where(full[:, at] | (q > 0.0), share, 0.0)))
     return out
 
 

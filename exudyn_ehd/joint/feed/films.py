@@ -19,7 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from exudyn_ehd.joint.feed.ends import end_derivatives, end_flows
+from exudyn_ehd.joint.feed.ends import end_derivatives
+from exudyn_ehd.joint.model.quantities import leakages
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, about_origin, face_motion_map
 from exudyn_ehd.status import Status
@@ -165,6 +166,6 @@ class FedFilms:
         )
         if journal.film is not None and faces.status is Status.CONVERGED:
             taken = np.array([state.inflow for state in faces.states])
-            given = end_flows(journal.film)[self.ends]
+            given = journal.film.parts.flow_scale * np.array(leakages(journal.film))[self.ends]
             balanced = (pressures > self.lowest)[self.ends] | (taken < given)
         return FedEvaluation(journal, faces, pressures, taken, given, balanced, self)

@@ -272,17 +272,6 @@ def _warn_of_strain(film: SolvedFilm, where: str) -> None:
         )
 
 
-def _leakage(film: SolvedFilm, leakage: float) -> float:
-    """Leakage of a film with faces, m3/s: of one that feeds them counted as they take it."""
-    thrust = film.parts.bearing.thrust
-    if thrust is None or thrust.feed is None:
-        return leakage
-    # imported here: others need none of it
-    from exudyn_ehd.joint.feed.ends import end_flows
-
-    return float(end_flows(film).sum())
-
-
 def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History | None = None) -> SteadyResult:
     """The steady film at ``motion``; `FilmError` and ``near`` as for `evaluate_at`."""
     evaluation, film = evaluate_at(model, motion, where, near)
@@ -307,7 +296,7 @@ def result_at(model: BearingModel, motion: np.ndarray, where: str, near: History
         friction_torque_unbroken=q["friction_torque_unbroken"],
         friction_torque_bush=q["friction_torque_bush"],
         power_loss=q["power_loss"],
-        leakage=q["leakage"] if model.bearing.thrust is None else _leakage(film, q["leakage"]),
+        leakage=q["leakage"],
         contact_load=q["contact_load"],
         supply_flows=supply_flows(film),
         contact_torque=q["contact_torque"],
