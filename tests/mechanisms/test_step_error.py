@@ -109,9 +109,9 @@ def test_estimates_are_within_three_of_the_error_and_their_advice_does(name, ste
     ("name", "usual", "fixed", "most"),
     [
         ("four-bar", 200, (391, 615), 1.0),
-        ("slider-crank", 135, (371, 583), 0.9),
-        ("big end", 252, (223, 552), 1.4),
-        ("orbit", 100, (139, 245), 0.7),
+        ("slider-crank", 135, (371, 583), 0.8),
+        ("big end", 252, (223, 552), 1.35),
+        ("orbit", 100, (139, 245), 0.6),
     ],
 )
 def test_steps_by_their_error(name, usual, fixed, most):
@@ -124,6 +124,29 @@ def test_steps_by_their_error(name, usual, fixed, most):
         joint, best = run(name, usual, stepControl=ehd.StepControl(error=error)), run(name, steps)
         assert true_error(joint.history, reference) < 1.33 * error
         assert joint.element.evaluations < most * best.element.evaluations
+
+
+@pytest.mark.slow
+def test_steps_by_their_error_of_two_films_in_space(example):
+    """The rigid rocker of the spatial four-bar mechanism, against the best equal steps for two turns."""
+    scene = example("four_bar_spatial")
+    bearing, end = dataclasses.replace(scene.BEARING, film=FILM), 4.0 * math.pi / scene.SPEED
+
+    def films(steps, **options):
+        made = scene.Mechanism(bearing=bearing, elastic=False)
+        given = settings(end, steps, 0.6)
+        given.solution.sensors.writePeriod = end
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            ehd.SolveDynamic(made.mbs, given, **options)
+        return made.joints
+
+    reference = [joint.history for joint in films(800)]
+    for error, steps in ((0.05, 100), (0.02, 150)):
+        found, best = films(100, stepControl=ehd.StepControl(error=error)), films(steps)
+        for joint, exact in zip(found, reference, strict=True):
+            assert true_error(joint.history, exact) < 1.33 * error
+        assert found[0].element.evaluations < best[0].element.evaluations
 
 
 @pytest.mark.slow

@@ -33,7 +33,7 @@ REFUSED = 8.0
 # Changes of the size at once: the smallest factor, the largest, and below which none is worth it.
 SHRINK, GROW, WORTH = 0.5, 1.1, 0.9
 # Part of its demand that a step hands on.
-KEPT = 0.97
+KEPT = 0.94
 # What steps may miss, over what the error asked for allows: errors of steps that follow each other cancel in part.
 CANCELLED = 1.5
 # Shares of a step: one that ended so early was repeated; rounding.
