@@ -37,6 +37,7 @@ import numpy as np
 
 from exudyn_ehd.coupling.bush.factor import SystemFactor
 from exudyn_ehd.coupling.bush.recycled import RecycledSolver
+from exudyn_ehd.coupling.bush.residual import BushResiduals
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -196,8 +197,10 @@ def SolveDynamicSparse(
         mbs.Assemble()
     run = SparseRun()
     before = user_function(mbs.GetPreNewtonResidualUserFunction())
+    matrix = SystemMatrix.of(mbs)
     loop = _Newton(
-        matrix=SystemMatrix.of(mbs),
+        matrix=matrix,
+        residual=BushResiduals(mbs, matrix.bushes),
         guess=start_guess(mbs, before or None),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
@@ -241,6 +244,7 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
+    residual: BushResiduals
     guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
@@ -251,12 +255,16 @@ class _Newton:
     excess: int = 0
 
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
+        with self.residual.without_masses(mbs, solver, settings):
+            return self._iterate(solver, mbs, settings)
+
+    def _iterate(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = solver.ComputeNewtonResidual(mbs, settings)
+        error = first = self.residual(solver, mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None
@@ -280,7 +288,7 @@ class _Newton:
             solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
-            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
+            previous, error = error, self.residual(solver, mbs, settings)
             if error <= max(solver.newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
@@ -361,7 +369,7 @@ class _Newton:
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
         assert self.factor is not None
-        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
+        d = self._solve(solver, mbs, self.residual.vector)
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size

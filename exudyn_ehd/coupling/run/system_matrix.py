@@ -66,6 +66,8 @@ class SystemMatrix:
         One function (mbs, Factors) -> (rows, columns, values) per object.
     meshes : tuple
         The same of nodal bushes.
+    bushes : list
+        Their objects, the places of their coordinates, and their functions.
     mesh : (n,) array of bool
         Coordinates and equations that are those of bushes' nodes.
     films : tuple
@@ -76,6 +78,7 @@ class SystemMatrix:
     constraints: int
     parts: tuple[Callable, ...]
     meshes: tuple[Callable, ...]
+    bushes: list[tuple[Index, np.ndarray, BushFunctions]]
     mesh: np.ndarray
     films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
 
@@ -99,6 +102,7 @@ class SystemMatrix:
         n = len(data.GetODE2Coordinates())
         films: list[tuple[NodalFilmElement, np.ndarray]] = []
         meshes: list[Callable] = []
+        bushes: list[tuple[Index, np.ndarray, BushFunctions]] = []
         mesh = np.zeros(n + len(data.GetAECoordinates()), dtype=bool)
         parts: list[Callable] = [
             _euler_parameters(mbs, NodeIndex(number), n)
@@ -120,6 +124,7 @@ class SystemMatrix:
                 films.append((owner, places))
             elif isinstance(owner, BushFunctions):
                 meshes.append(_generic(mbs, item, places))
+                bushes.append((item, places, owner))
                 mesh[places[: owner.equations.count]] = True
             elif mbs.GetObject(item)["objectType"] == "GenericODE2":
                 parts.append(_generic(mbs, item, places))
@@ -130,6 +135,7 @@ class SystemMatrix:
             constraints=len(data.GetAECoordinates()),
             parts=tuple(parts),
             meshes=tuple(meshes),
+            bushes=bushes,
             mesh=mesh,
             films=tuple(films),
         )
