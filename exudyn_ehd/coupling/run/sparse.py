@@ -54,6 +54,7 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.solid.linear.elimination import Elimination
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
@@ -249,6 +250,7 @@ class _Newton:
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
+    analysis: Elimination | None = None
     recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
@@ -313,9 +315,12 @@ class _Newton:
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
         try:
-            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
+            self.factor = SystemFactor(
+                system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0, known=self.analysis
+            )
         except RuntimeError:
             return False
+        self.analysis = self.factor.analysis
         self.baseline = self.excess = 0
         self.run.jacobians += 1
         solver.it.newtonJacobiCount += 1

@@ -1,0 +1,349 @@
+"""Factor L D L^T of a symmetric matrix in dense panels, without pivoting, its pattern analysed once.
+
+Multifrontal (I. S. Duff and J. K. Reid, ACM Transactions on Mathematical Software 9 (1983) 302): a supernode's columns,
+w of them with b rows below, gather the matrix's entries and what the supernodes before leave for them in a dense front
+
+    [F11      ]   [L11    ] [D     ] [L11^T  L21^T]
+    [F21  F22 ] = [L21  I ] [    U ] [         I  ],    Y = L11^-1 F21^T,   L21^T = D^-1 Y,   U = F22 - L21 Y,
+
+and U goes on to the supernode of the first row below. Products of dense matrices make nearly all of the work. The order
+is SuperLU's of least degree, of a mesh that of its nodes, whose coordinates stay together; so that nodes of an element
+that lie behind each other make wide supernodes, narrow ones are joined with what follows where few zeros come with it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.sparse import csc_matrix, identity, tril
+from scipy.sparse.linalg import splu
+
+# Columns of a panel at most: beyond, its triangle is mostly zeros.
+WIDEST = 64
+# Share of zeros with which supernodes are joined.
+ZEROS = 0.1
+# Coordinates of a mesh's node.
+NODE = 3
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Elimination:
+    """Order of elimination of a symmetric pattern, and the supernodes of its factor.
+
+    Parameters
+    ----------
+    indptr, indices : arrays of int
+        The pattern, in compressed columns with sorted rows.
+    mirror : (nnz,) array of int
+        Place of an entry's mirror image.
+    order : (n,) array of int
+        Place of a coordinate in the order of elimination.
+    columns, lower, source : arrays of int
+        Lower triangle in that order, in compressed columns: their starts, rows, and places among the matrix's entries.
+    starts : (s + 1,) array of int
+        First columns of the supernodes.
+    firsts, offsets : (s + 1,) arrays of int
+        Where rows and panels of the supernodes begin.
+    rows : array of int
+        Rows below the supernodes, sorted.
+    """
+
+    indptr: np.ndarray
+    indices: np.ndarray
+    mirror: np.ndarray
+    order: np.ndarray
+    columns: np.ndarray
+    lower: np.ndarray
+    source: np.ndarray
+    starts: np.ndarray
+    firsts: np.ndarray
+    offsets: np.ndarray
+    rows: np.ndarray
+
+    @classmethod
+    def of(cls, A: csc_matrix) -> Elimination | None:
+        """Analyse a matrix with sorted rows; None if its pattern is not symmetric or lacks entries of its diagonal."""
+        numbered = csc_matrix((np.arange(1.0, A.nnz + 1), A.indices, A.indptr), shape=A.shape)
+        turned = numbered.T.tocsc()
+        same = np.array_equal(turned.indptr, A.indptr) and np.array_equal(turned.indices, A.indices)
+        if not same or not numbered.diagonal().all():
+            return None
+        places = least_degree(numbered)
+        first = _permuted(numbered, places)
+        places = postorder(elimination_tree(first.indptr, first.indices))[places]
+        whole = _permuted(numbered, places)
+        parent = elimination_tree(whole.indptr, whole.indices)
+        starts, below = find_supernodes(parent, count_columns(parent, whole.indptr, whole.indices))
+        width = np.diff(starts)
+        firsts, offsets = (np.concatenate([[0], np.cumsum(x)]) for x in (below, width * (width + below)))
+        rows = np.empty(firsts[-1], dtype=np.int64)
+        fill_rows(starts, firsts, whole.indptr, whole.indices, rows)
+        rows = rows[np.lexsort((rows, np.repeat(np.arange(len(below)), below)))]
+        lower = csc_matrix(tril(whole))
+        lower.sort_indices()
+        return cls(
+            indptr=A.indptr,
+            indices=A.indices,
+            mirror=turned.data.astype(np.int64) - 1,
+            order=places,
+            columns=lower.indptr,
+            lower=lower.indices,
+            source=lower.data.astype(np.int64) - 1,
+            starts=starts,
+            firsts=firsts,
+            offsets=offsets,
+            rows=rows,
+        )
+
+    def fits(self, A: csc_matrix) -> bool:
+        """Whether a matrix with sorted rows has this pattern."""
+        return np.array_equal(self.indptr, A.indptr) and np.array_equal(self.indices, A.indices)
+
+    def factorise(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Panels and pivots of the matrix with these entries, not finite if a pivot is zero."""
+        panels, pivots = np.zeros(self.offsets[-1]), np.empty(len(self.order))
+        structure = self.columns, self.lower, self.source, self.starts, self.firsts, self.offsets, self.rows
+        factorise(*structure, values, panels, pivots)
+        return panels, pivots
+
+
+def least_degree(A: csc_matrix) -> np.ndarray:
+    """Places (n,) in SuperLU's order of least degree for a symmetric pattern; coordinates of a node stay together."""
+    n = A.shape[0]
+    columns = np.repeat(np.arange(n), np.diff(A.indptr))
+    for size in (NODE, 1):
+        nodes = csc_matrix((np.ones(A.nnz), (A.indices // size, columns // size)), shape=(-(-n // size),) * 2)
+        if n % size == 0 and nodes.nnz * size * size == A.nnz:
+            break
+    # any numbers that need no pivoting do
+    nodes.data[:] = -1.0
+    dominant = (nodes + (nodes.shape[0] + 1.0) * identity(nodes.shape[0])).tocsc()
+    found = splu(dominant, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}).perm_c
+    return (size * found[:, None].astype(np.int64) + np.arange(size)).ravel()
+
+
+def _permuted(A: csc_matrix, places: np.ndarray) -> csc_matrix:
+    order = np.argsort(places)
+    permuted = A[:, order].tocsr()[order].tocsc()
+    permuted.sort_indices()
+    return permuted
+
+
+@njit(cache=True)
+def elimination_tree(indptr, indices):
+    """Parent of every column, -1 of roots; J. W. H. Liu, ACM Transactions on Mathematical Software 12 (1986) 127."""
+    n = len(indptr) - 1
+    parent, ancestor = np.full(n, -1), np.full(n, -1)
+    for j in range(n):
+        for p in range(indptr[j], indptr[j + 1]):
+            i = np.int64(indices[p])
+            while i < j and ancestor[i] != j:
+                above, ancestor[i] = ancestor[i], j
+                if above == -1:
+                    parent[i] = j
+                    break
+                i = above
+    return parent
+
+
+@njit(cache=True)
+def postorder(parent):
+    """Places of columns in an order in which every column follows right behind its descendants."""
+    n = len(parent)
+    head, following, places = np.full(n + 1, -1), np.full(n, -1), np.empty(n, dtype=np.int64)
+    for j in range(n - 1, -1, -1):
+        # roots hang on the last entry
+        following[j], head[parent[j]] = head[parent[j]], j
+    placed, at = 0, head[n]
+    while at != -1:
+        while head[at] != -1:
+            at = head[at]
+        places[at] = placed
+        placed += 1
+        while at != -1 and following[at] == -1:
+            at = parent[at]
+            if at != -1:
+                places[at] = placed
+                placed += 1
+        if at != -1:
+            at = following[at]
+    return places
+
+
+@njit(cache=True)
+def count_columns(parent, indptr, indices):
+    """Entries of every column of the factor: row i has those on the ways up the tree from its entries to i."""
+    n = len(parent)
+    count, seen = np.ones(n, dtype=np.int64), np.full(n, -1)
+    for i in range(n):
+        seen[i] = i
+        for p in range(indptr[i], indptr[i + 1]):
+            k = np.int64(indices[p])
+            while k < i and seen[k] != i:
+                seen[k] = i
+                count[k] += 1
+                k = parent[k]
+    return count
+
+
+@njit(cache=True)
+def find_supernodes(parent, count):
+    """First columns of the supernodes and n, and how many rows each has below."""
+    n = len(parent)
+    starts, below, zeros = [0], [count[0] - 1], [0]
+    for j in range(1, n + 1):
+        exact = j < n and parent[j - 1] == j and count[j - 1] == count[j] + 1
+        if exact and j - starts[-1] < WIDEST:
+            below[-1] = count[j] - 1
+            continue
+        # the supernode is complete: the one before joins it where that costs few zeros
+        while len(starts) > 1 and starts[-2] <= parent[starts[-1] - 1] < j and parent[starts[-1] - 1] >= starts[-1]:
+            width, more = starts[-1] - starts[-2], j - starts[-1]
+            added = zeros[-2] + zeros[-1] + width * (more + below[-1] - below[-2])
+            whole = (width + more) * (0.5 * (width + more) + below[-1])
+            if width + more > WIDEST or added > ZEROS * whole:
+                break
+            zeros[-2], below[-2] = added, below[-1]
+            starts.pop(), below.pop(), zeros.pop()
+        if j < n:
+            starts.append(j)
+            below.append(count[j] - 1)
+            zeros.append(0)
+    starts.append(n)
+    return np.array(starts), np.array(below)
+
+
+@njit(cache=True)
+def fill_rows(starts, firsts, indptr, indices, rows_out):
+    """Rows below the supernodes in any order: the matrix's, and those below the supernodes that go into one."""
+    supernodes, n = len(starts) - 1, starts[-1]
+    owner, seen = np.empty(n, dtype=np.int64), np.full(n, -1)
+    head, following = np.full(supernodes, -1), np.full(supernodes, -1)
+    for s in range(supernodes):
+        owner[starts[s] : starts[s + 1]] = s
+    for s in range(supernodes):
+        end, at, first = starts[s + 1], firsts[s], n
+        for p in range(indptr[starts[s]], indptr[end]):
+            if indices[p] >= end and seen[indices[p]] != s:
+                seen[indices[p]] = s
+                rows_out[at] = indices[p]
+                first = min(first, indices[p])
+                at += 1
+        child = head[s]
+        while child != -1:
+            for p in range(firsts[child], firsts[child + 1]):
+                if rows_out[p] >= end and seen[rows_out[p]] != s:
+                    seen[rows_out[p]] = s
+                    rows_out[at] = rows_out[p]
+                    first = min(first, rows_out[p])
+                    at += 1
+            child = following[child]
+        if first < n:
+            following[s], head[owner[first]] = head[owner[first]], s
+
+
+@njit(cache=True, fastmath={"contract", "reassoc"})
+def _factorise_triangle(F, inverse_out, pivots_out):
+    """L below the diagonal of a front's columns F[column, row] (w, w) and D, and L^-1 row by row."""
+    w = len(F)
+    for j in range(w):
+        pivots_out[j] = F[j, j]
+        for k in range(j + 1, w):
+            share = F[j, k] / F[j, j]
+            for i in range(k, w):
+                F[k, i] -= share * F[j, i]
+        for i in range(j + 1, w):
+            F[j, i] /= pivots_out[j]
+        F[j, j] = 1.0
+    inverse_out[:] = 0.0
+    for i in range(w):
+        inverse_out[i, i] = 1.0
+        for k in range(i):
+            for j in range(k + 1):
+                inverse_out[i, j] -= F[k, i] * inverse_out[k, j]
+
+
+@njit(cache=True)
+def _add_update(update, rows, place, w, front_out, below_out, rest_out):
+    """Add an update U[column, row] (b, b), of which row >= column counts, to a front of w columns."""
+    for k in range(len(rows)):
+        column = place[rows[k]]
+        for i in range(k, len(rows)):
+            row = place[rows[i]]
+            if column >= w:
+                rest_out[column - w, row - w] += update[k, i]
+            elif row >= w:
+                below_out[column, row - w] += update[k, i]
+            else:
+                front_out[column, row] += update[k, i]
+
+
+@njit(cache=True)
+def _most_waiting(starts, firsts, rows):
+    """Entries of all updates that wait at a time, at most, and how many."""
+    waiting, children, size, most = np.empty(len(starts), dtype=np.int64), 0, 0, 0
+    for s in range(len(starts) - 1):
+        while children and rows[firsts[waiting[children - 1]]] < starts[s + 1]:
+            children -= 1
+            size -= (firsts[waiting[children] + 1] - firsts[waiting[children]]) ** 2
+        if firsts[s + 1] > firsts[s]:
+            waiting[children] = s
+            children += 1
+            size += (firsts[s + 1] - firsts[s]) ** 2
+            most = max(most, size)
+    return most
+
+
+@njit(cache=True)
+def factorise(columns, lower, source, starts, firsts, offsets, rows, values, panels_out, pivots_out):
+    """L D L^T in panels.
+
+    Parameters
+    ----------
+    columns, lower, source, starts, firsts, offsets, rows : as in `Elimination`
+    values : (nnz,) entries of the matrix
+    panels_out : triangle of every supernode as a full square, then its rows below, column by column; zero
+    pivots_out : (n,)
+    """
+    place, waiting, children, size = np.empty(starts[-1], np.int64), np.empty(len(starts), np.int64), 0, 0
+    stack = np.empty(_most_waiting(starts, firsts, rows))
+    for s in range(len(starts) - 1):
+        a, end = starts[s], starts[s + 1]
+        w, own = end - a, rows[firsts[s] : firsts[s + 1]]
+        b = len(own)
+        square = panels_out[offsets[s] : offsets[s] + w * w].reshape(w, w)
+        below = panels_out[offsets[s] + w * w : offsets[s + 1]].reshape(w, b)
+        rest = np.zeros((b, b))
+        for j in range(w):
+            place[a + j] = j
+        for i in range(b):
+            place[own[i]] = w + i
+        for j in range(w):
+            for p in range(columns[a + j], columns[a + j + 1]):
+                row = place[lower[p]]
+                if row < w:
+                    square[j, row] += values[source[p]]
+                else:
+                    below[j, row - w] += values[source[p]]
+        while children and rows[firsts[waiting[children - 1]]] < end:
+            children -= 1
+            left = rows[firsts[waiting[children]] : firsts[waiting[children] + 1]]
+            size -= len(left) ** 2
+            update = stack[size : size + len(left) ** 2].reshape(len(left), len(left))
+            _add_update(update, left, place, w, square, below, rest)
+        inverse = np.empty((w, w))
+        _factorise_triangle(square, inverse, pivots_out[a:end])
+        if b:
+            Y = np.dot(inverse, below)
+            for j in range(w):
+                for i in range(b):
+                    below[j, i] = Y[j, i] / pivots_out[a + j]
+            np.dot(below.T, Y, stack[size : size + b * b].reshape(b, b))
+            for k in range(b):
+                for i in range(b):
+                    stack[size + k * b + i] = rest[k, i] - stack[size + k * b + i]
+            waiting[children] = s
+            children += 1
+            size += b * b
