@@ -24,6 +24,8 @@ from scipy.sparse.linalg import splu
 WIDEST = 64
 # Share of zeros with which supernodes are joined.
 ZEROS = 0.1
+# Columns of an update that are made at a time.
+STRIP = 96
 # Coordinates of a mesh's node.
 NODE = 3
 
@@ -268,16 +270,19 @@ def _factorise_triangle(F, inverse_out, pivots_out):
 @njit(cache=True)
 def _add_update(update, rows, place, w, front_out, below_out, rest_out):
     """Add an update U[column, row] (b, b), of which row >= column counts, to a front of w columns."""
-    for k in range(len(rows)):
+    own, size = 0, len(rows)
+    while own < size and place[rows[own]] < w:
+        own += 1
+    for k in range(own):
         column = place[rows[k]]
-        for i in range(k, len(rows)):
-            row = place[rows[i]]
-            if column >= w:
-                rest_out[column - w, row - w] += update[k, i]
-            elif row >= w:
-                below_out[column, row - w] += update[k, i]
-            else:
-                front_out[column, row] += update[k, i]
+        for i in range(k, own):
+            front_out[column, place[rows[i]]] += update[k, i]
+        for i in range(own, size):
+            below_out[column, place[rows[i]] - w] += update[k, i]
+    for k in range(own, size):
+        column = place[rows[k]] - w
+        for i in range(k, size):
+            rest_out[column, place[rows[i]] - w] += update[k, i]
 
 
 @njit(cache=True)
@@ -309,13 +314,17 @@ def factorise(columns, lower, source, starts, firsts, offsets, rows, values, pan
     """
     place, waiting, children, size = np.empty(starts[-1], np.int64), np.empty(len(starts), np.int64), 0, 0
     stack = np.empty(_most_waiting(starts, firsts, rows))
+    most = np.diff(firsts).max()
+    rests, answers, products = np.empty(most * most), np.empty(WIDEST * most), np.empty(STRIP * most)
     for s in range(len(starts) - 1):
         a, end = starts[s], starts[s + 1]
         w, own = end - a, rows[firsts[s] : firsts[s + 1]]
         b = len(own)
         square = panels_out[offsets[s] : offsets[s] + w * w].reshape(w, w)
         below = panels_out[offsets[s] + w * w : offsets[s + 1]].reshape(w, b)
-        rest = np.zeros((b, b))
+        rest, Y = rests[: b * b].reshape(b, b), answers[: w * b].reshape(w, b)
+        for k in range(b):
+            rest[k, k:] = 0.0
         for j in range(w):
             place[a + j] = j
         for i in range(b):
@@ -336,14 +345,19 @@ def factorise(columns, lower, source, starts, firsts, offsets, rows, values, pan
         inverse = np.empty((w, w))
         _factorise_triangle(square, inverse, pivots_out[a:end])
         if b:
-            Y = np.dot(inverse, below)
+            np.dot(inverse, below, Y)
             for j in range(w):
                 for i in range(b):
                     below[j, i] = Y[j, i] / pivots_out[a + j]
-            np.dot(below.T, Y, stack[size : size + b * b].reshape(b, b))
-            for k in range(b):
-                for i in range(b):
-                    stack[size + k * b + i] = rest[k, i] - stack[size + k * b + i]
+            for c in range(0, b, STRIP):
+                # of a symmetric matrix the part to the right of a strip's first column
+                strip = np.ascontiguousarray(below[:, c : c + STRIP])
+                wide = strip.shape[1]
+                product = products[: wide * (b - c)].reshape(wide, b - c)
+                np.dot(strip.T, np.ascontiguousarray(Y[:, c:]), product)
+                for k in range(wide):
+                    for i in range(k, b - c):
+                        stack[size + (c + k) * b + c + i] = rest[c + k, c + i] - product[k, i]
             waiting[children] = s
             children += 1
             size += b * b
