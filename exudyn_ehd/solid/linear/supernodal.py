@@ -145,6 +145,9 @@ class SupernodalFactor:
             return panel[: width * width].reshape(width, width).T, panel[width * width :].reshape(width, size).T
 
         for a, b, i, j, offset in parts:
+            # loads at few places reach few supernodes
+            if not x[a:b].any():
+                continue
             triangle, below = blocks(a, b, j - i, offset)
             x[a:b] = solve_triangular(triangle, x[a:b], lower=True, unit_diagonal=True, check_finite=False)
             x[self.rows[i:j]] -= below @ x[a:b]
