@@ -242,6 +242,12 @@ class TotalLagrange:
         n = len(self.mesh.nodes)
         return csr_matrix((blocks.ravel(), (rows, columns)), shape=(n, n))
 
+    def inertia(self, a: np.ndarray) -> np.ndarray:
+        """Return the consistent mass times accelerations (n, 3) [m/s^2], shape (n, 3) [N]."""
+        M, out = self.scalar_mass, np.empty(a.shape)
+        kernels.product(M.indptr, M.indices, M.data, a, out)
+        return out
+
     @cached_property
     def mass(self) -> csr_matrix:
         """Constant consistent mass, shape (3 n, 3 n) [kg], coordinates ordered node by node as x, y, z."""

@@ -76,7 +76,7 @@ class BushEquations:
         """Return M q_tt of a bush without a carrier."""
         acceleration = self._nodal(q_tt)
         acceleration[self.held] = 0.0
-        result = (self.solid.scalar_mass @ acceleration).ravel()[self._moving_rows]
+        result = self.solid.inertia(acceleration).ravel()[self._moving_rows]
         result[self._held] = self._held_inertia * q_tt[self._held]
         return result
 
@@ -153,7 +153,7 @@ class BushEquations:
         places = float(np.abs(self.carrier.positions()).max(initial=0.0))
         return math.hypot(self._rounding * size, self._carried_rounding * places)
 
-    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray, time: float, name: str) -> None:
+    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeAlias
 
 import exudyn as exu
 import numpy as np
@@ -23,6 +23,8 @@ from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import Index, ObjectIndex
 from exudyn_ehd.coupling.items.object_mass import as_sparse
 
+# Exudyn's stubs lack the self of its solvers' methods.
+Solver: TypeAlias = Any
 # Bodies whose mass matrices change, beside objects with a user function for it.
 _CHANGING = ("FFRF", "KinematicTree", "RigidBody", "Beam", "ALE")
 
@@ -51,7 +53,7 @@ class BushResiduals:
         self.lasting = all(_lasting(mbs.GetObject(ObjectIndex(i))) for i in range(mbs.systemData.NumberOfObjects()))
 
     @contextmanager
-    def without_masses(self, mbs: exu.MainSystem, solver: Any, settings: exu.SimulationSettings) -> Iterator[None]:
+    def without_masses(self, mbs: exu.MainSystem, solver: Solver, settings: exu.SimulationSettings) -> Iterator[None]:
         """Within, Exudyn's mass matrix of the system lacks the bushes' after the first time, or altogether."""
         lasting = self.lasting and settings.timeIntegration.reuseConstantMassMatrix
         if not self.bushes or (lasting and self.taken):
@@ -71,7 +73,7 @@ class BushResiduals:
         if lasting:
             yield
 
-    def __call__(self, solver: Any, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> float:
+    def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> float:
         """Compute the solver's residual like its ``ComputeNewtonResidual``, and return its measure."""
         if not self.bushes:
             error = solver.ComputeNewtonResidual(mbs, settings)
@@ -98,9 +100,14 @@ class BushResiduals:
         )
 
 
+def _together(places: np.ndarray) -> np.ndarray | slice:
+    """Places that follow each other as a slice, which copies nothing."""
+    return slice(places[0], places[-1] + 1) if (np.diff(places) == 1).all() else places
+
+
 def _as_made(mbs: exu.MainSystem, item: Index, places: np.ndarray, bush: BushFunctions) -> bool:
     """Whether a bush has no carrier, and force and mass that it was made with."""
-    force: Any = mbs.GetObjectParameter(item, "forceUserFunction")
+    force: object = mbs.GetObjectParameter(item, "forceUserFunction")
     if bush.equations.carrier is not None or not isinstance(force, dict) or force["function"] != bush.force:
         return False
     mass = as_sparse(mbs.GetObjectParameter(item, "massMatrix"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import exudyn as exu
@@ -14,6 +14,7 @@ from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
+from exudyn_ehd.solid.linear.triplets import Triplets
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
@@ -72,6 +73,8 @@ class SystemMatrix:
         Coordinates and equations that are those of bushes' nodes.
     films : tuple
         Films on nodal bushes, and the places of their coordinates.
+    triplets : Triplets
+        Sums of all parts' entries.
     """
 
     coordinates: int
@@ -81,6 +84,7 @@ class SystemMatrix:
     bushes: list[tuple[Index, np.ndarray, BushFunctions]]
     mesh: np.ndarray
     films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
+    triplets: Triplets = field(default_factory=Triplets)
 
     @classmethod
     def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
@@ -178,7 +182,7 @@ class SystemMatrix:
                 triplets.append((added.row, added.col, added.data))
         rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
         size = self.coordinates + self.constraints
-        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        system = (self.triplets if meshes else Triplets()).matrix(rows, columns, values, size)
         if self.constraints:
             # rows of inactive constraints are lambda = 0
             idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)

@@ -254,3 +254,16 @@ def tangent_parallel(G, w, elements, colours, size, u, v, law, geometric, materi
             for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
                 _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
                 _scatter(K, elements[e], size, stride, slot[e], data_out)
+
+
+@njit(cache=True, fastmath=FAST)
+def product(indptr, indices, values, x, out):
+    """out (n, 3) of a sparse matrix (n, n) in compressed rows and x (n, 3)."""
+    for i in range(len(indptr) - 1):
+        x0 = x1 = x2 = 0.0
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            x0 += values[p] * x[j, 0]
+            x1 += values[p] * x[j, 1]
+            x2 += values[p] * x[j, 2]
+        out[i, 0], out[i, 1], out[i, 2] = x0, x1, x2

@@ -120,18 +120,20 @@ class SupernodalFactor:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution of one right-hand side (n,), or of several (n, k)."""
-        x = np.empty(right.shape)
-        x[self.order] = right
+        # in the panels' precision, whose range is small
+        scale = float(np.abs(right).max(initial=0.0)) or 1.0
+        x = np.empty(right.shape, dtype=self.panels.dtype)
+        x[self.order] = right / scale
         if right.ndim > 1:
             self._substitute_columns(x)
         else:
-            below = np.empty(int(np.diff(self.firsts).max()))
+            below = np.empty(int(np.diff(self.firsts).max()), dtype=x.dtype)
             substitute(self.starts, self.firsts, self.offsets, self.rows, self.panels, self.pivots, below, x)
-        return x[self.order]
+        return scale * x[self.order].astype(float)
 
     def rounded(self, error: float) -> SupernodalFactor:
         """The same in single precision if solutions are within that relative error; a factor is read from memory."""
-        single = replace(self, panels=self.panels.astype(np.float32))
+        single = replace(self, panels=self.panels.astype(np.float32), pivots=self.pivots.astype(np.float32))
         probe = np.sin(np.arange(1.0, len(self.pivots) + 1))
         exact = self.solve(probe)
         return single if np.linalg.norm(single.solve(probe) - exact) <= error * np.linalg.norm(exact) else self
@@ -167,7 +169,7 @@ def substitute(starts, firsts, offsets, rows, panels, pivots, below, x_out):
     Parameters
     ----------
     starts, firsts, offsets, rows, panels, pivots : as in `SupernodalFactor`
-    below : (r,) array
+    below : (r,) array, as x_out
         Of use within; r is the most rows below a supernode.
     x_out : (n,) array
         In the order of elimination.
