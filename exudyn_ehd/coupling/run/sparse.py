@@ -9,8 +9,9 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
 with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
 q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
-factor is kept over iterations and steps until convergence slows down (modified Newton).
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. Forces and
+inertia of bushes come to the residual beside Exudyn's sums (`exudyn_ehd.coupling.bush.residual`). The factor is kept
+over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
