@@ -31,14 +31,14 @@ from __future__ import annotations
 import time
 import weakref
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.factor import SystemFactor
 from exudyn_ehd.coupling.bush.recycled import RecycledSolver
-from exudyn_ehd.coupling.bush.residual import BushResiduals
+from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -63,9 +63,6 @@ from exudyn_ehd.status import InputError, require_integer, require_number
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 # Iterations of a step that are slow for its films' sake, not for an old factor of meshes that only films load.
 FILMS_FIRST = 4
-
-# Exudyn's stubs lack the self of its solvers' methods.
-Solver: TypeAlias = Any
 
 
 @dataclass(frozen=True, kw_only=True)
