@@ -25,8 +25,9 @@ from exudyn_ehd.coupling.items.object_mass import as_sparse
 
 # Exudyn's stubs lack the self of its solvers' methods.
 Solver: TypeAlias = Any
-# Bodies whose mass matrices change, beside objects with a user function for it.
-_CHANGING = ("FFRF", "KinematicTree", "RigidBody", "Beam", "ALE")
+# Bodies whose mass matrices are constant, and the beginnings of what is no body. Others may be so, too.
+_LASTING = ("Ground", "MassPoint", "MassPoint2D", "Mass1D", "RotationalMass1D")
+_MASSLESS = ("Connector", "Contact", "Joint")
 
 
 class BushResiduals:
@@ -63,9 +64,8 @@ class BushResiduals:
         for item, *_ in self.bushes:
             mbs.SetObjectParameter(item, "massMatrix", exu.MatrixContainer())
         try:
-            if lasting:
-                solver.ComputeMassMatrix(mbs)
-            else:
+            solver.ComputeMassMatrix(mbs)
+            if not lasting:
                 yield
         finally:
             for item, _, _, mass in self.bushes:
@@ -115,7 +115,7 @@ def _as_made(mbs: exu.MainSystem, item: Index, places: np.ndarray, bush: BushFun
 
 
 def _lasting(values: dict) -> bool:
-    """Whether the mass matrix of an object, as Exudyn returns it, is constant."""
+    """Whether an object has no mass matrix but a constant one."""
     if values["objectType"] == "GenericODE2":
         return not values["massMatrixUserFunction"]
-    return not any(kind in values["objectType"] for kind in _CHANGING)
+    return values["objectType"] in _LASTING or values["objectType"].startswith(_MASSLESS)
