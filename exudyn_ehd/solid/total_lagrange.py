@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from scipy.sparse import csr_matrix
 
-from exudyn_ehd.solid.elements import kernels
+from exudyn_ehd.solid.elements import blocks, kernels
 from exudyn_ehd.solid.elements.element import Element, Quadrature
 from exudyn_ehd.solid.mesh import BushMesh
 from exudyn_ehd.status import InputError, require_number, require_numbers
@@ -159,6 +159,15 @@ class TotalLagrange:
         return elements, limits, np.ascontiguousarray(gradient.transpose(0, 1, 3, 2)), weight
 
     @cached_property
+    def _blocks(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Natural gradients (3 q, n), their transpose, and the geometry of blocks of the sorted elements."""
+        assert self.quadrature is not None
+        natural = self.mesh.element.shapes(self.quadrature.points)[1]
+        inverse, weight = self.mesh.element.inverse_jacobians(self.mesh.nodes[self._geometry[0]], self.quadrature)
+        N = np.ascontiguousarray(natural.transpose(0, 2, 1)).reshape(-1, natural.shape[1])
+        return N, np.ascontiguousarray(N.T), blocks.blocks_of(inverse, weight)
+
+    @cached_property
     def _size(self) -> tuple[int, ...]:
         return (0,) * self.mesh.element.size
 
@@ -169,13 +178,10 @@ class TotalLagrange:
 
     def force(self, u: np.ndarray, v: np.ndarray | None = None) -> np.ndarray:
         """Return the internal force, shape (n, 3) [N], of displacements u [m] and velocities v [m/s], shape (n, 3)."""
-        elements, colours, G, w = self._geometry
         u, v, law = self._state(u, v)
         f = np.empty_like(u)
-        if self.parallel:
-            kernels.force_parallel(G, w, elements, colours, self._size, u, v, law, f)
-        else:
-            kernels.force_serial(G, w, elements, self._size, u, v, law, f)
+        kernel = blocks.force_parallel if self.parallel else blocks.force_serial
+        kernel(*self._blocks, self._geometry[0], u, v, law, f)
         return f
 
     def tangent(
@@ -213,8 +219,8 @@ class TotalLagrange:
 
     def inversion(self, u: np.ndarray) -> str:
         """Which element the displacements u (n, 3) turn inside out, and what to do about it; empty if none."""
-        elements, _, G, _ = self._geometry
-        ratio, row = kernels.smallest_volume_ratio(G, elements, self._size, np.ascontiguousarray(u, dtype=float))
+        N, _, X = self._blocks
+        ratio, row = blocks.smallest_volume_ratio(N, X, self._geometry[0], np.ascontiguousarray(u, dtype=float))
         if not ratio <= 0.0:
             return ""
         element = int(_colouring(self.mesh.elements)[0][row])
@@ -235,6 +241,12 @@ class TotalLagrange:
         rows, columns = np.repeat(elements, element.size, axis=1).ravel(), np.tile(elements, (1, element.size)).ravel()
         n = len(self.mesh.nodes)
         return csr_matrix((blocks.ravel(), (rows, columns)), shape=(n, n))
+
+    def inertia(self, a: np.ndarray) -> np.ndarray:
+        """Return the consistent mass times accelerations (n, 3) [m/s^2], shape (n, 3) [N]."""
+        M, out = self.scalar_mass, np.empty(a.shape)
+        kernels.product(M.indptr, M.indices, M.data, a, out)
+        return out
 
     @cached_property
     def mass(self) -> csr_matrix:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from exudyn_ehd.solid.elements.blocks import smallest_volume_ratio
 from exudyn_ehd.solid.elements.hex20 import EDGES, GAUSS8, GAUSS27, IRONS14, NODES, shapes
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.stress import StressRecovery
@@ -51,6 +52,16 @@ def readable_force(solid, u):
             S = lam * np.trace(E) * np.eye(3) + 2 * mu * E
             force[nodes] += weight * np.linalg.det(jacobian) * G @ (F @ S).T
     return force
+
+
+def test_inertia_and_the_least_volume_ratio_equal_theirs():
+    solid = TotalLagrange(mesh=SMALL, material=SOFT)
+    u = 0.002 * np.random.default_rng(6).standard_normal(SMALL.nodes.shape)
+    np.testing.assert_allclose(solid.inertia(u), solid.scalar_mass @ u, rtol=1e-12, atol=1e-15)
+    elements, _, G, _ = solid._geometry
+    ratios = np.linalg.det(np.eye(3) + np.einsum("eai,eqja->eqij", u[elements], G)).min(axis=1)
+    least, row = smallest_volume_ratio(solid._blocks[0], solid._blocks[2], elements, u)
+    assert least == pytest.approx(ratios.min(), rel=1e-12) and row == ratios.argmin()
 
 
 @pytest.mark.parametrize("rule", RULES)

@@ -59,14 +59,26 @@ class BushEquations:
         self, q: np.ndarray, q_t: np.ndarray, configuration: exu.ConfigurationType = exu.ConfigurationType.Current
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return displacement [m] and velocity [m/s] of all mesh nodes, shapes (n, 3), at a state of Exudyn."""
-        u, v = np.zeros(self.held.shape), np.zeros(self.held.shape)
-        u[self._moving] = q[: self.count].reshape(-1, 3)
-        v[self._moving] = q_t[: self.count].reshape(-1, 3)
+        u, v = self._nodal(q), self._nodal(q_t)
         if self.carrier is not None:
             self.carrier.move(q[self.count :], q_t[self.count :], configuration)
             u[self.slaved] = self.carrier.positions() - self.solid.mesh.nodes[self.slaved]
             v[self.slaved] = self.carrier.velocities()
         return u, v
+
+    def _nodal(self, q: np.ndarray) -> np.ndarray:
+        """Values of the mesh's own nodes as an array of all nodes, shape (n, 3)."""
+        values = np.zeros(self.held.size)
+        values[self._moving_rows] = q[: self.count]
+        return values.reshape(-1, 3)
+
+    def inertia(self, q_tt: np.ndarray) -> np.ndarray:
+        """Return M q_tt of a bush without a carrier."""
+        acceleration = self._nodal(q_tt)
+        acceleration[self.held] = 0.0
+        result = self.solid.inertia(acceleration).ravel()[self._moving_rows]
+        result[self._held] = self._held_inertia * q_tt[self._held]
+        return result
 
     def force(self, t: float, q: np.ndarray, q_t: np.ndarray) -> np.ndarray:
         """Return the right-hand side of M q_tt = force, generalised forces [N], [Nm]."""
@@ -77,7 +89,7 @@ class BushEquations:
             acceleration[self.slaved] = self.carrier.velocity_accelerations(q[self.count :], q_t[self.count :])
             nodal -= self.solid.scalar_mass @ acceleration
         result = np.empty(len(q))
-        result[: self.count] = nodal[self._moving].ravel()
+        result[: self.count] = nodal.ravel()[self._moving_rows]
         if self.carrier is not None:
             B = self.carrier.jacobian()
             result[self.count :] = B.T @ nodal[self.slaved].ravel()
@@ -141,10 +153,9 @@ class BushEquations:
         places = float(np.abs(self.carrier.positions()).max(initial=0.0))
         return math.hypot(self._rounding * size, self._carried_rounding * places)
 
-    def require_upright(self, mbs: exu.MainSystem, item: int, time: float, name: str) -> None:
+    def require_upright(self, mbs: exu.MainSystem, places: np.ndarray | slice, time: float, name: str) -> None:
         """Raise `RunError` if an element has turned inside out in the accepted state at the start of the step."""
         start, data = exu.ConfigurationType.StartOfStep, mbs.systemData
-        places = data.GetObjectLTGODE2(item)
         q, q_t = (np.asarray(get(start))[places] for get in (data.GetODE2Coordinates, data.GetODE2Coordinates_t))
         turned = self.solid.inversion(self.motion(q, q_t, start)[0])
         if turned:
@@ -221,11 +232,14 @@ class BushEquations:
         keep = np.ones(self.count)
         keep[self._held] = 0.0
         mask = csr_matrix((keep, (np.arange(self.count), np.arange(self.count))))
-        # the held coordinates swing far above every frequency of the mesh
-        inertia = self._spring / (100.0 * self._highest_frequency_squared)
         M = (mask @ M @ mask).tocsr()
         M.eliminate_zeros()
-        return (M + inertia * (identity(self.count, format="csr") - mask)).tocsr()
+        return (M + self._held_inertia * (identity(self.count, format="csr") - mask)).tocsr()
+
+    @cached_property
+    def _held_inertia(self) -> float:
+        """Of a coordinate held by a spring, which swings far above every frequency of the mesh."""
+        return self._spring / (100.0 * self._highest_frequency_squared)
 
     @cached_property
     def _mass_values(self) -> np.ndarray:

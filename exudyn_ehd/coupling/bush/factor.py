@@ -18,6 +18,7 @@ from scipy.linalg import LinAlgWarning, lu_factor, lu_solve
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU
 
+from exudyn_ehd.solid.linear.elimination import Elimination
 from exudyn_ehd.solid.linear.supernodal import mesh_factor, sparse_factor
 
 # Coordinates and multipliers beside the meshes at most, which are solved for as dense.
@@ -36,6 +37,8 @@ class SystemFactor:
         Coordinates of meshes; one factor of all where there are none, or much beside them.
     pivoting : float
         As in `sparse_factor`, of that one.
+    known : Elimination or None
+        Analysis of the meshes' matrix before.
 
     Raises
     ------
@@ -43,19 +46,22 @@ class SystemFactor:
         If the matrix is singular.
     """
 
-    def __init__(self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float) -> None:
+    def __init__(
+        self, system: csc_matrix, mesh: np.ndarray, *, pivoting: float, known: Elimination | None = None
+    ) -> None:
         self.places, self.rest = np.flatnonzero(mesh), np.flatnonzero(~mesh)
         self.whole: SuperLU | None = None
+        self.analysis: Elimination | None = None
         if not len(self.places) or len(self.rest) > LARGEST_REST:
             self.whole = sparse_factor(system, pivoting=pivoting)
             self.nbytes, self.coupled = 12 * self.whole.nnz, True
             return
-        self.factor = factor = mesh_factor(system[self.places][:, self.places])
+        self.factor = factor = mesh_factor(_part(system, self.places), known)
         if isinstance(factor, SuperLU):
             self.nbytes = 12 * factor.nnz
         else:
             self.factor = rounded = factor.rounded(SINGLE)
-            self.nbytes = rounded.nbytes
+            self.nbytes, self.analysis = rounded.nbytes, factor.analysis
         along = system[self.places][:, self.rest]
         self.across = system[self.rest][:, self.places].tocsr()
         self.coupled = bool(along.nnz or self.across.nnz)
@@ -87,3 +93,7 @@ class SystemFactor:
                 y -= self.moved @ x
         out[self.places] = y
         return out
+
+
+def _part(system: csc_matrix, places: np.ndarray) -> csc_matrix:
+    return system if len(places) == system.shape[0] else system[places][:, places]

@@ -26,11 +26,16 @@ class BushFunctions:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> list[float]:
         """Generalised force (n,), a list, which Exudyn reads fastest; raises if an element was inside out."""
+        self.watch(mbs, item)
+        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
+
+    def watch(self, mbs: exu.MainSystem, item: int, places: np.ndarray | slice | None = None) -> None:
+        """Raise if an element is inside out at the start of a step; ``places`` of the object's coordinates if known."""
         start = mbs.systemData.GetTime(exu.ConfigurationType.StartOfStep)
         if start != self._watched:
             self._watched = start
-            self.equations.require_upright(mbs, item, start, self.name)
-        return self.equations.force(t, np.array(q), np.array(q_t)).tolist()
+            known = np.array(mbs.systemData.GetObjectLTGODE2(item)) if places is None else places
+            self.equations.require_upright(mbs, known, start, self.name)
 
     def jacobian(
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float

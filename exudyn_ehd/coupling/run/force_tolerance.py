@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from typing import Any, Protocol
 
 import exudyn as exu
+import numpy as np
 
 from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import ObjectIndex, Trial
@@ -49,7 +50,7 @@ class ForceTolerance:
 
     def __init__(self, films: Sequence[Film]) -> None:
         self.films = films
-        self.bushes: list[tuple[BushFunctions, list[int]]] = []
+        self.bushes: list[tuple[BushFunctions, np.ndarray]] = []
         self.given: float | None = None
 
     def set(self, mbs: exu.MainSystem, solver: Any) -> None:
@@ -74,10 +75,10 @@ def free_bushes(mbs: exu.MainSystem) -> list[BushFunctions]:
     return [bush for bush, _ in _bushes(mbs) if bush.equations.carrier is None and not bush.equations.held.any()]
 
 
-def _bushes(mbs: exu.MainSystem) -> list[tuple[BushFunctions, list[int]]]:
+def _bushes(mbs: exu.MainSystem) -> list[tuple[BushFunctions, np.ndarray]]:
     owners = ((force_owner(mbs, number), number) for number in range(mbs.systemData.NumberOfObjects()))
     data = mbs.systemData
-    return [(o, data.GetObjectLTGODE2(ObjectIndex(n))) for o, n in owners if isinstance(o, BushFunctions)]
+    return [(o, np.array(data.GetObjectLTGODE2(ObjectIndex(n)))) for o, n in owners if isinstance(o, BushFunctions)]
 
 
 def _force(trial: Trial | None) -> list[float]:

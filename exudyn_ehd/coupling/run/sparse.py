@@ -9,8 +9,9 @@ Lagrange multipliers; residual and Jacobian arrive scaled by beta h^2:
 
 with r = gamma / (beta h) in the rows of constraints that are solved for velocities and 1 in others, after which
 q -= d, q_t -= gamma/(beta h) d, q_tt -= d / (f beta h^2): read off Exudyn 1.13.6's own matrices and steps,
-and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. The
-factor is kept over iterations and steps until convergence slows down (modified Newton).
+and held by the tests, which compare whole runs. The Jacobian is assembled from the objects' own Jacobians. Forces and
+inertia of bushes come to the residual beside Exudyn's sums (`exudyn_ehd.coupling.bush.residual`). The factor is kept
+over iterations and steps until convergence slows down (modified Newton).
 
 Films on nodal bushes take part as operators: their dense blocks over the bore would fill the factor, while a product
 with their exact tangent costs one film solve. With J0 everything else and F the films, d = J0^-1 (r + z), where z, not
@@ -30,13 +31,14 @@ from __future__ import annotations
 import time
 import weakref
 from dataclasses import dataclass, field
-from typing import Any, TypeAlias
+from typing import Any
 
 import exudyn as exu
 import numpy as np
 
 from exudyn_ehd.coupling.bush.factor import SystemFactor
 from exudyn_ehd.coupling.bush.recycled import RecycledSolver
+from exudyn_ehd.coupling.bush.residual import BushResiduals, Solver
 from exudyn_ehd.coupling.contract import require_system
 from exudyn_ehd.coupling.element.side_by_side import side_by_side
 from exudyn_ehd.coupling.run.settings import require_settings, require_time
@@ -53,6 +55,7 @@ from exudyn_ehd.coupling.run.start_guess import StartGuess, motion
 from exudyn_ehd.coupling.run.system_matrix import SystemMatrix
 from exudyn_ehd.coupling.watch.solver_state import user_function
 from exudyn_ehd.coupling.watch.step_control import StepControl
+from exudyn_ehd.solid.linear.elimination import Elimination
 from exudyn_ehd.status import InputError, require_integer, require_number
 
 # Residual that a step of Newton's method leaves in its linear equations with films, relative, and the largest number of
@@ -60,9 +63,6 @@ from exudyn_ehd.status import InputError, require_integer, require_number
 FILM_TOLERANCE, FILM_PRODUCTS = 1e-3, 60
 # Iterations of a step that are slow for its films' sake, not for an old factor of meshes that only films load.
 FILMS_FIRST = 4
-
-# Exudyn's stubs lack the self of its solvers' methods.
-Solver: TypeAlias = Any
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,8 +196,10 @@ def SolveDynamicSparse(
         mbs.Assemble()
     run = SparseRun()
     before = user_function(mbs.GetPreNewtonResidualUserFunction())
+    matrix = SystemMatrix.of(mbs)
     loop = _Newton(
-        matrix=SystemMatrix.of(mbs),
+        matrix=matrix,
+        residual=BushResiduals(mbs, matrix.bushes),
         guess=start_guess(mbs, before or None),
         reuse=FactorReuse() if reuse is None else reuse,
         run=run,
@@ -241,22 +243,28 @@ class _Newton:
     """The Newton loop of one step; called by Exudyn as f(solver, mbs, settings)."""
 
     matrix: SystemMatrix
+    residual: BushResiduals
     guess: StartGuess
     reuse: FactorReuse
     run: SparseRun
     factor: SystemFactor | None = None
+    analysis: Elimination | None = None
     recycled: RecycledSolver = field(default_factory=RecycledSolver)
     step_size: float = 0.0
     baseline: int = 0
     excess: int = 0
 
     def __call__(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
+        with self.residual.without_masses(mbs, solver, settings):
+            return self._iterate(solver, mbs, settings)
+
+    def _iterate(self, solver: Solver, mbs: exu.MainSystem, settings: exu.SimulationSettings) -> bool:
         newton, data, turn = settings.timeIntegration.newton, mbs.systemData, solver.it.discontinuousIteration
         # Exudyn's Newton method forgets the multipliers of the step before, too
         data.SetAECoordinates([0.0] * self.matrix.constraints)
         solver.ComputeNewtonUpdate(mbs, settings, True)
         self.guess(mbs, data.GetTime(), 0, turn)
-        error = first = solver.ComputeNewtonResidual(mbs, settings)
+        error = first = self.residual(solver, mbs, settings)
         if turn > 0:
             # a contact has opened or closed
             self.factor = None
@@ -280,7 +288,7 @@ class _Newton:
             solver.it.newtonStepsCount += 1
             self.guess(mbs, data.GetTime(), iteration, turn)
             age += 1
-            previous, error = error, solver.ComputeNewtonResidual(mbs, settings)
+            previous, error = error, self.residual(solver, mbs, settings)
             if error <= max(solver.newton.absoluteTolerance, newton.relativeTolerance * first):
                 self.run.steps += 1
                 self.baseline = self.baseline or iteration
@@ -305,9 +313,12 @@ class _Newton:
         system = self.matrix.assemble(mbs, solver, index2=index2)
         constraints = self.matrix.constraints
         try:
-            self.factor = SystemFactor(system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0)
+            self.factor = SystemFactor(
+                system, self.matrix.mesh, pivoting=0.01 if constraints else 0.0, known=self.analysis
+            )
         except RuntimeError:
             return False
+        self.analysis = self.factor.analysis
         self.baseline = self.excess = 0
         self.run.jacobians += 1
         solver.it.newtonJacobiCount += 1
@@ -361,7 +372,7 @@ class _Newton:
     def _update(self, solver: Solver, mbs: exu.MainSystem) -> None:
         start = time.perf_counter()
         assert self.factor is not None
-        d = self._solve(solver, mbs, np.array(solver.GetSystemResidual()))
+        d = self._solve(solver, mbs, self.residual.vector)
         self.run.seconds_solve += time.perf_counter() - start
         self.run.iterations += 1
         data, n, h = mbs.systemData, self.matrix.coordinates, self.step_size

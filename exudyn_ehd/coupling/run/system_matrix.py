@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import exudyn as exu
@@ -14,6 +14,7 @@ from exudyn_ehd.coupling.bush.functions import BushFunctions
 from exudyn_ehd.coupling.contract import Index, NodeIndex, ObjectIndex
 from exudyn_ehd.coupling.element.nodal import NodalFilmElement
 from exudyn_ehd.coupling.items.object_mass import as_sparse, planar_mass, point_mass
+from exudyn_ehd.solid.linear.triplets import Triplets
 from exudyn_ehd.status import InputError
 
 # Bodies of one node without stiffness; velocity forces of theirs are left out of the matrix, as in Exudyn.
@@ -66,18 +67,24 @@ class SystemMatrix:
         One function (mbs, Factors) -> (rows, columns, values) per object.
     meshes : tuple
         The same of nodal bushes.
+    bushes : list
+        Their objects, the places of their coordinates, and their functions.
     mesh : (n,) array of bool
         Coordinates and equations that are those of bushes' nodes.
     films : tuple
         Films on nodal bushes, and the places of their coordinates.
+    triplets : Triplets
+        Sums of all parts' entries.
     """
 
     coordinates: int
     constraints: int
     parts: tuple[Callable, ...]
     meshes: tuple[Callable, ...]
+    bushes: list[tuple[Index, np.ndarray, BushFunctions]]
     mesh: np.ndarray
     films: tuple[tuple[NodalFilmElement, np.ndarray], ...]
+    triplets: Triplets = field(default_factory=Triplets)
 
     @classmethod
     def of(cls, mbs: exu.MainSystem) -> SystemMatrix:
@@ -99,6 +106,7 @@ class SystemMatrix:
         n = len(data.GetODE2Coordinates())
         films: list[tuple[NodalFilmElement, np.ndarray]] = []
         meshes: list[Callable] = []
+        bushes: list[tuple[Index, np.ndarray, BushFunctions]] = []
         mesh = np.zeros(n + len(data.GetAECoordinates()), dtype=bool)
         parts: list[Callable] = [
             _euler_parameters(mbs, NodeIndex(number), n)
@@ -120,6 +128,7 @@ class SystemMatrix:
                 films.append((owner, places))
             elif isinstance(owner, BushFunctions):
                 meshes.append(_generic(mbs, item, places))
+                bushes.append((item, places, owner))
                 mesh[places[: owner.equations.count]] = True
             elif mbs.GetObject(item)["objectType"] == "GenericODE2":
                 parts.append(_generic(mbs, item, places))
@@ -130,6 +139,7 @@ class SystemMatrix:
             constraints=len(data.GetAECoordinates()),
             parts=tuple(parts),
             meshes=tuple(meshes),
+            bushes=bushes,
             mesh=mesh,
             films=tuple(films),
         )
@@ -172,7 +182,7 @@ class SystemMatrix:
                 triplets.append((added.row, added.col, added.data))
         rows, columns, values = (np.concatenate(x) for x in zip(*triplets, strict=True))
         size = self.coordinates + self.constraints
-        system = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        system = (self.triplets if meshes else Triplets()).matrix(rows, columns, values, size)
         if self.constraints:
             # rows of inactive constraints are lambda = 0
             idle = np.flatnonzero(np.asarray(abs(system).sum(axis=1)).ravel() == 0)

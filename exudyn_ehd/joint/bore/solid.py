@@ -31,6 +31,8 @@ SLOWEST, NEARBY, EXACT = 0.3, 0.05, 1e-3
 # Corrections by one K; states at which the solid is made linear in a search, and parts of a step that lead to one.
 CORRECTIONS, LINEARISATIONS, HALVINGS = 40, 40, 8
 SMALLEST_PART = 0.05
+# Unit loads that the solid answers at a time.
+COLUMNS = 256
 # Of nodes of the bore that are held: times the largest stiffness of the others.
 HELD = 1e6
 NO_BALANCE = (
@@ -244,12 +246,18 @@ class SolidElasticity(Elasticity):
         self._factor = factor = mesh_factor(self.solid.tangent(self.displacements)[free][:, free])
         self._contraction, self._linearised = 0.0, self._linearised + 1
         places = self._places
-        unit = np.zeros((int(free.sum()), places.size))
-        unit[places, np.arange(places.size)] = 1.0
-        answer = factor.solve(unit)
-        inner = np.linalg.inv(answer[places])
+        bore = np.empty((places.size, places.size))
         axial = 3 * self.solid.mesh.bore.nodes + 2
-        self._by_axial = np.where(free[axial, None], answer[(np.cumsum(free) - 1)[axial]], 0.0)
+        self._by_axial = np.zeros((axial.size, places.size))
+        # of a fine mesh all answers together take gigabytes
+        for first in range(0, places.size, COLUMNS):
+            some = places[first : first + COLUMNS]
+            unit = np.zeros((int(free.sum()), some.size))
+            unit[some, np.arange(some.size)] = 1.0
+            answer = factor.solve(unit)
+            bore[:, first : first + some.size] = answer[places]
+            self._by_axial[free[axial], first : first + some.size] = answer[(np.cumsum(free) - 1)[axial[free[axial]]]]
+        inner = np.linalg.inv(bore)
         if self._moves.all():
             return 0.5 * (inner + inner.T)
         # nodes that are held are so beside the others

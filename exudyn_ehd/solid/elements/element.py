@@ -98,7 +98,10 @@ class Element:
 
     def reference_gradients(self, corners: np.ndarray, rule: Quadrature) -> tuple[np.ndarray, np.ndarray]:
         """Return dN_a/dX, shape (m, q, n, 3) [1/m], and volume weights (m, q) [m^3] of elements (m, n, 3)."""
-        natural = self.shapes(rule.points)[1]
-        jacobian = np.einsum("qar,eai->eqir", natural, corners)
-        gradient = np.einsum("qar,eqri->eqai", natural, np.linalg.inv(jacobian))
-        return gradient, rule.weights * np.linalg.det(jacobian)
+        inverse, weight = self.inverse_jacobians(corners, rule)
+        return np.einsum("qar,eqri->eqai", self.shapes(rule.points)[1], inverse), weight
+
+    def inverse_jacobians(self, corners: np.ndarray, rule: Quadrature) -> tuple[np.ndarray, np.ndarray]:
+        """Return dxi_r/dX_i, shape (m, q, 3, 3) [1/m], and volume weights (m, q) [m^3] of elements (m, n, 3)."""
+        jacobian = np.einsum("qar,eai->eqir", self.shapes(rule.points)[1], corners)
+        return np.linalg.inv(jacobian), rule.weights * np.linalg.det(jacobian)

@@ -1,4 +1,4 @@
-"""Compiled loops of the total Lagrangian element: force and tangent.
+"""Compiled laws of the total Lagrangian element, and the loops of its tangent; those of its force are `blocks`.
 
 Every element has n nodes; n is the length of the tuple ``size``, and so known when a kernel is compiled for it.
 
@@ -47,93 +47,82 @@ def _gradient(nodal, Gq, size, F_out):
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _volume_change(H):
-    """J - 1 of F = I + H, without loss of digits."""
-    trace = H[0, 0] + H[1, 1] + H[2, 2]
-    minors = H[0, 0] * H[1, 1] - H[0, 1] * H[1, 0] + H[0, 0] * H[2, 2] - H[0, 2] * H[2, 0]
-    minors += H[1, 1] * H[2, 2] - H[1, 2] * H[2, 1]
-    whole = H[0, 0] * (H[1, 1] * H[2, 2] - H[1, 2] * H[2, 1]) - H[0, 1] * (H[1, 0] * H[2, 2] - H[1, 2] * H[2, 0])
-    return trace + minors + whole + H[0, 2] * (H[1, 0] * H[2, 1] - H[1, 1] * H[2, 0])
+def volume_change(h):
+    """J - 1 of F = I + H, without loss of digits; H row by row."""
+    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
+    minors = h00 * h11 - h01 * h10 + h00 * h22 - h02 * h20 + h11 * h22 - h12 * h21
+    whole = h00 * (h11 * h22 - h12 * h21) - h01 * (h10 * h22 - h12 * h20) + h02 * (h10 * h21 - h11 * h20)
+    return h00 + h11 + h22 + minors + whole
 
 
 @njit(cache=True, inline="always")
-def _inverse_transposed(H, T_out):
-    """Write F^-T for F = I + H, and return ln J; nan unless J > 0."""
-    change = _volume_change(H)
+def inverse_transposed(h):
+    """Return ln J, nan unless J > 0, and F^-T row by row for F = I + H."""
+    change = volume_change(h)
     log = np.log1p(change) if change > -1.0 else np.nan
-    f00, f11, f22 = 1.0 + H[0, 0], 1.0 + H[1, 1], 1.0 + H[2, 2]
     J = 1.0 + change
-    T_out[0, 0], T_out[1, 1] = (f11 * f22 - H[1, 2] * H[2, 1]) / J, (f00 * f22 - H[0, 2] * H[2, 0]) / J
-    T_out[2, 2], T_out[0, 1] = (f00 * f11 - H[0, 1] * H[1, 0]) / J, (H[1, 2] * H[2, 0] - H[1, 0] * f22) / J
-    T_out[0, 2], T_out[1, 0] = (H[1, 0] * H[2, 1] - f11 * H[2, 0]) / J, (H[0, 2] * H[2, 1] - H[0, 1] * f22) / J
-    T_out[1, 2], T_out[2, 0] = (H[0, 1] * H[2, 0] - f00 * H[2, 1]) / J, (H[0, 1] * H[1, 2] - H[0, 2] * f11) / J
-    T_out[2, 1] = (H[0, 2] * H[1, 0] - f00 * H[1, 2]) / J
-    return log
+    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
+    f00, f11, f22 = 1.0 + h00, 1.0 + h11, 1.0 + h22
+    first = (f11 * f22 - h12 * h21) / J, (h12 * h20 - h10 * f22) / J, (h10 * h21 - f11 * h20) / J
+    second = (h02 * h21 - h01 * f22) / J, (f00 * f22 - h02 * h20) / J, (h01 * h20 - f00 * h21) / J
+    third = (h01 * h12 - h02 * f11) / J, (h02 * h10 - f00 * h12) / J, (f00 * f11 - h01 * h10) / J
+    return log, first + second + third
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
-def _second_piola(H, Ht, law, S_out):
-    """S = lam tr(E) I + 2 mu E with E + beta dE/dt in the place of E; of Neo-Hooke's material the rate's part only."""
-    lam, mu, beta = law.lam, law.mu, law.beta
-    for i in range(3):
-        for j in range(i, 3):
-            strain = 0.0
-            if not law.neo_hooke:
-                strain += H[i, j] + H[j, i]
-                for k in range(3):
-                    strain += H[k, i] * H[k, j]
-            if beta != 0.0:
-                rate = Ht[i, j] + Ht[j, i]
-                for k in range(3):
-                    rate += H[k, i] * Ht[k, j] + Ht[k, i] * H[k, j]
-                strain += beta * rate
-            S_out[i, j] = mu * strain
-            S_out[j, i] = S_out[i, j]
-    pressure = 0.5 * lam / mu * (S_out[0, 0] + S_out[1, 1] + S_out[2, 2])
-    for i in range(3):
-        S_out[i, i] += pressure
+def doubled_strain(h):
+    """2 E = H + H^T + H^T H as 00, 11, 22, 01, 02, 12."""
+    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
+    e00 = 2.0 * h00 + h00 * h00 + h10 * h10 + h20 * h20
+    e11 = 2.0 * h11 + h01 * h01 + h11 * h11 + h21 * h21
+    e22 = 2.0 * h22 + h02 * h02 + h12 * h12 + h22 * h22
+    e01 = h01 + h10 + h00 * h01 + h10 * h11 + h20 * h21
+    e02 = h02 + h20 + h00 * h02 + h10 * h12 + h20 * h22
+    return e00, e11, e22, e01, e02, h12 + h21 + h01 * h02 + h11 * h12 + h21 * h22
 
 
-@njit(cache=True, fastmath=FAST)
-def _element_force(G, w, nodes, size, u, v, law, work, f_out):
-    """Add f_a = sum_q w P G_a of one element to f_out; G (nq, 3, n), work (9 n + 45,)."""
-    n = len(size)
-    ue = work[: 3 * n].reshape(3, n)
-    ve = work[3 * n : 6 * n].reshape(3, n)
-    fe = work[6 * n : 9 * n].reshape(3, n)
-    rest = work[9 * n :]
-    H = rest[:9].reshape(3, 3)
-    Ht = rest[9:18].reshape(3, 3)
-    S = rest[18:27].reshape(3, 3)
-    P = rest[27:36].reshape(3, 3)
-    T = rest[36:45].reshape(3, 3)
-    for a in range(n):
-        for i in range(3):
-            ue[i, a] = u[nodes[a], i]
-            fe[i, a] = 0.0
-            if law.beta != 0.0:
-                ve[i, a] = v[nodes[a], i]
-    for q in range(len(w)):
-        _gradient(ue, G[q], size, H)
-        if law.beta != 0.0:
-            _gradient(ve, G[q], size, Ht)
-        _second_piola(H, Ht, law, S)
-        for i in range(3):
-            for j in range(3):
-                P[i, j] = w[q] * (S[i, j] + H[i, 0] * S[0, j] + H[i, 1] * S[1, j] + H[i, 2] * S[2, j])
-        if law.neo_hooke:
-            log = law.lam * _inverse_transposed(H, T)
-            for i in range(3):
-                for j in range(3):
-                    shear = H[i, j] + T[i, 0] * H[j, 0] + T[i, 1] * H[j, 1] + T[i, 2] * H[j, 2]
-                    P[i, j] += w[q] * (law.mu * shear + log * T[i, j])
-        for i in range(3):
-            p0, p1, p2 = P[i, 0], P[i, 1], P[i, 2]
-            for a in range(n):
-                fe[i, a] += p0 * G[q, 0, a] + p1 * G[q, 1, a] + p2 * G[q, 2, a]
-    for a in range(n):
-        for i in range(3):
-            f_out[nodes[a], i] += fe[i, a]
+@njit(cache=True, fastmath=FAST, inline="always")
+def doubled_rate(h, k):
+    """2 dE/dt of H and its rate K, ordered as in `doubled_strain`."""
+    h00, h01, h02, h10, h11, h12, h20, h21, h22 = h
+    k00, k01, k02, k10, k11, k12, k20, k21, k22 = k
+    e00 = 2.0 * (k00 + h00 * k00 + h10 * k10 + h20 * k20)
+    e11 = 2.0 * (k11 + h01 * k01 + h11 * k11 + h21 * k21)
+    e22 = 2.0 * (k22 + h02 * k02 + h12 * k12 + h22 * k22)
+    e01 = k01 + k10 + h00 * k01 + k00 * h01 + h10 * k11 + k10 * h11 + h20 * k21 + k20 * h21
+    e02 = k02 + k20 + h00 * k02 + k00 * h02 + h10 * k12 + k10 * h12 + h20 * k22 + k20 * h22
+    return e00, e11, e22, e01, e02, k12 + k21 + h01 * k02 + k01 * h02 + h11 * k12 + k11 * h12 + h21 * k22 + k21 * h22
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def second_piola(e, law):
+    """S = lam tr(E) I + 2 mu E of 2 E, both as 00, 11, 22, 01, 02, 12."""
+    e00, e11, e22, e01, e02, e12 = e
+    mu, pressure = law.mu, 0.5 * law.lam * (e00 + e11 + e22)
+    return mu * e00 + pressure, mu * e11 + pressure, mu * e22 + pressure, mu * e01, mu * e02, mu * e12
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def viscous_strain(h, k, law):
+    """2 (E + beta dE/dt), which S of `second_piola` takes; of Neo-Hooke's material the rate's part only."""
+    e00, e11, e22, e01, e02, e12 = doubled_strain(h)
+    if law.neo_hooke:
+        e00 = e11 = e22 = e01 = e02 = e12 = 0.0
+    if law.beta != 0.0:
+        r00, r11, r22, r01, r02, r12 = doubled_rate(h, k)
+        e00, e11, e22 = e00 + law.beta * r00, e11 + law.beta * r11, e22 + law.beta * r22
+        e01, e02, e12 = e01 + law.beta * r01, e02 + law.beta * r02, e12 + law.beta * r12
+    return e00, e11, e22, e01, e02, e12
+
+
+@njit(cache=True, inline="always")
+def _entries(H):
+    return H[0, 0], H[0, 1], H[0, 2], H[1, 0], H[1, 1], H[1, 2], H[2, 0], H[2, 1], H[2, 2]
+
+
+@njit(cache=True, fastmath=FAST, inline="always")
+def _dot(a, b, i, j):
+    return a[i] * b[j] + a[i + 1] * b[j + 1] + a[i + 2] * b[j + 2]
 
 
 @njit(cache=True, fastmath=FAST)
@@ -151,11 +140,7 @@ def _element_tangent(G, w, nodes, size, u, v, law, geometric, material, work, K)
     ue = work[: 3 * n].reshape(3, n)
     ve = work[3 * n : 6 * n].reshape(3, n)
     g = work[6 * n : 9 * n].reshape(3, n)
-    rest = work[9 * n :]
-    H = rest[:9].reshape(3, 3)
-    Ht = rest[9:18].reshape(3, 3)
-    S = rest[18:27].reshape(3, 3)
-    T = rest[27:36].reshape(3, 3)
+    H, Ht = work[9 * n : 9 * n + 9].reshape(3, 3), work[9 * n + 9 :].reshape(3, 3)
     for a in range(n):
         for i in range(3):
             ue[i, a] = u[nodes[a], i]
@@ -167,40 +152,40 @@ def _element_tangent(G, w, nodes, size, u, v, law, geometric, material, work, K)
         _gradient(ue, G[q], size, H)
         if law.beta != 0.0:
             _gradient(ve, G[q], size, Ht)
+        h, k = _entries(H), _entries(Ht)
         if law.neo_hooke:
-            log = law.lam * _inverse_transposed(H, T)
-            for i in range(3):
-                for a in range(n):
-                    g[i, a] = T[i, 0] * G[q, 0, a] + T[i, 1] * G[q, 1, a] + T[i, 2] * G[q, 2, a]
-                for j in range(3):
-                    S[i, j] = law.mu if i == j else 0.0
-            T[:] = 0.0
-            wg = w[q] * geometric
-            _add_blocks(G[q], g, S, T, wg, wg * law.lam, wg * (law.mu - log), size, K)
+            log, T = inverse_transposed(h)
+            for a in range(n):
+                for i in range(3):
+                    g[i, a] = T[3 * i] * G[q, 0, a] + T[3 * i + 1] * G[q, 1, a] + T[3 * i + 2] * G[q, 2, a]
+            wg, mu = w[q] * geometric, law.mu
+            stress, none = (mu, mu, mu, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            _add_blocks(G[q], g, stress, none, wg, wg * law.lam, wg * (mu - law.lam * log), size, K)
             if law.beta == 0.0 and viscous == 0.0:
                 continue
-        _second_piola(H, Ht, law, S)
+        S = second_piola(viscous_strain(h, k, law), law)
         for i in range(3):
             H[i, i] += 1.0
             for a in range(n):
                 g[i, a] = H[i, 0] * G[q, 0, a] + H[i, 1] * G[q, 1, a] + H[i, 2] * G[q, 2, a]
-        for i in range(3):
-            for j in range(3):
-                T[i, j] = H[i, 0] * H[j, 0] + H[i, 1] * H[j, 1] + H[i, 2] * H[j, 2]
+        F = _entries(H)
+        C00, C11, C22 = _dot(F, F, 0, 0), _dot(F, F, 3, 3), _dot(F, F, 6, 6)
+        C = C00, C11, C22, _dot(F, F, 0, 3), _dot(F, F, 0, 6), _dot(F, F, 3, 6)
         wv = w[q] * viscous
-        _add_blocks(G[q], g, S, T, w[q] * geometric, wv * law.lam, wv * law.mu, size, K)
+        _add_blocks(G[q], g, S, C, w[q] * geometric, wv * law.lam, wv * law.mu, size, K)
 
 
 @njit(cache=True, fastmath=FAST, inline="always")
 def _add_blocks(G, g, S, C, wg, wl, wm, size, K):
     """Add ``wg (G_a S G_b) I + wl g_a g_b^T + wm (g_b g_a^T + (G_a G_b) C)`` to K (6, n, n)."""
     n = len(size)
-    C00, C11, C22, C01, C02, C12 = C[0, 0], C[1, 1], C[2, 2], C[0, 1], C[0, 2], C[1, 2]
+    S00, S11, S22, S01, S02, S12 = S
+    C00, C11, C22, C01, C02, C12 = C
     for a in range(n):
         G0, G1, G2 = G[0, a], G[1, a], G[2, a]
-        s0 = wg * (S[0, 0] * G0 + S[0, 1] * G1 + S[0, 2] * G2)
-        s1 = wg * (S[0, 1] * G0 + S[1, 1] * G1 + S[1, 2] * G2)
-        s2 = wg * (S[0, 2] * G0 + S[1, 2] * G1 + S[2, 2] * G2)
+        s0 = wg * (S00 * G0 + S01 * G1 + S02 * G2)
+        s1 = wg * (S01 * G0 + S11 * G1 + S12 * G2)
+        s2 = wg * (S02 * G0 + S12 * G1 + S22 * G2)
         m0, m1, m2 = wm * G0, wm * G1, wm * G2
         l0, l1, l2 = wl * g[0, a], wl * g[1, a], wl * g[2, a]
         t0, t1 = wm * g[0, a], wm * g[1, a]
@@ -214,24 +199,6 @@ def _add_blocks(G, g, S, C, wg, wl, wm, size, K):
             K[3, a, b] += d * C01 + l0 * g[1, b] + t1 * g[0, b]
             K[4, a, b] += d * C02 + l0 * g[2, b] + t2 * g[0, b]
             K[5, a, b] += d * C12 + l1 * g[2, b] + t2 * g[1, b]
-
-
-@njit(cache=True)
-def smallest_volume_ratio(G, elements, size, u):
-    """Smallest det F at the quadrature points, and the row of ``elements`` where it is."""
-    n = len(size)
-    least, where = np.inf, 0
-    nodal, H = np.empty((3, n)), np.empty((3, 3))
-    for e in range(len(elements)):
-        for a in range(n):
-            for i in range(3):
-                nodal[i, a] = u[elements[e, a], i]
-        for q in range(G.shape[1]):
-            _gradient(nodal, G[e, q], size, H)
-            ratio = 1.0 + _volume_change(H)
-            if not ratio >= least:
-                least, where = ratio, e
-    return least, where
 
 
 @njit(cache=True, inline="always")
@@ -256,37 +223,6 @@ def _scatter(K, nodes, size, stride, slot, data_out):
 
 
 @njit(cache=True, fastmath=FAST)
-def force_serial(G, w, elements, size, u, v, law, f_out):
-    """Internal force of all elements.
-
-    Parameters
-    ----------
-    G : (m, nq, 3, n) [1/m]; w : (m, nq) [m^3]; elements : (m, n)
-    size : tuple of n entries
-    u, v : (nodes, 3) [m], [m/s]
-    law : Law
-    f_out : (nodes, 3) [N], overwritten
-    """
-    f_out[:] = 0.0
-    work = np.empty(9 * len(size) + 45)
-    for e in range(len(elements)):
-        _element_force(G[e], w[e], elements[e], size, u, v, law, work, f_out)
-
-
-@njit(cache=True, fastmath=FAST, parallel=True)
-def force_parallel(G, w, elements, colours, size, u, v, law, f_out):
-    """`force_serial` on several threads; elements colours[c] to colours[c + 1] share no node."""
-    f_out[:] = 0.0
-    for c in range(len(colours) - 1):
-        first, count = colours[c], colours[c + 1] - colours[c]
-        chunks = min(count, 8)
-        for chunk in prange(chunks):
-            work = np.empty(9 * len(size) + 45)
-            for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
-                _element_force(G[e], w[e], elements[e], size, u, v, law, work, f_out)
-
-
-@njit(cache=True, fastmath=FAST)
 def tangent_serial(G, w, elements, size, u, v, law, geometric, material, stride, slot, data_out):
     """Tangent of all elements as values of a fixed CSR pattern.
 
@@ -298,7 +234,7 @@ def tangent_serial(G, w, elements, size, u, v, law, geometric, material, stride,
     data_out : (nnz,) [N/m], overwritten
     """
     data_out[:] = 0.0
-    work = np.empty(9 * len(size) + 36)
+    work = np.empty(9 * len(size) + 18)
     K = np.empty((6, len(size), len(size)))
     for e in range(len(elements)):
         _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
@@ -313,8 +249,21 @@ def tangent_parallel(G, w, elements, colours, size, u, v, law, geometric, materi
         first, count = colours[c], colours[c + 1] - colours[c]
         chunks = min(count, 8)
         for chunk in prange(chunks):
-            work = np.empty(9 * len(size) + 36)
+            work = np.empty(9 * len(size) + 18)
             K = np.empty((6, len(size), len(size)))
             for e in range(first + chunk * count // chunks, first + (chunk + 1) * count // chunks):
                 _element_tangent(G[e], w[e], elements[e], size, u, v, law, geometric, material, work, K)
                 _scatter(K, elements[e], size, stride, slot[e], data_out)
+
+
+@njit(cache=True, fastmath=FAST)
+def product(indptr, indices, values, x, out):
+    """out (n, 3) of a sparse matrix (n, n) in compressed rows and x (n, 3)."""
+    for i in range(len(indptr) - 1):
+        x0 = x1 = x2 = 0.0
+        for p in range(indptr[i], indptr[i + 1]):
+            j = indices[p]
+            x0 += values[p] * x[j, 0]
+            x1 += values[p] * x[j, 1]
+            x2 += values[p] * x[j, 2]
+        out[i, 0], out[i, 1], out[i, 2] = x0, x1, x2

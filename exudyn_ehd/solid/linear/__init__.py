@@ -2,5 +2,8 @@
 
 Module map
 ----------
-supernodal  substitutions with the factor of a symmetric matrix, by dense panels
+triplets     sparse matrices from triplets whose places stay
+tree         what a symmetric pattern's factor looks like
+elimination  the factor of a symmetric matrix, by fronts
+supernodal   substitutions with it, in dense panels
 """

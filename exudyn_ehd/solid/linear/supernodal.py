@@ -1,8 +1,8 @@
 """Substitutions with a sparse symmetric factor, in dense panels.
 
-SuperLU factorises a symmetric matrix without pivoting as P^T A P = L U, U = D L^T. Its substitutions gather entry by
-entry; a mesh's factor has hundreds of columns in a row with the same pattern, its supernodes. Stored as dense panels
-(a triangle and the rows below it, column by column) they take half the memory, since U is not stored, and
+SuperLU's substitutions gather entry by entry; a mesh's factor has hundreds of columns in a row with the same pattern,
+its supernodes (`exudyn_ehd.solid.linear.elimination`). Stored as dense panels (a triangle and the rows below it, column
+by column) they take half the memory, since there is no U, and
 
     forward    x_s = L_ss^-1 x_s,    x_b -= L_bs x_s       supernodes s in order, b the rows below
     middle     x = D^-1 x
@@ -18,12 +18,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 from scipy.linalg import solve_triangular
-from scipy.sparse import diags, spmatrix
+from scipy.sparse import csc_matrix, spmatrix
 from scipy.sparse.linalg import SuperLU, splu
 
-# Columns of a panel at most: beyond, its triangle is mostly zeros.
-WIDEST = 64
-# Largest departure of U from D L^T over the row's pivot with which a factor counts as symmetric.
+from exudyn_ehd.solid.linear.elimination import Elimination
+
+# Largest difference of mirrored entries over the row's diagonal with which a matrix counts as symmetric.
 ASYMMETRY = 1e-9
 
 
@@ -39,16 +39,19 @@ def sparse_factor(A: spmatrix, *, pivoting: float = 0.0) -> SuperLU:
     return splu(A.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=pivoting, options=options)
 
 
-def mesh_factor(A: spmatrix) -> SupernodalFactor | SuperLU:
+def mesh_factor(A: spmatrix, known: Elimination | None = None) -> SupernodalFactor | SuperLU:
     """Factor of a mesh's matrix: in panels, or SuperLU's own where it is not symmetric.
+
+    ``known`` is the analysis of a matrix before, which is used again if the pattern is the same.
 
     Raises
     ------
     RuntimeError
         If the matrix is singular.
     """
-    factor = sparse_factor(A)
-    return SupernodalFactor.of(factor) or factor
+    A = A.tocsc()
+    A.sort_indices()
+    return SupernodalFactor.of(A, known) or sparse_factor(A)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,6 +60,7 @@ class SupernodalFactor:
 
     Parameters
     ----------
+    analysis : Elimination
     order : (n,) array of int
         Place of a coordinate in the order of elimination.
     starts : (s + 1,) array of int
@@ -71,6 +75,7 @@ class SupernodalFactor:
         D.
     """
 
+    analysis: Elimination
     order: np.ndarray
     starts: np.ndarray
     firsts: np.ndarray
@@ -80,28 +85,30 @@ class SupernodalFactor:
     pivots: np.ndarray
 
     @classmethod
-    def of(cls, factor: SuperLU) -> SupernodalFactor | None:
-        """SuperLU's factor in panels; None if it is not symmetric or its pivots did not stay on the diagonal."""
-        L, U = factor.L.tocsc(), factor.U.tocsr()
-        pivots = U.diagonal()
-        if not np.array_equal(factor.perm_r, factor.perm_c) or not (np.abs(pivots) > 0.0).all():
+    def of(cls, A: csc_matrix, known: Elimination | None = None) -> SupernodalFactor | None:
+        """Factor of a matrix with sorted rows, with the known analysis if it fits; None if it is not symmetric.
+
+        Raises
+        ------
+        RuntimeError
+            If a pivot is zero.
+        """
+        analysis = known if known is not None and known.fits(A) else Elimination.of(A)
+        if analysis is None:
             return None
-        departure = abs(U - diags(pivots) @ L.T.tocsr()).max(axis=1).toarray().ravel()
-        if (departure > ASYMMETRY * np.abs(pivots)).any():
+        scale = np.abs(A.diagonal())[A.indices]
+        if not (np.abs(A.data - A.data[analysis.mirror]) <= ASYMMETRY * scale).all():
             return None
-        L.sort_indices()
-        starts = np.array(find_supernodes(L.indptr, L.indices))
-        width = np.diff(starts)
-        below = np.diff(L.indptr)[starts[:-1]] - width
-        firsts, offsets = (np.concatenate([[0], np.cumsum(x)]) for x in (below, width * (width + below)))
-        rows, panels = np.empty(firsts[-1], dtype=np.int32), np.zeros(offsets[-1])
-        fill_panels(starts, firsts, offsets, L.indptr, L.indices, L.data, rows, panels)
+        panels, pivots = analysis.factorise(A.data)
+        if not np.isfinite(pivots).all() or not pivots.all():
+            raise RuntimeError("singular")
         return cls(
-            order=factor.perm_r.astype(np.intp),
-            starts=starts,
-            firsts=firsts,
-            offsets=offsets,
-            rows=rows,
+            analysis=analysis,
+            order=analysis.order,
+            starts=analysis.starts,
+            firsts=analysis.firsts,
+            offsets=analysis.offsets,
+            rows=analysis.rows,
             panels=panels,
             pivots=pivots,
         )
@@ -113,18 +120,20 @@ class SupernodalFactor:
 
     def solve(self, right: np.ndarray) -> np.ndarray:
         """Solution of one right-hand side (n,), or of several (n, k)."""
-        x = np.empty(right.shape)
-        x[self.order] = right
+        # in the panels' precision, whose range is small
+        scale = float(np.abs(right).max(initial=0.0)) or 1.0
+        x = np.empty(right.shape, dtype=self.panels.dtype)
+        x[self.order] = right / scale
         if right.ndim > 1:
             self._substitute_columns(x)
         else:
-            below = np.empty(int(np.diff(self.firsts).max()))
+            below = np.empty(int(np.diff(self.firsts).max()), dtype=x.dtype)
             substitute(self.starts, self.firsts, self.offsets, self.rows, self.panels, self.pivots, below, x)
-        return x[self.order]
+        return scale * x[self.order].astype(float)
 
     def rounded(self, error: float) -> SupernodalFactor:
         """The same in single precision if solutions are within that relative error; a factor is read from memory."""
-        single = replace(self, panels=self.panels.astype(np.float32))
+        single = replace(self, panels=self.panels.astype(np.float32), pivots=self.pivots.astype(np.float32))
         probe = np.sin(np.arange(1.0, len(self.pivots) + 1))
         exact = self.solve(probe)
         return single if np.linalg.norm(single.solve(probe) - exact) <= error * np.linalg.norm(exact) else self
@@ -138,6 +147,9 @@ class SupernodalFactor:
             return panel[: width * width].reshape(width, width).T, panel[width * width :].reshape(width, size).T
 
         for a, b, i, j, offset in parts:
+            # loads at few places reach few supernodes
+            if not x[a:b].any():
+                continue
             triangle, below = blocks(a, b, j - i, offset)
             x[a:b] = solve_triangular(triangle, x[a:b], lower=True, unit_diagonal=True, check_finite=False)
             x[self.rows[i:j]] -= below @ x[a:b]
@@ -146,49 +158,6 @@ class SupernodalFactor:
             triangle, below = blocks(a, b, j - i, offset)
             rest = x[a:b] - below.T @ x[self.rows[i:j]]
             x[a:b] = solve_triangular(triangle, rest, trans=1, lower=True, unit_diagonal=True, check_finite=False)
-
-
-@njit(cache=True)
-def find_supernodes(indptr, indices):
-    """First columns of runs in which each pattern is the one before without its first row, and n.
-
-    Exact zeros are not stored, so that patterns are compared row by row.
-    """
-    starts = [0]
-    for j in range(1, len(indptr) - 1):
-        first, size = indptr[j - 1] + 1, indptr[j + 1] - indptr[j]
-        same = j - starts[-1] < WIDEST and indptr[j] - first == size
-        k = 0
-        while same and k < size:
-            same = indices[first + k] == indices[indptr[j] + k]
-            k += 1
-        if not same:
-            starts.append(j)
-    starts.append(len(indptr) - 1)
-    return starts
-
-
-@njit(cache=True)
-def fill_panels(starts, firsts, offsets, indptr, indices, values, rows_out, panels_out):
-    """Dense panels of a lower triangle in sorted columns.
-
-    Parameters
-    ----------
-    starts, firsts, offsets : as in `SupernodalFactor`
-    indptr, indices, values : compressed columns, the diagonal first
-    rows_out, panels_out : as in `SupernodalFactor`; panels zero
-    """
-    for s in range(len(starts) - 1):
-        a, width = starts[s], starts[s + 1] - starts[s]
-        below = firsts[s + 1] - firsts[s]
-        for k in range(below):
-            rows_out[firsts[s] + k] = indices[indptr[a] + width + k]
-        for j in range(width):
-            first = indptr[a + j]
-            for k in range(width - j):
-                panels_out[offsets[s] + j * width + j + k] = values[first + k]
-            for k in range(below):
-                panels_out[offsets[s] + width * width + j * below + k] = values[first + width - j + k]
 
 
 @njit(cache=True, fastmath={"contract", "reassoc"})
@@ -200,7 +169,7 @@ def substitute(starts, firsts, offsets, rows, panels, pivots, below, x_out):
     Parameters
     ----------
     starts, firsts, offsets, rows, panels, pivots : as in `SupernodalFactor`
-    below : (r,) array
+    below : (r,) array, as x_out
         Of use within; r is the most rows below a supernode.
     x_out : (n,) array
         In the order of elimination.
