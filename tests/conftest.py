@@ -124,12 +124,12 @@ def _uses_of_kernels(slow):
     modal = {"bush": ehd.ModalBush(mesh=mesh, material=steel, tolerance=0.2)}
     nodal = {"bush": ehd.ANCFBush(mesh=mesh, material=steel)}
     rows = (
-        [conserving, conserving | modal, thin, rough, touching],
-        [liner, liner | touching, modal, nodal, energy],
+        [conserving, rough, touching, energy],
+        [thin, modal, nodal],
     )
     if slow:
-        rows[0].extend([dense, conserving | dense])
-        rows[1].extend([conserving | thin, liner | energy, conserving | liner])
+        rows[0].extend([conserving | modal, dense, conserving | dense])
+        rows[1].extend([conserving | thin, liner, liner | touching, liner | energy, conserving | liner])
     return (
         {"plain": _use_of_film},
         {"joint": _use_of_joint, "solid": functools.partial(bore_modes, modal["bush"])},

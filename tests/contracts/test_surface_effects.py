@@ -196,6 +196,7 @@ def test_force_turns_with_the_model(effect):
     np.testing.assert_allclose(model.evaluate(turned).wrench, T @ first, atol=1e-10 * np.abs(first).max())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closure", sample(list(CLOSURES), 0, 1))
 def test_random_states_in_mixed_lubrication(closure):
     """Eccentricity to 1.05 anywhere along the bearing, tilt, squeeze, reversed

@@ -474,6 +474,7 @@ def test_advised_grids_carry_the_load(n_theta, eps, measured):
     measured("load against 512 columns", abs(load(followed, eps) / fine - 1.0), 0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eps", [0.6, 0.8])
 def test_thresholds_stand_for_a_few_per_cent(eps, measured):
     plain = ehd.steady(bearing(), speed=SPEED, eccentricity_ratio=eps)
