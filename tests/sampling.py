@@ -14,7 +14,7 @@ LONG_TO_COMPILE = (
     ("densi|dense|compress|dowson", ""),
     ("elrod|conserv", "carreau|shear law|thinning"),
     ("liner", ""),
-    ("audit", "all laws|conserv|elasticity|elrod|keep_their_oil|remembers|says_the_same"),
+    ("audit", "all laws|conserv|elasticity|elrod|keep_their_oil|remembers|says_the_same|shear thinning"),
     ("line in its cells", ""),
 )
 
