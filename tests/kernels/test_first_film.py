@@ -1,4 +1,4 @@
-"""First films from empty caches: with a helper, and where nothing can be written; the tests' own films have none."""
+"""First films from empty caches, with a helper and where nothing can be written, against a film of this process."""
 
 import os
 import pathlib
@@ -55,7 +55,7 @@ def test_a_variable_switches_the_helper_off(monkeypatch):
 
 
 @pytest.mark.slow
-def test_first_films_are_the_same_with_and_without_a_helper(tmp_path):
+def test_first_films_with_a_helper_are_those_of_this_process(tmp_path):
     # a second process with the first's cache has nothing to compile
     for wanted in (HELPERS, 0):
         found, force, errors = first_film(ROOT, NUMBA_CACHE_DIR=str(tmp_path), EXUDYN_EHD_HELPER="1")
