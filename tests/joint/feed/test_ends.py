@@ -57,7 +57,7 @@ def test_against_fine_grids(ratio, kind, error):
 def test_cavities_reach_an_end_with_pressure(ratio):
     """What leaves a film without supply at the default grid, a cavity at more than half its ends.
 
-    Within 1 %: counted up to the next vertex the ends take 2 to 6 % too little.
+    Within 1 %: counted up to the next vertex the ends take up to 6 % too little.
     """
     for eccentricity in (0.3, 0.9):
         coarse, fine = (
