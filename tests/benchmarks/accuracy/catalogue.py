@@ -17,8 +17,8 @@ from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.errors import ladders
 from tests.benchmarks.accuracy.errors.study import Reference, Study
-from tests.benchmarks.accuracy.scenes.measured import CHEAP, SCENES, STEEL, loaded_bearing, steady_scene
-from tests.benchmarks.accuracy.scenes.moving import MovingScene
+from tests.benchmarks.accuracy.scenes.measured import CHEAP, SCENES, STEEL, fed_scene, loaded_bearing, steady_scene
+from tests.benchmarks.accuracy.scenes.moving import STEP_ERROR, MovingScene
 from tests.benchmarks.accuracy.scenes.setting import Integration, Setting
 from tests.benchmarks.accuracy.scenes.steady import DEGREE, SteadyScene
 
@@ -42,8 +42,8 @@ def _middle(scene: SteadyScene) -> float:
     return scene.start_direction + 0.5 * (scene.directions - 1) * DEGREE
 
 
-def steady_film(scene: SteadyScene, *, quick: bool) -> Study:
-    """Film models at a steady position."""
+def steady_film(scene: SteadyScene, *, quick: bool, more: tuple[str, ...] = ()) -> Study:
+    """Film models at a steady position; ``more``: quantities besides those of all such studies."""
     middle = _middle(scene)
     aligned = scene.tilt_ratio == 0.0
     # the long bearing stands for the aligned journal with an inlet only
@@ -60,7 +60,22 @@ def steady_film(scene: SteadyScene, *, quick: bool) -> Study:
         references=ladders.film_references(
             short=aligned, grids=ladders.QUICK_REFERENCE_GRIDS if quick else ladders.REFERENCE_GRIDS
         ),
-        quantities=("load", "attitude", "friction", "peak pressure", "leakage", "stiffness", "damping"),
+        quantities=("load", "attitude", "friction", "peak pressure", "leakage", "stiffness", "damping", *more),
+    )
+
+
+def fed_film() -> Study:
+    """Film grids of a journal that a groove feeds."""
+    scene = fed_scene()
+    return Study(
+        name=f"{scene.name}_film",
+        title=f"{scene.title}: film models",
+        scene=scene,
+        settings=tuple(
+            s for s in ladders.film_ladder(aligned=False, reduced=False, classic=()) if s.model == ladders.SWIFT
+        ),
+        references=ladders.film_references(short=False)[:1],
+        quantities=("load", "peak pressure", "supply flow", "leakage", "stiffness", "damping", "critical mass"),
     )
 
 
@@ -155,7 +170,13 @@ def film_study(scene: MovingScene, *, quick: bool = False) -> Study:
         scene=scene,
         settings=settings,
         references=references[:1] if contact else references,
+        quantities=_of_models(scene),
     )
+
+
+def _of_models(scene: MovingScene) -> tuple[str, ...]:
+    """A scene's quantities but what its steps alone are to blame for."""
+    return tuple(q.name for q in scene.quantities if q.name != STEP_ERROR)
 
 
 def _classic() -> list[Setting]:
@@ -232,6 +253,7 @@ def closure_study(scene: MovingScene) -> Study:
         scene=scene,
         settings=tuple(s for s in settings if s.model != "full Sommerfeld"),
         references=tuple(r for r in ladders.closure_references(QUICK_LEVELS) if r.model != "full Sommerfeld"),
+        quantities=_of_models(scene),
     )
 
 
@@ -253,6 +275,7 @@ def bush_study(scene: MovingScene) -> Study:
         scene=scene,
         settings=settings,
         references=ladders.bush_references(rod_bush, STEEL, tilted=False, levels=ROD_LEVELS),
+        quantities=_of_models(scene),
     )
 
 
@@ -307,7 +330,10 @@ def full_catalogue() -> dict[str, Callable[[], Study]]:
     studies: dict[str, Callable[[], Study]] = {}
     for eps, tilt in ((0.5, 0.0), (0.8, 0.0), (0.95, 0.0), (0.8, 0.5)):
         scene = steady_scene(eps, tilt)
-        studies[f"{scene.name}_film"] = partial(steady_film, scene, quick=False)
+        # the others are stable with any mass
+        more = ("critical mass",) if eps == 0.5 else ()
+        studies[f"{scene.name}_film"] = partial(steady_film, scene, quick=False, more=more)
+    studies["steady_600_fed_film"] = fed_film
     main = steady_scene(0.8)
     studies[f"{main.name}_closure"] = partial(steady_closures, main)
     studies[f"{main.name}_bush"] = partial(steady_bush, main)

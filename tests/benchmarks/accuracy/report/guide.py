@@ -23,6 +23,14 @@ from tests.benchmarks.accuracy.table import Cost, Row, read_table
 
 CHEAPEST = (
     ("steady_500_film", "load"),
+    ("steady_500_film", "stiffness"),
+    ("steady_500_film", "damping"),
+    ("steady_500_film", "critical mass"),
+    ("steady_600_fed_film", "load"),
+    ("steady_600_fed_film", "supply flow"),
+    ("steady_600_fed_film", "stiffness"),
+    ("steady_600_fed_film", "damping"),
+    ("steady_600_fed_film", "critical mass"),
     ("steady_800_film", "load"),
     ("steady_800_film", "peak pressure"),
     ("steady_800_film", "stiffness"),
@@ -39,6 +47,7 @@ CHEAPEST = (
     ("start_stop_film", "friction work"),
     ("big_end_bush", "peak pressure"),
 )
+STEPS_FAMILY = "generalised alpha, rho 0.8"
 EFFECT_FACTORS, BUSH_COSTS, PAID_ONCE = "effect_factors", "bush_costs", "paid_once"
 ROOT = pathlib.Path(__file__).parents[4]
 # What `renew` fills, and the picture that goes with it.
@@ -129,6 +138,27 @@ def cheapest_text(folder: pathlib.Path) -> str:
     return table(pictures.HEADINGS, lines)
 
 
+def _missed(row: Row) -> str:
+    """A row's error, as far as its reference can tell."""
+    return f"{'' if row.error > row.reference_error else 'below '}{_percent(max(row.error, row.reference_error))}"
+
+
+def step_text(folder: pathlib.Path) -> str:
+    """What runs tell of their steps, next to what these have missed."""
+    lines: list[list[str]] = []
+    for name in ("orbit", "slider_pin", "big_end"):
+        rows, notes = read_table(folder / f"{name}_integration.csv", Row)
+        for row in (r for r in rows if r.family == STEPS_FAMILY and r.quantity == "film thickness"):
+            told = _row(rows, row.setting, "step error")
+            path = _row(rows, row.setting, "path")
+            title = "" if lines and lines[-1][-1] == name else notes[0].split(":")[0]
+            steps = row.setting.split()[0]
+            told_and_missed = _percent(told.value), _missed(row), _missed(path)
+            lines.append([title, steps, format_seconds(row.seconds), *told_and_missed, name])
+    head = ["scene", "steps", "run", "the run tells", "film thickness", "path, over the clearance"]
+    return table(head, [line[:-1] for line in lines])
+
+
 def growth_text(folder: pathlib.Path) -> str:
     """Exponents of growth, and explicit against implicit integration."""
     found, notes = growth.read_growths(folder / "growth.csv")
@@ -144,7 +174,7 @@ def growth_text(folder: pathlib.Path) -> str:
     rows, _ = read_table(folder / "orbit_integration.csv", Row)
     explicit = next(row for row in rows if row.family == "explicit Runge-Kutta" and row.quantity == "path")
     implicit = min(
-        (r for r in rows if r.quantity == "path" and r.family == "generalised alpha, rho 0.8" and r.error < 1e-3),
+        (r for r in rows if r.quantity == "path" and r.family == STEPS_FAMILY and r.error < 1e-3),
         key=lambda r: r.seconds,
     )
     return text + (
@@ -231,6 +261,7 @@ BLOCKS: dict[str, Callable[[pathlib.Path], str]] = {
     "five numbers": numbers_text,
     "paper against package": paper_text,
     "cheapest settings": cheapest_text,
+    "step errors": step_text,
     "growth": growth_text,
     "effect factors": effect_text,
     "bush costs": bush_text,

@@ -15,6 +15,7 @@ from exudyn_ehd.film.lubricant.pressure_viscosity import RoelandsPressure
 from exudyn_ehd.film.lubricant.shear_thinning import CarreauShear
 from exudyn_ehd.film.lubricant.temperature_viscosity import VogelTemperature
 from exudyn_ehd.film.models import FiniteLength
+from exudyn_ehd.film.supply.areas import AxialGroove
 from exudyn_ehd.film.surfaces.asperity import GreenwoodTripp
 from exudyn_ehd.film.surfaces.patir_cheng import PatirCheng
 from exudyn_ehd.joint.static.equilibrium import equilibrium
@@ -62,6 +63,18 @@ def steady_scene(eccentricity_ratio: float, tilt_ratio: float = 0.0) -> SteadySc
         eccentricity_ratio=eccentricity_ratio,
         tilt_ratio=tilt_ratio,
         start_direction=DIRECTION,
+    )
+
+
+def fed_scene() -> SteadyScene:
+    """The paper's journal with oil at 2 bar from a groove of 20 degrees, upstream of the converging gap."""
+    scene = steady_scene(0.6)
+    groove = AxialGroove(angle=DIRECTION + 0.75 * math.pi, width_angle=math.pi / 9.0, pressure=2e5)
+    return dataclasses.replace(
+        scene,
+        name="steady_600_fed",
+        title="steady journal, eccentricity ratio 0.6, 2 bar from a groove of 20 degrees",
+        bearing=dataclasses.replace(scene.bearing, supply=(groove,)),
     )
 
 

@@ -19,6 +19,8 @@ from tests.benchmarks.accuracy.scenes.mechanisms import Built
 from tests.benchmarks.accuracy.scenes.setting import Integration, Outcome, QuantityOfInterest, Setting
 
 Observe = Callable[[JointHistory, np.ndarray], dict[str, Any]]
+# What ladders of steps alone are about.
+STEP_ERROR = "step error"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,7 +120,8 @@ def at(history: JointHistory, instants: np.ndarray, name: str) -> np.ndarray:
 
 
 def extremes(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
-    """Minimum film thickness, peak pressure and mean loss from the first instant on, and the path at the instants."""
+    """Minimum film thickness, peak pressure, mean loss and step error from the first instant on, path and film
+    thickness at the instants."""
     kept = history.time >= instants[0] * (1.0 - 1e-9)
     span = history.time[kept]
     loss = np.trapezoid(history.power_loss[kept], span) / (span[-1] - span[0])
@@ -127,6 +130,9 @@ def extremes(history: JointHistory, instants: np.ndarray) -> dict[str, Any]:
         "minimum film thickness": history.minimum_gap[kept].min(),
         "peak pressure": history.peak_pressure[kept].max(),
         "mean loss": loss,
+        # as relative errors
+        "film thickness": np.log(at(history, instants, "minimum_gap")),
+        STEP_ERROR: np.max(np.nan_to_num(history.step_error[kept], nan=-np.inf)),
     }
 
 
@@ -139,6 +145,10 @@ def extremes_quantities(clearance: float) -> tuple[QuantityOfInterest, ...]:
         QuantityOfInterest(name="minimum film thickness", unit="m", text="minimum film thickness of the run"),
         QuantityOfInterest(name="peak pressure", unit="Pa", text="largest pressure of the run"),
         QuantityOfInterest(name="mean loss", unit="W", text="mean friction loss"),
+        QuantityOfInterest(
+            name="film thickness", unit="1", scale=1.0, text="minimum film thickness over time, largest relative error"
+        ),
+        QuantityOfInterest(name=STEP_ERROR, unit="1", scale=1.0, text="error of the steps as the run tells it"),
     )
 
 

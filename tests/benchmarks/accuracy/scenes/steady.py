@@ -30,6 +30,8 @@ QUANTITIES = (
     QuantityOfInterest(name="leakage", unit="m3/s", text="flow out of both ends"),
     QuantityOfInterest(name="stiffness", unit="N/m", text="stiffness, largest entry"),
     QuantityOfInterest(name="damping", unit="N s/m", text="damping, largest entry"),
+    QuantityOfInterest(name="critical mass", unit="kg", text="mass from which on the journal whirls"),
+    QuantityOfInterest(name="supply flow", unit="m3/s", text="flow from the supply"),
 )
 
 
