@@ -7,6 +7,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+import exudyn_ehd as ehd
+
 pytestmark = [
     pytest.mark.usefixtures("tidy_pictures"),
     pytest.mark.filterwarnings("error::exudyn_ehd.PlausibilityWarning"),
@@ -104,6 +106,28 @@ def test_fe_connecting_rod(example, tmp_path):
     assert narrow["peak_MPa"] > 1.15 * rigid["peak_MPa"]
     assert narrow["minimum_film_thickness_um"] < 0.5 * rigid["minimum_film_thickness_um"]
     assert wide["peak_MPa"] < 0.95 * rigid["peak_MPa"]
+
+
+@pytest.mark.slow
+def test_fe_shaft(example, tmp_path):
+    """The round shaft lies where a pin of the same tube is in balance; the oval one's film breathes twice in a turn."""
+    module = example("fe_shaft")
+    cases = module.main(quick=True, results=tmp_path)
+    assert cases.pop("picture").stat().st_size > 10_000
+    rigid, around, oval = (cases[name] for name in ("rigid shaft", "round hole", "oval hole"))
+    pin = ehd.ElasticJournal(
+        material=module.STEEL, span=(-0.03, 0.03), held=ehd.HeldEnds(), inner_radius=module.HOLE, tilted=False
+    )
+    for journal, case in ((None, rigid), (pin, around)):
+        rest = ehd.equilibrium(
+            module.bearing(journal, quick=True), speed=module.SPEED, load=(0.0, -module.LOAD)
+        ).film
+        assert case["film_um"] == pytest.approx(1e6 * rest.minimum_gap, rel=0.02)
+        # with a mesh of 16 elements around and eight modes; the whole example to 2 %
+        assert case["peak_MPa"] == pytest.approx(1e-6 * rest.peak_pressure, rel=0.06)
+    films = np.interp(np.linspace(0.5, 1.5, 61), oval["turn"], oval["film_um"])
+    assert films[30:] == pytest.approx(films[:31], rel=0.02)
+    assert np.ptp(films[:31]) > 0.03 * films.mean() > 10 * np.ptp(around["film_um"])
 
 
 @pytest.mark.slow

@@ -11,14 +11,13 @@ from typing import Any
 from exudyn_ehd.film.cavitation.closures import Gumbel, SwiftStieber
 from exudyn_ehd.film.cavitation.elrod_adams import ElrodAdams
 from exudyn_ehd.film.heat.options import LumpedThermal
-from exudyn_ehd.film.solvers.sor import ClassicSOR
 from exudyn_ehd.film.supply.areas import AxialGroove
 from exudyn_ehd.film.surfaces.wall import RegularisedWall
 from exudyn_ehd.solid.mesh import HollowCylinder
 from tests.benchmarks.accuracy.errors import ladders
 from tests.benchmarks.accuracy.errors.study import Reference, Study
 from tests.benchmarks.accuracy.scenes.measured import CHEAP, SCENES, STEEL, fed_scene, loaded_bearing, steady_scene
-from tests.benchmarks.accuracy.scenes.moving import STEP_ERROR, MovingScene
+from tests.benchmarks.accuracy.scenes.moving import MovingScene
 from tests.benchmarks.accuracy.scenes.setting import Integration, Setting
 from tests.benchmarks.accuracy.scenes.steady import DEGREE, SteadyScene
 
@@ -65,15 +64,14 @@ def steady_film(scene: SteadyScene, *, quick: bool, more: tuple[str, ...] = ()) 
 
 
 def fed_film() -> Study:
-    """Film grids of a journal that a groove feeds."""
+    """Grids of a journal that a groove feeds."""
     scene = fed_scene()
+    grids = ladders.film_ladder(aligned=False, reduced=False, classic=())
     return Study(
         name=f"{scene.name}_film",
         title=f"{scene.title}: film models",
         scene=scene,
-        settings=tuple(
-            s for s in ladders.film_ladder(aligned=False, reduced=False, classic=()) if s.model == ladders.SWIFT
-        ),
+        settings=tuple(s for s in grids if s.model == ladders.SWIFT),
         references=ladders.film_references(short=False)[:1],
         quantities=("load", "peak pressure", "supply flow", "leakage", "stiffness", "damping", "critical mass"),
     )
@@ -162,7 +160,7 @@ def film_study(scene: MovingScene, *, quick: bool = False) -> Study:
         settings = tuple(s for s in settings if s.model == ladders.SWIFT)
     elif not quick:
         short = [s for s in ladders.film_ladder(grids=(), aligned=False, classic=()) if s.family == "short bearing"]
-        settings += (*short, *_classic())
+        settings += (*short, *ladders.classic_in_motion())
     references = ladders.film_references(short=False, grids=QUICK_LEVELS if quick else MOVING_LEVELS)
     return Study(
         name=f"{scene.name}_film",
@@ -170,32 +168,8 @@ def film_study(scene: MovingScene, *, quick: bool = False) -> Study:
         scene=scene,
         settings=settings,
         references=references[:1] if contact else references,
-        quantities=_of_models(scene),
+        quantities=scene.of_models,
     )
-
-
-def _of_models(scene: MovingScene) -> tuple[str, ...]:
-    """A scene's quantities but what its steps alone are to blame for."""
-    return tuple(q.name for q in scene.quantities if q.name != STEP_ERROR)
-
-
-def _classic() -> list[Setting]:
-    """The paper's scheme: its own tolerance with a Newton tolerance that its noise allows, and converged."""
-    out = []
-    for tolerance, newton in ((ladders.PAPER_TOLERANCE, 1e-3), (1e-9, 1e-6)):
-        grid = ladders.PAPER_GRID
-        film = ClassicSOR(n_theta=grid[0], n_z=grid[1], tolerance=tolerance)
-        paper = " (paper)" if tolerance == ladders.PAPER_TOLERANCE else ""
-        out.append(
-            Setting(
-                label=f"SOR {ladders.grid_label(grid)}, {tolerance:.0e}{paper}",
-                family="FD + SOR, Gümbel",
-                model=ladders.GUMBEL,
-                options={"film": film, "cavitation": Gumbel()},
-                integration=Integration(newton_tolerance=newton),
-            )
-        )
-    return out
 
 
 def integration_study(scene: MovingScene, *, runge_kutta: int | None = None) -> Study:
@@ -253,7 +227,7 @@ def closure_study(scene: MovingScene) -> Study:
         scene=scene,
         settings=tuple(s for s in settings if s.model != "full Sommerfeld"),
         references=tuple(r for r in ladders.closure_references(QUICK_LEVELS) if r.model != "full Sommerfeld"),
-        quantities=_of_models(scene),
+        quantities=scene.of_models,
     )
 
 
@@ -275,7 +249,7 @@ def bush_study(scene: MovingScene) -> Study:
         scene=scene,
         settings=settings,
         references=ladders.bush_references(rod_bush, STEEL, tilted=False, levels=ROD_LEVELS),
-        quantities=_of_models(scene),
+        quantities=scene.of_models,
     )
 
 
@@ -316,11 +290,6 @@ def moving_catalogue() -> dict[str, Callable[[], Study]]:
     }
 
 
-def quick_moving_catalogue() -> dict[str, Callable[[], Study]]:
-    """The journal under a step load with few rungs."""
-    return {"orbit_film": partial(_make, "orbit", partial(film_study, quick=True))}
-
-
 def _make(scene: str, study: Callable[[MovingScene], Study]) -> Study:
     return study(SCENES[scene]())
 
@@ -344,4 +313,7 @@ def full_catalogue() -> dict[str, Callable[[], Study]]:
 def quick_catalogue() -> dict[str, Callable[[], Study]]:
     """A minute's worth of it: film models at a steady position and on a journal's path."""
     main = steady_scene(0.8)
-    return {f"{main.name}_film": partial(steady_film, main, quick=True)} | quick_moving_catalogue()
+    return {
+        f"{main.name}_film": partial(steady_film, main, quick=True),
+        "orbit_film": partial(_make, "orbit", partial(film_study, quick=True)),
+    }

@@ -18,7 +18,7 @@ from exudyn_ehd.solid.bush import ANCFBush, ModalBush
 from exudyn_ehd.solid.mesh import HollowCylinder
 from exudyn_ehd.solid.total_lagrange import SaintVenantKirchhoff as Material
 from tests.benchmarks.accuracy.errors.study import Reference, Study
-from tests.benchmarks.accuracy.scenes.setting import Scene, Setting
+from tests.benchmarks.accuracy.scenes.setting import Integration, Scene, Setting
 
 Grid = tuple[int, int]
 MeshSize = tuple[int, int, int]
@@ -118,6 +118,25 @@ def film_ladder(
             label = f"SOR {grid_label(grid)}, {tolerance:.0e}" + (" (paper)" if paper else "")
             out.append(Setting(label=label, family="FD + SOR, Gümbel", model=GUMBEL, options={"film": film, **gumbel}))
     return tuple(out)
+
+
+def classic_in_motion() -> list[Setting]:
+    """The paper's scheme: its own tolerance with a Newton tolerance that its noise allows, and converged."""
+    out = []
+    for tolerance, newton in ((PAPER_TOLERANCE, 1e-3), (1e-9, 1e-6)):
+        grid = PAPER_GRID
+        film = ClassicSOR(n_theta=grid[0], n_z=grid[1], tolerance=tolerance)
+        paper = " (paper)" if tolerance == PAPER_TOLERANCE else ""
+        out.append(
+            Setting(
+                label=f"SOR {grid_label(grid)}, {tolerance:.0e}{paper}",
+                family="FD + SOR, Gümbel",
+                model=GUMBEL,
+                options={"film": film, "cavitation": Gumbel()},
+                integration=Integration(newton_tolerance=newton),
+            )
+        )
+    return out
 
 
 def film_references(*, short: bool = True, grids: tuple[Grid, Grid, Grid] = REFERENCE_GRIDS) -> tuple[Reference, ...]:

@@ -70,6 +70,11 @@ class MovingScene:
         all_of_them = self.end * np.arange(1, self.samples + 1) / self.samples
         return all_of_them[all_of_them >= self.start * self.end * (1.0 + 1e-9)]
 
+    @property
+    def of_models(self) -> tuple[str, ...]:
+        """The quantities but what steps alone are to blame for."""
+        return tuple(q.name for q in self.quantities if q.name != STEP_ERROR)
+
     def prepare(self, setting: Setting) -> Callable[[], Outcome]:
         """Build the model; every run starts anew from its initial state."""
         mbs, joint = self.build(setting.bearing(self.bearing))
