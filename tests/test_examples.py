@@ -119,9 +119,7 @@ def test_fe_shaft(example, tmp_path):
         material=module.STEEL, span=(-0.03, 0.03), held=ehd.HeldEnds(), inner_radius=module.HOLE, tilted=False
     )
     for journal, case in ((None, rigid), (pin, around)):
-        rest = ehd.equilibrium(
-            module.bearing(journal, quick=True), speed=module.SPEED, load=(0.0, -module.LOAD)
-        ).film
+        rest = ehd.equilibrium(module.bearing(journal, quick=True), speed=module.SPEED, load=(0.0, -module.LOAD)).film
         assert case["film_um"] == pytest.approx(1e6 * rest.minimum_gap, rel=0.02)
         # with a mesh of 16 elements around and eight modes; the whole example to 2 %
         assert case["peak_MPa"] == pytest.approx(1e-6 * rest.peak_pressure, rel=0.06)

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-# Zeros behind the half-bandwidth of every band: blocks of pivots may read past it.
-PAD = 4
+# Zeros behind the half-bandwidth of every band: four pivots, and vectors of four, may read past it.
+PAD = 6
 # First row of a whole matrix; numpy's integer, since numba compiles kernels anew for a plain 0.
 FIRST_ROW = np.int64(0)
 # Longest front of a cavity in rows of the grid: beyond, its columns cost more than they spare.

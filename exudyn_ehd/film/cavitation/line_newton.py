@@ -33,7 +33,7 @@ from exudyn_ehd.film.cavitation.rupture_line import RuptureLine, line_terms
 MOST_STEPS = 100
 # What a step may leave of s and of pressures over the peak. It is about the step itself times the change of s since its
 # factor, or times its ratio to the step before. Of the first step with a factor s alone counts: all else is linear.
-LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-14, 1e-13
+LEFT_OF_LINE, LEFT, LEFT_AT_ONCE = 1e-12, 1e-13, 1e-13
 # Share of the largest flow that balances may lack before another step follows, in thick films a rounding of the peak.
 UNBALANCED = 5e-13
 # Steps over the peak that leave more than its rounding: those from other films, far larger ones.
@@ -111,6 +111,10 @@ def approach_film(links, line, active, factor, last, x, lack, p):
         line_rows(lack, line, number, order, count, active, x)
         before, size = size, _size(x, count)
         rate = size / before if before > 0.0 else 0.0
+        # where only rounding is left steps no longer shrink
+        left = min(rate, 1.0)
+        if changes == 0 and in_film * left <= LEFT and in_line * left <= LEFT_OF_LINE:
+            return _same_set(active, order, count) and _balanced(links, p, x, count)
         if not rate < USEFUL:
             for c in range(s.size):
                 known[c], s[c], free[c] = old[0][c], old[1][c], old[2][c]
@@ -119,8 +123,6 @@ def approach_film(links, line, active, factor, last, x, lack, p):
             places[-1] = old[3][-1]
             lacks(links, p, lack)
             break
-        if changes == 0 and in_film * rate <= LEFT and in_line * rate <= LEFT_OF_LINE:
-            return _same_set(active, order, count) and _balanced(links, p, x, count)
         settled = changes == 0 and in_line <= SETTLED
         if rate > APPROACH or (settled and in_film * rate**MOST_LEFT > LEFT):
             break
