@@ -47,8 +47,8 @@ class FedEvaluation(ThrustEvaluation):
         Flows into every face and out of the film at its end, m3/s.
     balanced : (k,) bool array
         Whether they are to be the same.
-    settled : bool
-        Whether they are.
+    edges : EdgeDerivatives or None
+        About the edges; None unless these flows are the same.
     """
 
     journal: Evaluation
@@ -57,7 +57,12 @@ class FedEvaluation(ThrustEvaluation):
     given: np.ndarray
     balanced: np.ndarray
     films: FedFilms
-    settled: bool = False
+    edges: EdgeDerivatives | None = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether the flows of balanced edges are the same."""
+        return self.edges is not None
 
     @property
     def found(self) -> bool:
@@ -71,9 +76,8 @@ class FedEvaluation(ThrustEvaluation):
 
     def with_feed(self) -> tuple[np.ndarray, np.ndarray]:
         """Two (6, 11): what the feed adds to ``journal.tangent()``, and the tangent of the faces with their feed."""
-        journal, faces, b = np.zeros((6, MOTION_SIZE + 1)), super().tangent(), np.flatnonzero(self.balanced)
-        if b.size:
-            to = self.derivatives()
+        journal, faces, b, to = np.zeros((6, MOTION_SIZE + 1)), super().tangent(), self.balanced, self.edges
+        if to is not None and b.any():
             followed = -np.linalg.solve(to.slope[np.ix_(b, b)], to.by_state[b])
             journal += to.journal[:, b] @ followed
             faces += to.faces[:, b] @ followed
@@ -136,12 +140,13 @@ class FedFilms:
         for _ in range(LARGEST_STEPS):
             if not found.found:
                 break
-            slope = found.derivatives().slope
+            edges = found.derivatives()
+            slope = edges.slope
             unit, missed, b = np.diag(slope), found.taken - found.given, np.flatnonzero(found.balanced)
             left = FLOW_TOLERANCE * (np.abs(found.taken) + np.abs(found.given)) + PRESSURE_TOLERANCE * unit
             if np.all(np.abs(missed[b]) <= left[b]):
                 self._pressures = found.pressures
-                return replace(found, settled=True)
+                return replace(found, edges=edges)
             change = np.zeros(2)
             change[self.ends[b]] = -np.linalg.solve(slope[np.ix_(b, b)], missed[b])
             found = self._nearer(at, found, change, unit)
