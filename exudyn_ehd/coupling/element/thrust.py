@@ -8,7 +8,7 @@ where a bush yields under the journal's film. Besides the motion (10,) it needs 
 
 with the bearing's axis e_z, the journal's axis a_z in its direction, and the distance z_0 of both joint points in the
 reference configuration. It does not depend on where along the axis the journal's joint point lies, and its rate is w,
-to second order in the tilt. Rates are the velocities.
+to second order in the tilt. Rates are the velocities, of faces that the journal's film feeds those that this takes.
 """
 
 from __future__ import annotations
