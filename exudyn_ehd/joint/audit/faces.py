@@ -11,9 +11,7 @@ from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding
 from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps
 from exudyn_ehd.joint.audit.switches import TYPICAL_TEMPERATURE_COEFFICIENT
-from exudyn_ehd.joint.feed.films import FedFilms
 from exudyn_ehd.joint.model.rigid import BearingModel
-from exudyn_ehd.joint.thrust import ThrustModel
 
 
 def with_ends(
@@ -22,6 +20,10 @@ def with_ends(
     """Recorded states of a journal's film with the pressures at its ends, where it feeds the faces."""
     if bearing.thrust is None or bearing.thrust.feed is None:
         return states
+    # imported here: bearings whose films feed no faces need none of it
+    from exudyn_ehd.joint.feed.films import FedFilms
+    from exudyn_ehd.joint.thrust import ThrustModel
+
     films, places = FedFilms(model, ThrustModel(bearing)), [float(record.axial_position[s.recorded]) for s in states]
     return [
         replace(s, ends=films.evaluate(s.motion, place, s.history, s.step, s.spin).pressures)
