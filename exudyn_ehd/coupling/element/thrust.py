@@ -133,6 +133,7 @@ class ThrustElement:
         return values
 
     def _tried(self, sides: tuple[Side, Side], trial: Trial) -> ThrustEvaluation:
+        """The films at a trial, to which the arrays of ``sides`` belong."""
         return self.at((sides[0].frame, sides[1].frame), trial.bodies[:MOTION_SIZE])
 
     def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
