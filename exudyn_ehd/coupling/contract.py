@@ -157,8 +157,12 @@ class Faces(Protocol):
 
     objectNumber: Index
 
-    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
-        """Scalars at a motion (10,), to which the sides' arrays belong."""
+    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
+        """The journal's film at a trial, to which the sides' arrays belong, with the journal's angle, rad."""
+        ...
+
+    def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
+        """Scalars at a trial, to which the sides' arrays belong."""
 
     def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
         """Axial position, m, at the state to which the sides' frames and a motion (10,) belong."""

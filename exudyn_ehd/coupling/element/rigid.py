@@ -26,7 +26,6 @@ from exudyn_ehd.coupling.record.history import eccentricity_ratios, make_row
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.joint.model.fields import FilmFields, film_fields
 from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
-from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.status import Status
 
 _CURRENT = exu.ConfigurationType.Current
@@ -108,12 +107,16 @@ class FilmElement:
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        trial = self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
+        trial = self.at(mbs, t, q, q_t)
         if self._refuses(t, trial):
             return np.full((len(q), len(q)), np.nan)
         if self.crew is not None:
             self.crew.derive(self, f_q, f_qt)
         return self._jacobian(mbs, trial, f_q, f_qt)
+
+    def at(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> Trial:
+        """The film at a state for which Exudyn asks."""
+        return self._try(mbs, q, q_t, _CURRENT, t, stepping=not self.steps.is_idle)
 
     def _accept(self, mbs: exu.MainSystem) -> None:
         """Take a state as accepted if the step has moved on; raise what that has met when another film was asked."""
@@ -190,7 +193,10 @@ class FilmElement:
         # a sum is finite only if all its terms are
         if np.isfinite(trial.motion.sum()):
             spin = self._spin() if self.model.needs_spin else 0.0
-            trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
+            if self.faces is None:
+                trial.take(self.model.evaluate(trial.motion, trial.memory, trial.step, spin))
+            else:
+                trial.take(self.faces.film(self.model, self.sides, trial, spin))
             self.evaluations += 1
         self._trial = trial
 
@@ -344,7 +350,7 @@ class FilmElement:
         ratios = eccentricity_ratios(trial.motion, bearing.radial_clearance, bearing.length)
         quantities = self._quantities(trial.evaluation)
         if self.faces is not None:
-            quantities = {**quantities, **self.faces.quantities(self.sides, trial.bodies[:MOTION_SIZE], time)}
+            quantities = {**quantities, **self.faces.quantities(self.sides, trial)}
         return make_row(time, trial.motion[:10], ratios, trial.evaluation.wrench, quantities, self.steps.tangent)
 
     def fields(

@@ -8,19 +8,20 @@ where a bush yields under the journal's film. Besides the motion (10,) it needs 
 
 with the bearing's axis e_z, the journal's axis a_z in its direction, and the distance z_0 of both joint points in the
 reference configuration. It does not depend on where along the axis the journal's joint point lies, and its rate is w,
-to second order in the tilt. Rates are the velocities.
+to second order in the tilt. Rates are the velocities, of faces that the journal's film feeds those that this takes.
 """
 
 from __future__ import annotations
 
 import math
+import weakref
 from collections.abc import Mapping
 
 import exudyn as exu
 import exudyn.itemInterface as eii
 import numpy as np
 
-from exudyn_ehd.coupling.contract import ObjectIndex, Side
+from exudyn_ehd.coupling.contract import Evaluation, JointModel, ObjectIndex, Side, Trial
 from exudyn_ehd.coupling.element.rigid import FilmElement
 from exudyn_ehd.coupling.items.carrier import initial_frame
 from exudyn_ehd.coupling.items.item import Item
@@ -29,7 +30,10 @@ from exudyn_ehd.coupling.kinematics.rigid_nodes import PLACE
 from exudyn_ehd.coupling.kinematics.sides import bind
 from exudyn_ehd.coupling.watch import solver_state
 from exudyn_ehd.coupling.watch.step_control import SMALLEST_GAP_SHARE
+from exudyn_ehd.joint.feed.films import FedEvaluation, FedFilms
 from exudyn_ehd.joint.model.compile import MESSAGE
+from exudyn_ehd.joint.model.rigid import BearingModel
+from exudyn_ehd.joint.model.rigid import Evaluation as BearingEvaluation
 from exudyn_ehd.joint.solved_film import MOTION_SIZE
 from exudyn_ehd.joint.thrust import ADVICE, ThrustEvaluation, ThrustModel
 from exudyn_ehd.progress import announced
@@ -68,7 +72,7 @@ class ThrustElement:
 
     def force(self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float]) -> np.ndarray:
         """User function of Exudyn: generalized force (n,) on the nodes; nan asks for a smaller step."""
-        found, out = self._evaluate(mbs, q, q_t), np.full(len(q), np.nan)
+        found, out = self._evaluate(mbs, t, q, q_t), np.full(len(q), np.nan)
         if self._has_film(t, found) and not self._goes_too_far(t, found):
             frames, jacobians = self._arrays()
             relative.global_loads(*frames, found.wrench, self._loads)
@@ -79,7 +83,7 @@ class ThrustElement:
         self, mbs: exu.MainSystem, t: float, item: int, q: list[float], q_t: list[float], f_q: float, f_qt: float
     ) -> np.ndarray:
         """User function of Exudyn: -(f_q dQ/dq + f_qt dQ/dq_t) (n, n)."""
-        found, n = self._evaluate(mbs, q, q_t), len(q)
+        found, n = self._evaluate(mbs, t, q, q_t), len(q)
         if not self._has_film(t, found):
             return np.full((n, n), np.nan)
         (housing, journal), n_h, (frames, jacobians) = self.sides, self.sides[0].size, self._arrays()
@@ -104,6 +108,14 @@ class ThrustElement:
         """The films at frames (3, 6) of housing and journal, of the motion (10,)."""
         return self.model.evaluate(motion, self._position(frames, motion))
 
+    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
+        """The journal's film at a trial."""
+        return model.evaluate(trial.motion, trial.memory, trial.step, spin)
+
+    def beside(self, found: ThrustEvaluation, model: BearingModel) -> BearingEvaluation:
+        """The steady film of the journal at the state of an evaluation of `at`."""
+        return model.evaluate(found.motion)
+
     def place(self, sides: tuple[Side, Side], motion: np.ndarray) -> float:
         """Axial position, m, at the state to which the frames of ``sides`` and the motion (10,) belong."""
         return self._position((sides[0].frame, sides[1].frame), motion)
@@ -114,17 +126,21 @@ class ThrustElement:
         relative.relative_motion(*frames, motion)
         return self.at(frames, motion).wrench
 
-    def quantities(self, sides: tuple[Side, Side], motion: np.ndarray, time: float) -> Mapping[str, float]:
+    def quantities(self, sides: tuple[Side, Side], trial: Trial) -> Mapping[str, float]:
         """Scalars of the films at an accepted state, to which the arrays of ``sides`` belong."""
-        values = self.at((sides[0].frame, sides[1].frame), motion).quantities()
+        values = self._tried(sides, trial).quantities()
         self._gap = values["thrust_minimum_gap"]
         return values
+
+    def _tried(self, sides: tuple[Side, Side], trial: Trial) -> ThrustEvaluation:
+        """The films at a trial, to which the arrays of ``sides`` belong."""
+        return self.at((sides[0].frame, sides[1].frame), trial.bodies[:MOTION_SIZE])
 
     def _arrays(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
         housing, journal = self.sides
         return (housing.frame, journal.frame), (housing.jac, journal.jac)
 
-    def _evaluate(self, mbs: exu.MainSystem, q: list[float], q_t: list[float]) -> ThrustEvaluation:
+    def _evaluate(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> ThrustEvaluation:
         """The films at a state, to which the sides' frames and Jp, Jr are brought."""
         q, q_t, last = list(q), list(q_t), self._last
         if last is not None and last[0] == q and last[1] == q_t and last[2].serial == self.model.serial:
@@ -183,6 +199,47 @@ class ThrustElement:
         return False
 
 
+class FedThrustElement(ThrustElement):
+    """Films on the end faces that the journal's film feeds; parameters as for `ThrustElement`.
+
+    Both are found at once, when the element of the journal's film asks for its own, with the rates that this takes.
+    Its Jacobian is that with the ends' pressures held, and this one's has the rest: the sum is that of both films.
+    """
+
+    def __init__(self, film: FilmElement, sides: tuple[Side, Side], offset: float) -> None:
+        super().__init__(film, film.sides, offset)
+        assert isinstance(film.model, BearingModel)
+        self.films, self._film = FedFilms(film.model, self.model), weakref.proxy(film)
+        self._found: FedEvaluation | None = None
+
+    def at(self, frames: tuple[np.ndarray, np.ndarray], motion: np.ndarray) -> FedEvaluation:
+        """As `ThrustElement.at`, of steady films."""
+        return self.films.evaluate(motion, self._position(frames, motion))
+
+    def film(self, model: JointModel, sides: tuple[Side, Side], trial: Trial, spin: float) -> Evaluation:
+        """The journal's film at a trial, at the pressures of the edges."""
+        place = self.place(sides, trial.bodies)
+        self._found = self.films.evaluate(trial.motion, place, trial.memory, trial.step, spin)
+        return self._found.journal
+
+    def beside(self, found: ThrustEvaluation, model: BearingModel) -> BearingEvaluation:
+        """As `ThrustElement.beside`."""
+        assert isinstance(found, FedEvaluation)
+        return found.journal
+
+    def wrench(self, sides: tuple[Side, Side]) -> np.ndarray:
+        """As `ThrustElement.wrench`, at the state of the last trial."""
+        return np.full(6, np.nan) if self._found is None else self._found.wrench
+
+    def _tried(self, sides: tuple[Side, Side], trial: Trial) -> ThrustEvaluation:
+        if self._found is not None and self._found.journal is trial.evaluation:
+            return self._found
+        return self.model.evaluate(trial.motion, np.nan)
+
+    def _evaluate(self, mbs: exu.MainSystem, t: float, q: list[float], q_t: list[float]) -> ThrustEvaluation:
+        return self._tried(self.sides, self._film.at(mbs, t, q, q_t))
+
+
 def attach_faces(
     mbs: exu.MainSystem,
     film: FilmElement,
@@ -209,7 +266,9 @@ def attach_faces(
     """
     housing, journal = (item.side(point, rotation) for item, point in zip(items, points, strict=True))
     offset = float(rotation[:, 2] @ (points[1] - points[0]))
-    element = ThrustElement(film, (housing, journal), offset)
+    faces = film.model.bearing.thrust
+    make = ThrustElement if faces is None or faces.feed is None else FedThrustElement
+    element = make(film, (housing, journal), offset)
     frames = initial_frame(mbs, items[0], housing), initial_frame(mbs, items[1], journal)
     motion = np.empty(MOTION_SIZE)
     relative.relative_motion(*frames, motion)

@@ -117,11 +117,13 @@ class RotorFilm:
 
     def evaluate(self) -> Evaluation | None:
         """The film at the motion; None if there is none, or none on an end face."""
-        if not np.all(np.isfinite(self.motion)):
+        found = self._on_faces
+        if not np.all(np.isfinite(self.motion)) or (found is not None and found.status is not Status.CONVERGED):
             return None
-        if self._on_faces is not None and self._on_faces.status is not Status.CONVERGED:
-            return None
-        evaluation = self.model.evaluate(self.motion)
+        if self.faces is None or found is None:
+            evaluation = self.model.evaluate(self.motion)
+        else:
+            evaluation = self.faces.beside(found, self.model)
         return evaluation if evaluation.status is Status.CONVERGED else None
 
     def loads(self, wrench: np.ndarray, tangent: np.ndarray) -> FilmLoads:

@@ -117,7 +117,7 @@ class JournalLeakage:
     the flow out of the journal's film is right to 2 % of what leaves into a cavity's pressure, or to 4 % beside an
     axial groove. `Gumbel`, whose pressures end without a balance of the oil, is refused.
 
-    For `steady` and `equilibrium` with a rigid bore and journal, ``film=FiniteLength(...)`` or ``ShortBearing(...)``.
+    For a rigid bore and journal with ``film=FiniteLength(...)`` or ``ShortBearing(...)``, in joints, too.
 
     Examples
     --------

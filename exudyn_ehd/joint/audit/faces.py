@@ -2,10 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
+from exudyn_ehd.bearing import JournalBearing
 from exudyn_ehd.joint.audit.findings import Case, Finding, finding
+from exudyn_ehd.joint.audit.samples import FilmState, RecordedSteps
 from exudyn_ehd.joint.audit.switches import TYPICAL_TEMPERATURE_COEFFICIENT
+from exudyn_ehd.joint.model.rigid import BearingModel
+
+
+def with_ends(
+    bearing: JournalBearing, model: BearingModel, record: RecordedSteps, states: Sequence[FilmState]
+) -> Sequence[FilmState]:
+    """Recorded states of a journal's film with the pressures at its ends, where it feeds the faces."""
+    if bearing.thrust is None or bearing.thrust.feed is None:
+        return states
+    # imported here: bearings whose films feed no faces need none of it
+    from exudyn_ehd.joint.feed.films import FedFilms
+    from exudyn_ehd.joint.thrust import ThrustModel
+
+    films, places = FedFilms(model, ThrustModel(bearing)), [float(record.axial_position[s.recorded]) for s in states]
+    return [
+        replace(s, ends=films.evaluate(s.motion, place, s.history, s.step, s.spin).pressures)
+        for s, place in zip(states, places, strict=True)
+    ]
 
 
 def share(case: Case) -> Finding | None:

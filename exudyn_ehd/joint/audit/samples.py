@@ -37,8 +37,8 @@ class RecordedSteps:
         K, K, m.
     step_error : (n,) array
         Estimated error of the gap that the time steps have made, over the minimum film thickness.
-    thrust_power_loss : (n,) array
-        W, of films on the end faces.
+    axial_position, thrust_power_loss : (n,) arrays
+        m, W, of films on the end faces.
     """
 
     time: np.ndarray
@@ -54,6 +54,7 @@ class RecordedSteps:
     journal_temperature: np.ndarray
     bore_displacement: np.ndarray
     step_error: np.ndarray
+    axial_position: np.ndarray
     thrust_power_loss: np.ndarray
 
     def worst(self, bearing: JournalBearing) -> list[int]:
@@ -73,16 +74,26 @@ class RecordedSteps:
 
 @dataclass(frozen=True, eq=False)
 class FilmState:
-    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record."""
+    """Arguments of one `BearingModel.evaluate`, a flexible bore's in the motion too, and the step of a record.
+
+    ``ends``: pressures (2,) at the film's ends, Pa; None: the bearing's.
+    """
 
     motion: np.ndarray
     history: History | None = None
     step: float = 0.0
     spin: float = 0.0
     recorded: int | None = None
+    ends: np.ndarray | None = None
+
+    def hold(self, model: BearingModel) -> None:
+        """Give the film of a model the ends of this state."""
+        if self.ends is not None:
+            model.set_end_pressures(self.ends)
 
     def evaluate(self, model: BearingModel) -> Evaluation:
         """The film at this state."""
+        self.hold(model)
         return model.evaluate(self.motion, self.history, self.step, self.spin)
 
 

@@ -152,30 +152,28 @@ class FedFacesUnderLoad(FacesUnderLoad):
     def settle(self, motion: np.ndarray) -> None:
         """Bring the ends of the journal's film to the pressures of the edges at a motion, and the place of the load."""
         self._found(motion, 0.0)
-        found = self._both
-        journal, self._own = found.tangents()
-        self._added = journal - np.pad(found.journal.tangent(), ((0, 0), (0, 1))) + self._own
+        journal, self._own = self._both.with_feed()
+        self._added = journal + self._own
 
     def share(self, motion: np.ndarray, wrench: np.ndarray, tangent: np.ndarray) -> FacesShare:
         """As `FacesUnderLoad.share`, after `settle` at this motion."""
         found = self._both
-        return FacesShare(found.faces, self._added, self._slope(self._added, tangent), self._own, found.given)
+        return FacesShare(found, self._added, self._slope(self._added, tangent), self._own, found.given)
 
     def _at(self, motion: np.ndarray, place: float) -> tuple[ThrustEvaluation, float, float]:
         """As `FacesUnderLoad._at`, with the force of the journal's film."""
         found = self._both = require_fed(self.films, motion, place, self.where)
-        force = float(found.faces.wrench[2] + found.journal.wrench[2])
-        slope = 0.0 if self.load is None else float(sum(tangent[2, 10] for tangent in found.tangents()))
-        return found.faces, force, slope
+        force = float(found.wrench[2] + found.journal.wrench[2])
+        return found, force, 0.0 if self.load is None else float(found.tangent()[2, 10])
 
 
 def require_fed(films: FedFilms, motion: np.ndarray, position: float, where: str) -> FedEvaluation:
     """Both films at a motion (10,) and an axial position; `FilmError` if there are none."""
     found = films.evaluate(motion, position)
-    if found.journal.status is not Status.CONVERGED:
+    if found.journal.film is None:
         evaluate_at(films.model, motion, where)
-    if found.faces.status is not Status.CONVERGED:
-        raise FilmError(no_film(found.faces, where))
+    if found.status is not Status.CONVERGED:
+        raise FilmError(no_film(found, where))
     if not found.settled:
         raise FilmError(
             f"{where}: no pressures found at which the journal's film gives its thrust faces what they take; the "

@@ -14,7 +14,9 @@ x = (motion, axial position) as
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +24,7 @@ import numpy as np
 from exudyn_ehd.joint.feed.ends import end_derivatives
 from exudyn_ehd.joint.model.quantities import leakages
 from exudyn_ehd.joint.model.rigid import BearingModel, Evaluation
+from exudyn_ehd.joint.solved_film import MOTION_SIZE, History
 from exudyn_ehd.joint.thrust import ThrustEvaluation, ThrustModel, about_origin, face_motion_map
 from exudyn_ehd.status import Status
 
@@ -31,43 +34,50 @@ FLOW_TOLERANCE, PRESSURE_TOLERANCE = 1e-12, 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class FedEvaluation:
-    """Both films at one state.
+class FedEvaluation(ThrustEvaluation):
+    """The films on the faces at one state, the last of their model, and the journal's film that feeds them.
 
     Attributes
     ----------
-    journal, faces : Evaluation, ThrustEvaluation
-        The last of their models.
+    journal : Evaluation
+        The last of its model; NOT_CONVERGED where there are both films, but no pressures of equal flows.
     pressures : (2,) array
         At lower and upper end, Pa.
     taken, given : (k,) arrays
         Flows into every face and out of the film at its end, m3/s.
     balanced : (k,) bool array
         Whether they are to be the same.
-    settled : bool
-        Whether they are.
+    edges : EdgeDerivatives or None
+        About the edges; None unless these flows are the same.
     """
 
     journal: Evaluation
-    faces: ThrustEvaluation
     pressures: np.ndarray
     taken: np.ndarray
     given: np.ndarray
     balanced: np.ndarray
     films: FedFilms
-    settled: bool = False
+    edges: EdgeDerivatives | None = None
+
+    @property
+    def settled(self) -> bool:
+        """Whether the flows of balanced edges are the same."""
+        return self.edges is not None
 
     @property
     def found(self) -> bool:
         """Whether both films were found at these pressures."""
-        return self.journal.status is Status.CONVERGED is self.faces.status
+        return self.journal.status is Status.CONVERGED is self.status
 
-    def tangents(self) -> tuple[np.ndarray, np.ndarray]:
-        """d wrench / d (motion, axial position) (6, 11) of the journal's film and of the faces, with their feed."""
-        to = self.derivatives()
-        journal = np.pad(self.journal.tangent(), ((0, 0), (0, 1)))
-        faces, b = self.faces.tangent(), np.flatnonzero(self.balanced)
-        if b.size:
+    def tangent(self) -> np.ndarray:
+        """d wrench / d (motion, position) (6, 11) of both films but for ``journal.tangent()``, whose ends are held."""
+        journal, faces = self.with_feed()
+        return journal + faces
+
+    def with_feed(self) -> tuple[np.ndarray, np.ndarray]:
+        """Two (6, 11): what the feed adds to ``journal.tangent()``, and the tangent of the faces with their feed."""
+        journal, faces, b, to = np.zeros((6, MOTION_SIZE + 1)), super().tangent(), self.balanced, self.edges
+        if to is not None and b.any():
             followed = -np.linalg.solve(to.slope[np.ix_(b, b)], to.by_state[b])
             journal += to.journal[:, b] @ followed
             faces += to.faces[:, b] @ followed
@@ -75,9 +85,9 @@ class FedEvaluation:
 
     def derivatives(self) -> EdgeDerivatives:
         """Derivatives about the edges; of the last evaluation only."""
-        film, at, motion = self.journal.film, self.films.ends, self.faces.motion
+        film, at, motion, model = self.journal.film, self.films.ends, self.motion, self.model
         assert film is not None
-        ends, model = end_derivatives(film), self.faces.model
+        ends = end_derivatives(film)
         heights, feeds = [model.height(face) for face in model.faces], [face.feed() for face in model.faces]
         both = list(zip(feeds, heights, strict=True))
         taken = np.array([feed.by_motion @ face_motion_map(motion, height) for feed, height in both])
@@ -119,33 +129,38 @@ class FedFilms:
         self.lowest = np.array(model.bearing.end_pressures)
         self._pressures = self.lowest.copy()
 
-    def evaluate(self, motion: np.ndarray, position: float) -> FedEvaluation:
-        """The films at a motion (10,) that lasts and an axial position."""
-        found = self._at(motion, position, np.maximum(self._pressures, self.lowest))
+    def evaluate(
+        self, motion: np.ndarray, position: float, history: History | None = None, step: float = 0.0, spin: float = 0.0
+    ) -> FedEvaluation:
+        """The films at a motion (10,) and an axial position; the rest as for `BearingModel.evaluate`."""
+        at = partial(self._at, motion, position, (history, step, spin))
+        found = at(np.maximum(self._pressures, self.lowest))
         if not found.found:
-            found = self._at(motion, position, self.lowest)
+            found = at(self.lowest)
         for _ in range(LARGEST_STEPS):
             if not found.found:
                 break
-            slope = found.derivatives().slope
+            edges = found.derivatives()
+            slope = edges.slope
             unit, missed, b = np.diag(slope), found.taken - found.given, np.flatnonzero(found.balanced)
             left = FLOW_TOLERANCE * (np.abs(found.taken) + np.abs(found.given)) + PRESSURE_TOLERANCE * unit
             if np.all(np.abs(missed[b]) <= left[b]):
                 self._pressures = found.pressures
-                return replace(found, settled=True)
-            step = np.zeros(2)
-            step[self.ends[b]] = -np.linalg.solve(slope[np.ix_(b, b)], missed[b])
-            found = self._nearer(found, step, unit)
-        return found
+                return replace(found, edges=edges)
+            change = np.zeros(2)
+            change[self.ends[b]] = -np.linalg.solve(slope[np.ix_(b, b)], missed[b])
+            found = self._nearer(at, found, change, unit)
+        return replace(found, journal=replace(found.journal, status=Status.NOT_CONVERGED)) if found.found else found
 
-    def _nearer(self, found: FedEvaluation, step: np.ndarray, unit: np.ndarray) -> FedEvaluation:
-        """The films a step (2,) of the pressures on, halved until it leaves less of `evaluate`'s conditions."""
-        motion, position = found.faces.motion, found.faces.position
+    def _nearer(
+        self, at: Callable[[np.ndarray], FedEvaluation], found: FedEvaluation, change: np.ndarray, unit: np.ndarray
+    ) -> FedEvaluation:
+        """The films a change (2,) of the pressures on, halved until it leaves less of `evaluate`'s conditions."""
         for _ in range(HALVINGS):
-            near = self._at(motion, position, np.maximum(found.pressures + step, self.lowest))
+            near = at(np.maximum(found.pressures + change, self.lowest))
             if near.found and self._error(near, unit) < self._error(found, unit):
                 break
-            step = 0.5 * step
+            change = 0.5 * change
         return near
 
     def _error(self, found: FedEvaluation, unit: np.ndarray) -> float:
@@ -153,12 +168,14 @@ class FedFilms:
         above = (found.pressures - self.lowest)[self.ends]
         return float(np.abs(np.minimum(above, (found.taken - found.given) / unit)).max())
 
-    def _at(self, motion: np.ndarray, position: float, pressures: np.ndarray) -> FedEvaluation:
-        """The films at given pressures (2,) of the ends."""
+    def _at(
+        self, motion: np.ndarray, position: float, since: tuple[History | None, float, float], pressures: np.ndarray
+    ) -> FedEvaluation:
+        """The films at given pressures (2,) of the ends; ``since``: history, step and spin."""
         self.model.set_end_pressures(pressures)
         for face, end in zip(self.faces.faces, self.ends, strict=True):
             face.set_inner_pressure(float(pressures[end]))
-        journal, faces = self.model.evaluate_steady(motion), self.faces.evaluate(motion, position)
+        journal, faces = self.model.evaluate(motion, *since), self.faces.evaluate(motion, position)
         taken, given, balanced = (
             np.zeros(self.ends.size),
             np.zeros(self.ends.size),
@@ -168,4 +185,12 @@ class FedFilms:
             taken = np.array([state.inflow for state in faces.states])
             given = journal.film.parts.flow_scale * np.array(leakages(journal.film))[self.ends]
             balanced = (pressures > self.lowest)[self.ends] | (taken < given)
-        return FedEvaluation(journal, faces, pressures, taken, given, balanced, self)
+        return FedEvaluation(
+            **vars(faces),
+            journal=journal,
+            pressures=pressures,
+            taken=taken,
+            given=given,
+            balanced=balanced,
+            films=self,
+        )

@@ -63,12 +63,6 @@ def build_model(bearing: JournalBearing) -> BearingModel | ImpedanceModel:
             "JournalBearing.inlet=MaximumGap() is for prescribed positions only: the line of maximum gap is "
             "undefined for a concentric journal and jumps with a moving one; use inlet=Periodic()."
         )
-    if bearing.thrust is not None and bearing.thrust.feed is not None:
-        raise InputError(
-            "ThrustFaces.feed=JournalLeakage() is for ehd.steady and ehd.equilibrium: joints solve the films of "
-            "journal and faces one by one. Leave it out, and give ThrustFaces.inner_pressures and "
-            "JournalBearing.end_pressures what ehd.equilibrium(...).film.faces.edge_pressures has found."
-        )
     if isinstance(bearing.film, ImpedanceMap):
         return ImpedanceModel(bearing)
     return build_study_model(bearing, 0.0)

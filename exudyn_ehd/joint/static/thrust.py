@@ -103,7 +103,7 @@ def faces_at(model: BearingModel, motion: np.ndarray, position: float, where: st
     faces = ThrustModel(model.bearing)
     if model.bearing.thrust.feed is not None:
         fed = require_fed(FedFilms(model, faces), motion, position, where)
-        return result_of(fed.faces, fed.tangents()[1], fed.given)
+        return result_of(fed, fed.with_feed()[1], fed.given)
     found = faces.evaluate(motion, position)
     if found.status is not Status.CONVERGED:
         raise FilmError(no_film(found, where))

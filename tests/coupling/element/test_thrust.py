@@ -275,8 +275,6 @@ def test_without_faces_nothing_changes():
 
 
 def test_refused():
-    with pytest.raises(ehd.InputError, match=r"feed=JournalLeakage\(\) is for ehd\.steady and ehd\.equilibrium"):
-        _rotor(_bearing(feed=ehd.JournalLeakage()))
     with pytest.raises(ehd.InputError, match=r"outside the thrust faces of 'main'.*axial position 5e-05"):
         _rotor(_bearing(), start=5e-5)
     mbs, _, _ = _rotor(_bearing(profile=ehd.TaperLand(pads=4, depth=3e-5)), load=(0, 0, 1e9))
