@@ -81,7 +81,7 @@ class ThermalEffect(Protocol):
         """
 
     def split(self, temperature: float | np.ndarray) -> tuple[float | np.ndarray, Walls | None]:
-        """The film's own part of a temperature, K, as a history has it, and that of walls that conduct."""
+        """The film's own part of a temperature, K, as a history has it, and that of walls and surfaces."""
 
     def viscosity_ratio(self, temperature: np.ndarray | float) -> np.ndarray:
         """Viscosity at a temperature, K, over the reference."""

@@ -53,7 +53,8 @@ class History:
     wear : (n, m) array or None
         Scaled wear depth of the bore.
     temperature : float, (n, m) array or None
-        Film temperature, K; (n, m + k) with that of conducting walls behind it, see `exudyn_ehd.joint.heat.walls`.
+        Film temperature, K; (n, m + k) with that of conducting walls behind it, see `exudyn_ehd.joint.heat.walls`;
+        (n, 4 m + k) with two temperatures across the film, see `exudyn_ehd.joint.heat.across`.
     deflection : (n, m) array or None
         Scaled deflection of an elastic liner.
     density : (n, m) array or None

@@ -76,6 +76,10 @@ EFFECTS = {
             ),
         },
     ),
+    "across": (
+        ("film.heat.across", "joint.heat.across"),
+        {"lubricant": HOT, "thermal": ehd.FilmEnergy(supply_temperature=330.0, conductivity=0.13, across=2)},
+    ),
     "liner": (
         (
             "film.solvers.nonlinear",

@@ -1,5 +1,7 @@
 """What averaging across the film costs: `FilmEnergy` against a solution with a temperature profile across the film.
 
+And what is left of it with two temperatures across the film, ``across=2``.
+
 The reference, an infinitely long bearing from the end of its groove to the rupture line, solves for T(x, y)
 
     mu u_y = p' y + tau_0,     q = int u dy the same at every x,
@@ -8,7 +10,8 @@ The reference, an infinitely long bearing from the end of its groove to the rupt
 (Reynolds' equation with viscosity across the film: D. Dowson, Int. J. Mechanical Sciences 4 (1962) 159) by
 finite volumes, upwind in both directions, on the film's own stream function, so that mass and heat balance
 to rounding. Oil that flows back out of the film mixes with what enters, so that the net inflow has the film
-model's temperature there. Walls are adiabatic or held at a temperature. Bearing: diameter 100 mm, clearance
+model's temperature there; beside two temperatures, it leaves, and what enters has the profile that the film
+model has in its groove. Walls are adiabatic or held at a temperature. Bearing: diameter 100 mm, clearance
 75 um, an oil of 27.7 mPa s at 40 degrees Celsius that thins by 3.4 % per kelvin, no axial flow; heat takes
 about three times as long across the mean film as the oil takes along it, so that neither way dominates.
 """
@@ -20,6 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from numpy.polynomial import legendre
 from scipy.optimize import brentq
 from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
@@ -96,10 +100,13 @@ def temperatures(along, across, heat, conductance, inflow, walls):
         entries.append((row.ravel(), column.ravel(), value.ravel()))
 
     enters, leaves = np.maximum(along[0], 0.0), np.maximum(-along[0], 0.0)
-    rhs[0] += enters / enters.sum() * along[0].sum() * inflow
     diagonal[0] += leaves
-    rows, columns = np.meshgrid(index[0], index[0], indexing="ij")
-    couple(rows, columns, -np.outer(enters, leaves) / enters.sum())
+    if np.ndim(inflow):
+        rhs[0] += enters * inflow
+    else:
+        rhs[0] += enters / enters.sum() * along[0].sum() * inflow
+        rows, columns = np.meshgrid(index[0], index[0], indexing="ij")
+        couple(rows, columns, -np.outer(enters, leaves) / enters.sum())
     diagonal[-1] += np.maximum(along[-1], 0.0)
     inner = slice(None, -1), slice(1, None)
     for flow, (a, b) in ((along[1:-1], inner), (across[:, 1:-1], ((slice(None), inner[0]), (slice(None), inner[1])))):
@@ -118,11 +125,12 @@ def temperatures(along, across, heat, conductance, inflow, walls):
 
 
 def cross_film(eps, U, start, inflow, walls, beta=BETA, nx=160, ny=30):
-    """Solve from angle ``start`` behind the largest gap; ``walls``:
-    temperatures of bush and journal, None: adiabatic."""
+    """Solve from angle ``start`` behind the largest gap; ``inflow``: a temperature,
+    or one at every height; ``walls``: those of bush and journal, None: adiabatic."""
     phi = np.linspace(start, END, nx + 1)
     dx, h, y = R * (phi[1] - phi[0]), C * (1.0 + eps * np.cos(phi)), (np.arange(ny) + 0.5) / ny
     conductance = CONDUCTIVITY / CAPACITY * dx * ny * 2.0 / (h[1:] + h[:-1])
+    inflow = inflow(y) if callable(inflow) else inflow
     T, change = np.full((nx, ny), inflow), 1.0
     while change > 1e-4:
         mu = viscosity(np.concatenate((T[:1], 0.5 * (T[1:] + T[:-1]), T[-1:])), beta)
@@ -141,9 +149,8 @@ def cross_film(eps, U, start, inflow, walls, beta=BETA, nx=160, ny=30):
     return Profile(phi, p, T[:k], cup[:k], q, drag)
 
 
-def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=BETA):
-    """`FilmEnergy` (its load per length, peak pressure, temperatures up to
-    rupture) and the profile, from the same inlet temperature."""
+def solved(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=BETA, across=1, columns=360):
+    """`FilmEnergy` in a steady film: angles from the largest gap on, film, order of its rows, film rows, load."""
     speed = rpm * math.pi / 30.0
     oil = ehd.Lubricant(
         temperature_law=ehd.ReynoldsTemperature(point=(SUPPLY, MU), coefficient=beta),
@@ -159,6 +166,7 @@ def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=
         conductivity=conductivity,
         bush_temperature=walls[0],
         journal_temperature=walls[1],
+        across=across,
     )
     groove = ehd.AxialGroove(angle=math.pi, width_angle=math.radians(20.0))
     bearing = ehd.JournalBearing(
@@ -168,17 +176,24 @@ def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=
         lubricant=oil,
         thermal=thermal,
         supply=(groove,),
-        film=ehd.LongBearing(n_theta=360, n_z=2),
+        film=ehd.LongBearing(n_theta=columns, n_z=2),
     )
     film = ehd.steady(bearing, speed=speed, eccentricity_ratio=eps)
     phi = (np.asarray(film.theta) - math.pi) % (2.0 * math.pi)
     order = np.argsort(phi)
-    phi, T, P = phi[order], np.asarray(film.temperature)[order, 0], np.asarray(film.pressure)[order, 0]
+    phi, P = phi[order], np.asarray(film.pressure)[order, 0]
     film_part = np.flatnonzero(P > 0.0)
-    first, last = film_part[0], film_part[-1]
     load = R * (phi[1] - phi[0]) * math.hypot(np.sum(P * np.cos(phi)), np.sum(P * np.sin(phi)))
-    profile = cross_film(eps, R * speed, phi[first - 1], T[first - 1], walls, beta)
-    return (load, P.max(), T[first - 1 : last + 1]), profile
+    return phi, film, order, slice(film_part[0] - 1, film_part[-1] + 1), load
+
+
+def both(eps, rpm, walls=(None, None), conductivity=None, coefficient=1e9, beta=BETA):
+    """`FilmEnergy` (its load per length, peak pressure, temperatures up to
+    rupture) and the profile, from the same inlet temperature."""
+    phi, film, order, part, load = solved(eps, rpm, walls, conductivity, coefficient, beta)
+    T = film.temperature[order, 0][part]
+    profile = cross_film(eps, R * rpm * math.pi / 30.0, phi[part][0], T[0], walls, beta)
+    return (load, film.pressure.max(), T), profile
 
 
 @pytest.mark.parametrize("eps", [0.5, 0.8])
@@ -240,3 +255,56 @@ def test_the_oil_between_counts():
     (through, _, _), _ = both(0.8, 2000.0, walls, CONDUCTIVITY)
     assert plain < through < profile.load
     assert profile.load - through < 0.7 * (profile.load - plain)
+
+
+def with_profile(eps, rpm, walls, beta=BETA, columns=360):
+    """Differences of ``across=2`` to the profile: shares of load and peak pressure, and kelvin
+    of the hottest mean across the film and of the hottest bush, with the profile's rise."""
+    phi, film, order, part, load = solved(eps, rpm, walls, CONDUCTIVITY, 1e6, beta, across=2, columns=columns)
+    mean, (tilt, bush, journal) = film.temperature[order, 0][part], film.walls.across[:, order, 0][:, part]
+    cubic = legendre.Legendre(
+        [mean[0], tilt[0], 0.5 * (bush[0] + journal[0]) - mean[0], 0.5 * (journal[0] - bush[0]) - tilt[0]], [0.0, 1.0]
+    )
+    profile = cross_film(eps, R * rpm * math.pi / 30.0, phi[part][0], cubic, walls, beta)
+    return (
+        load / profile.load - 1.0,
+        film.pressure.max() / profile.p.max() - 1.0,
+        mean.max() - profile.T.mean(axis=1).max(),
+        bush.max() - profile.T[:, 0].max(),
+        profile.T.max() - SUPPLY,
+    )
+
+
+def check_profile(measured, name, found, share, kelvin):
+    for what, value, limit in zip(("load", "peak pressure", "mean, K", "bush, K"), found, (share, share, *kelvin)):
+        measured(f"{name}: {what}", abs(value), limit)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cooled", [None, *COOLED])
+@pytest.mark.parametrize(("eps", "rpm"), STATES)
+def test_two_temperatures(measured, cooled, eps, rpm):
+    """Load and peak pressure to 1.5 % where one mean is up to 9 % off, also on the columns of `LongBearing`."""
+    for columns in (192, 360):
+        found = with_profile(eps, rpm, COOLED.get(cooled, (None, None)), columns=columns)
+        check_profile(measured, f"{cooled} cooled, eps {eps}, {columns} columns", found, 0.016, (0.9, 0.9))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("eps", "rpm", "beta", "journal"), [(0.67, 4459.0, 0.025, -2.1), (0.61, 3631.0, 0.043, -3.0)])
+def test_two_temperatures_beside_a_cold_journal(measured, eps, rpm, beta, journal):
+    """A journal colder than the oil that enters, turning fast: its cold layer is thinner than a cubic follows."""
+    found = with_profile(eps, rpm, (None, SUPPLY + journal), beta)
+    check_profile(measured, f"eps {eps}", found, 0.034, (0.9, 0.9))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(24))
+def test_two_temperatures_anywhere(measured, seed):
+    """Random states and walls, adiabatic or between the temperatures of the supply and 25 K above."""
+    rng = np.random.default_rng(seed)
+    eps, beta = rng.uniform(0.3, 0.9), rng.uniform(0.02, 0.045)
+    rpm = rng.uniform(800.0, 4500.0) * (0.4 if eps > 0.75 else 1.0)
+    walls = tuple(None if rng.random() < 0.5 else SUPPLY + rng.uniform(0.0, 25.0) for _ in range(2))
+    found = with_profile(eps, rpm, walls, beta)
+    check_profile(measured, f"seed {seed}, rise {found[-1]:.0f} K", found, 0.012, (0.9, 0.9))

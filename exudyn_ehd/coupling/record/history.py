@@ -144,7 +144,8 @@ class JointHistory(History, HistoryPictures):
     stored_power : ndarray (n,)
         Power that a liner and touching surfaces take up, negative: give back [W]; not in ``power_loss``.
     bush_temperature, journal_temperature, clearance : ndarray (n,)
-        Mean temperatures at the film of walls that conduct [K], and the radial clearance that they leave [m].
+        Mean temperatures at the film of walls that conduct, or with two temperatures across the film, of all surfaces
+        [K], and the radial clearance that they leave [m].
     axial_position, thrust_force, thrust_torque : ndarray (n,)
         Of a joint with ``thrust``, else nan as all ``thrust_...``: place of the journal between its faces [m], axial
         force of their films [N] and torque about the bearing's axis [N m] on the journal.

@@ -34,6 +34,9 @@ class Walls:
         Where, m.
     clearance : float
         Radial, with what the walls have grown by, m.
+    across : (3, n, m) array or None
+        Of a film with two temperatures across it: the tilt, half of what its straight part rises by from bush to
+        journal, and the surfaces' temperatures, bush and journal, K.
     """
 
     bush: np.ndarray | None
@@ -41,10 +44,22 @@ class Walls:
     bush_radii: np.ndarray | None
     journal_radii: np.ndarray | None
     clearance: float
+    across: np.ndarray | None = None
+
+    def across_film(self, temperature: float | np.ndarray) -> np.ndarray:
+        """Temperatures of a film of these walls, K: its own (n, m), or (n, m, 4) at Lobatto's points across it."""
+        if self.across is None:
+            return np.asarray(temperature)
+        # imported here: other films have no profile across them
+        from exudyn_ehd.film.heat.across import at_points
+
+        return at_points(np.array([temperature, *self.across]))
 
     def numbers(self) -> dict[str, float]:
         """Mean temperatures at the film, K, of the walls that conduct, and the clearance, m."""
         out = {"clearance": self.clearance}
+        if self.across is not None:
+            out["bush_temperature"], out["journal_temperature"] = np.mean(self.across[1:], axis=(1, 2)).tolist()
         if self.bush is not None:
             out["bush_temperature"] = float(np.mean(self.bush[:, 0]))
         if self.journal is not None:
@@ -56,11 +71,16 @@ class Walls:
         own, turning = (
             None if T is None else np.full_like(T, value) for T, value in ((self.bush, bush), (self.journal, journal))
         )
-        return replace(self, bush=own, journal=turning)
+        across = self.across
+        if across is not None:
+            across = np.stack([np.full_like(across[0], T) for T in (0.5 * (journal - bush), bush, journal)])
+        return replace(self, bush=own, journal=turning, across=across)
 
     def behind(self, temperature: float | np.ndarray) -> np.ndarray:
         """The film's temperatures (n, m) with those of the walls behind them, as a film remembers them."""
-        T = [np.asarray(temperature)] + ([] if self.bush is None else [self.bush])
+        T = [np.asarray(temperature)]
+        T += [] if self.across is None else [T[0] + self.across[0], *self.across[1:]]
+        T += [] if self.bush is None else [self.bush]
         if self.journal is not None:
             T.append(np.tile(self.journal, (len(T[0]), 1)))
         return np.hstack(T)

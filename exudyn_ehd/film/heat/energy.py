@@ -169,7 +169,7 @@ def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
         for j in range(m):
             k = i * m + j
             at = j + 1 if qz[i, j] < 0.0 else j
-            share = _downstream_weight(T[i], link_z, j, qz[i, j]) * min(abs(qz[i, j]), held[i, at])
+            share = downstream_weight(T[i], link_z, j, qz[i, j]) * min(abs(qz[i, j]), held[i, at])
             slopes_out[0, k], slopes_out[1, k] = max(qx[i, j], 0.0), min(qx[i, j], 0.0)
             slopes_out[2, k], slopes_out[3, k] = max(qz[i, j], 0.0) - share, min(qz[i, j], 0.0) + share
             into = qx[prv, j] + (qz[i, j - 1] if j > 0 else 0.0)
@@ -177,7 +177,7 @@ def transport_slopes(qx, qz, diagonal, T, link_z, held, slopes_out):
 
 
 @njit(cache=True, inline="always")
-def _downstream_weight(T, link_z, j, flow):
+def downstream_weight(T, link_z, j, flow):
     """Weight of the temperature downstream on the link j -> j+1.
 
     By the ratio r of the slopes upstream of the link and on it: a half for r >= 1, ``2 r / (1 + r)^2`` below, which

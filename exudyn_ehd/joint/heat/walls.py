@@ -27,6 +27,56 @@ from exudyn_ehd.joint.solved_film import History, SolvedFilm
 AGREED = 1e-13
 
 
+class Between(HeatBalance):
+    """Energy equation of a film's mean temperature between surfaces that have temperatures outside, K.
+
+    ``at`` lists those of both sides as (n, 1) or (1, 1) arrays. Unknowns are temperatures (n, m), K.
+
+    Parameters
+    ----------
+    thermal : WalledTemperature
+    film, step
+        As for `HeatBalance`.
+
+    Attributes
+    ----------
+    by : lists of lists of (n, m) arrays
+        Heat that the temperatures outside give to both sides, at held unknowns, W/K.
+    """
+
+    def __init__(self, thermal: WalledTemperature, film: SolvedFilm, step: float) -> None:
+        super().__init__(thermal, film, step, thermal.heat(film))
+        self._pass(*thermal.passage(film))
+
+    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        self.passage = Passage(kappa, area, outward)
+        self.by = self.passage.by
+
+    def solve(self) -> None:
+        """Factor the system, which `between` and `change` use."""
+        self.factor(self.passage.transfer / self.scale)
+
+    def between(self, at: list[np.ndarray]) -> np.ndarray:
+        """Unknowns with temperatures ``at`` outside."""
+        return self.temperatures(self.passage.gain([a - self.supply for a in at]) / self.scale)
+
+    def change(self, at: list[np.ndarray]) -> np.ndarray:
+        """Change of `between` by a change outside."""
+        return self.response(self.passage.gain(at) / self.scale)
+
+    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
+        """Heat into both sides (n, m), W."""
+        return self.passage.heat(x, at)
+
+    def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Blocks of the film in a state."""
+        return x
+
+    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
+        """Heat in, convected and stored, W, with unknowns ``x`` at the end."""
+        return self.sums(x)
+
+
 class _Wall:
     """One wall with its place among the columns of a state."""
 
@@ -66,12 +116,14 @@ class WalledTemperature(FilmTemperature):
         Of the film's grid.
     """
 
+    blocks = 1
+
     def __init__(self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]):
         super().__init__(spec, bearing, field)
         self.shape, self.clearance = shape, bearing.radial_clearance
         R, L = bearing.journal_radius, bearing.length
         self.sides: list[_Wall | None] = [None, None]
-        end = shape[1]
+        end = self.blocks * shape[1]
         for side, wall in enumerate((spec.bush, spec.journal)):
             if wall is not None:
                 rings = Rings(wall, R, L, shape[0] if side == 0 else 1, inward=side == 1)
@@ -103,9 +155,14 @@ class WalledTemperature(FilmTemperature):
                 None if bush is None else bush.rings.radii,
                 None if journal is None else journal.rings.radii,
                 self.clearance + self.opening(T),
+                self._across(T),
             )
             self._parts = np.ascontiguousarray(T[:, :m]), walls
         return self._parts
+
+    def _across(self, state: np.ndarray) -> np.ndarray | None:
+        """Tilt and both surfaces' temperatures (3, n, m), K; None with one mean temperature."""
+        return None
 
     def opening(self, temperature: np.ndarray) -> float:
         """What the walls' growth adds to the radial clearance, m."""
@@ -132,9 +189,9 @@ class WalledTemperature(FilmTemperature):
 
         Of all of it, film and walls; also ``bush`` and ``journal``, the heat that leaves the film into them.
         """
-        T, old = temperature[:, : self.shape[1]], self._old(film)
-        out = HeatBalance(self, film, film.step, self._heat(film)).sums(T)
-        q = self._passage(film).heat(T, [self._surface(side, temperature) for side in (0, 1)])
+        T, old, film_only = self._of_film(temperature), self._old(film), self.equations(film, film.step)
+        at = [self._surface(side, temperature) for side in (0, 1)]
+        out, q = film_only.totals(T, at), film_only.passed(T, at)
         out["conducted"] = 0.0
         for wall, heat in zip(self.sides, q, strict=True):
             if wall is None:
@@ -159,23 +216,21 @@ class WalledTemperature(FilmTemperature):
         """State at the end of a step."""
         for wall in self.conducting:
             wall.rings.bring_to(step)
-        balance, passage = HeatBalance(self, film, step, self._heat(film)), self._passage(film)
-        balance.factor(passage.transfer / balance.scale)
+        between = self.equations(film, step)
+        between.solve()
         at = [self._surface(side, old) for side in (0, 1)]
-        first = balance.temperatures(self._gain(passage, balance, at, self.supply))
-        change = self._surfaces_change(balance, passage, old, passage.heat(first, at))
-        at = [a + c for a, c in zip(at, self._spread(change), strict=True)]
+        if self.conducting:
+            change = self._surfaces_change(between, old, between.passed(between.between(at), at))
+            at = [a + c for a, c in zip(at, self._spread(change), strict=True)]
         state = np.empty((self.shape[0], self.size))
-        state[:, : self.shape[1]] = balance.temperatures(self._gain(passage, balance, at, self.supply))
+        state[:, : self.blocks * self.shape[1]] = between.state(between.between(at), at)
         for side, surface in zip(self.sides, at, strict=True):
             if side is not None:
                 rise = side.rings.behind(surface.ravel() - side.ambient, side.of(old) - side.ambient)
                 state[:, side.columns] = rise + side.ambient
         return state
 
-    def _surfaces_change(
-        self, balance: HeatBalance, passage: Passage, old: np.ndarray, heat: list[np.ndarray]
-    ) -> np.ndarray:
+    def _surfaces_change(self, between: Between, old: np.ndarray, heat: list[np.ndarray]) -> np.ndarray:
         """Change (k,) of the walls' surface temperatures from ``old``, at which the film gives ``heat``, W, to where
         the walls take what it gives.
 
@@ -188,26 +243,30 @@ class WalledTemperature(FilmTemperature):
             stiff[part, part] = wall.rings.matrix()
             missing[part] = wall.rings.remembered(rise) - stiff[part, part] @ rise[:, 0]
         given = self._gather(heat)
-        lead = lu_factor(stiff + self._held(passage))
+        lead = lu_factor(stiff + self._held(between.by))
 
         def led(w: np.ndarray) -> np.ndarray:
             at = self._spread(w)
-            T = balance.response(self._gain(passage, balance, at, 0.0))
-            return lu_solve(lead, stiff @ w - self._gather(passage.heat(T, at)))
+            return lu_solve(lead, stiff @ w - self._gather(between.passed(between.change(at), at)))
 
         enough = AGREED * float(np.linalg.norm(lu_solve(lead, given)))
         return _krylov(led, lu_solve(lead, missing + given), enough)
 
-    def _passage(self, film: SolvedFilm) -> Passage:
+    def equations(self, film: SolvedFilm, step: float) -> Between:
+        """Of a solved film over a step, s; 0: for good."""
+        return Between(self, film, step)
+
+    def passage(self, film: SolvedFilm) -> tuple[np.ndarray, np.ndarray, tuple[float | None, float | None]]:
+        """What `Passage` asks for."""
         assert self.spec.conductivity is not None
         kappa = self.spec.conductivity / (self.clearance * film.solver.H)
         area = film.solver.area * film.grid.reference_length**2
         bush, journal = (U if wall is None else None for wall, (U, _) in zip(self.sides, self.walls, strict=True))
-        return Passage(kappa, area, (bush, journal))
+        return kappa, area, (bush, journal)
 
-    def _gain(self, passage: Passage, balance: HeatBalance, at: list[np.ndarray], zero: float) -> np.ndarray:
-        """What the surfaces give to a film at ``zero``, K, in the balance's units (n, m)."""
-        return passage.gain([a - zero for a in at]) / balance.scale
+    def _of_film(self, state: np.ndarray) -> np.ndarray:
+        """The film's unknowns in a state."""
+        return state[:, : self.shape[1]]
 
     def _spread(self, w: np.ndarray) -> list[np.ndarray]:
         """Values (k,) at the surfaces of walls that conduct as (n, 1) or (1, 1) of both sides, the others' zero."""
@@ -224,9 +283,9 @@ class WalledTemperature(FilmTemperature):
         ]
         return np.concatenate(rows)
 
-    def _held(self, passage: Passage) -> np.ndarray:
+    def _held(self, of: list[list[np.ndarray]]) -> np.ndarray:
         """What the walls give per kelvin of their surfaces to a film of held temperatures (k, k), W/K."""
-        parts = [[by.sum(axis=1) for by in row] for row in passage.by]
+        parts = [[by.sum(axis=1) for by in row] for row in of]
         (bush, both), (_, journal) = parts
         if self.sides[1] is None:
             return np.diag(bush)

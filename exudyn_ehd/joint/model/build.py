@@ -31,6 +31,7 @@ def collect_effects(bearing: JournalBearing, start_angle: float = 0.0) -> Effect
         thermal=oil.thermal,
         density=oil.density,
         liner=liner_of(bearing),
+        uneven_drag=surfaces.uneven_drag or oil.uneven_drag,
     )
 
 

@@ -67,10 +67,10 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         ``leakage_upper``, ``contact_load`` (N, carried by contact), ``contact_torque`` (Nm, its friction on the
         journal about its own axis), ``contact_power_loss`` (W, the part of ``power_loss`` that this friction takes),
         ``peak_contact_pressure`` (Pa, largest vertex); with supply areas
-        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` and
-        ``peak_temperature`` (K), with walls that conduct ``bush_temperature`` and ``journal_temperature`` (K, mean at
-        the film) and ``clearance`` (m, radial, with what they have grown by), with a liner or a flexible bore
-        ``bore_displacement`` (m, the largest).
+        also ``supply_flow`` (m3/s, out of all of them), with a thermal effect ``film_temperature`` (K, mean) and
+        ``peak_temperature`` (K), with walls that conduct or two temperatures across the film ``bush_temperature`` and
+        ``journal_temperature`` (K, mean at the film) and ``clearance`` (m, radial, with what they have grown by), with
+        a liner or a flexible bore ``bore_displacement`` (m, the largest).
     """
     p, w = film.parts, film.journal
     R = p.grid.reference_length
@@ -104,7 +104,8 @@ def quantities(film: SolvedFilm) -> dict[str, float]:
         out["supply_flow"] = float(supply_flows(film).sum())
     if film.temperature is not None:
         out["film_temperature"] = float(np.mean(film.temperature))
-        out["peak_temperature"] = float(np.max(film.temperature))
+        T = film.temperature if film.walls is None else film.walls.across_film(film.temperature)
+        out["peak_temperature"] = float(np.max(T))
     if film.walls is not None:
         out |= film.walls.numbers()
     if p.liner is not None:

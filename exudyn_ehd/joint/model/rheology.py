@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from exudyn_ehd.bearing import JournalBearing
-from exudyn_ehd.film.heat.options import LumpedThermal
+from exudyn_ehd.film.heat.options import FilmEnergy, LumpedThermal
 from exudyn_ehd.film.lubricant.density import CompressibleLaw
 from exudyn_ehd.film.lubricant.lubricant import Lubricant
 from exudyn_ehd.film.models import film_grid
@@ -47,18 +47,24 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
         if turbulent is not None:
             turbulent.field = lumped.field = ViscosityField()
         return replace(effects, thermal=lumped)
-    field = ViscosityField()
-    if turbulent is not None:
-        turbulent.field = field
-    if thinning is not None:
-        thinning.field = field
-    effects = replace(effects, flux=(*effects.flux, field), shear_factor=shear_product(field, effects.shear_factor))
-    if thermal.journal is not None and thermal.journal.thickness > bearing.journal_radius * (1.0 + 1e-12):
-        raise InputError(
-            f"FilmEnergy.journal=Conduction(thickness={thermal.journal.thickness:g} m) is thicker than the journal, "
-            f"whose radius is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
-        )
-    if thermal.bush is None and thermal.journal is None:
+    _check_field(bearing, thermal)
+    if thermal.across == 2:
+        # imported here: other films have no profile across them
+        from exudyn_ehd.joint.heat.across import CubicTemperature, FluidityField
+
+        field: ViscosityField = FluidityField()
+    else:
+        field = ViscosityField()
+    for law in (thinning, turbulent):
+        if law is not None:
+            law.field = field
+    effects = replace(
+        effects,
+        flux=(*effects.flux, field),
+        shear_factor=shear_product(field, effects.shear_factor),
+        uneven_drag=field.changes_carriers,
+    )
+    if thermal.across == 1 and thermal.bush is None and thermal.journal is None:
         return replace(effects, thermal=FilmTemperature(thermal, bearing, field))
     # imported here: other films need no walls
     from exudyn_ehd.joint.heat.walls import Growth, WalledTemperature
@@ -66,8 +72,24 @@ def collect_rheology(bearing: JournalBearing) -> Effects:
     grid = film_grid(
         bearing.film, bearing.journal_radius, bearing.length, start_angle=0.0, open_ring=False, supply=bearing.supply
     )
-    walled = WalledTemperature(thermal, bearing, field, grid.shape)
+    kind = WalledTemperature if thermal.across == 1 else CubicTemperature
+    walled = kind(thermal, bearing, field, grid.shape)
     return replace(effects, thermal=walled, gap_terms=(Growth(walled),) if walled.grows else ())
+
+
+def _check_field(bearing: JournalBearing, thermal: FilmEnergy) -> None:
+    """Refuse a temperature field that does not go with the bearing."""
+    if thermal.across == 2 and bearing.lubricant.shear_law is not None:
+        raise InputError(
+            f"FilmEnergy.across=2 does not go with Lubricant.shear_law={type(bearing.lubricant.shear_law).__name__}(): "
+            "both change the viscosity across the film, and either leaves out the other's profile; take across=1, or "
+            "leave the shear_law out."
+        )
+    if thermal.journal is not None and thermal.journal.thickness > bearing.journal_radius * (1.0 + 1e-12):
+        raise InputError(
+            f"FilmEnergy.journal=Conduction(thickness={thermal.journal.thickness:g} m) is thicker than the journal, "
+            f"whose radius is {bearing.journal_radius:g} m; a solid journal's thickness is its radius."
+        )
 
 
 def transform_law(lubricant: Lubricant) -> PressureLaw | None:

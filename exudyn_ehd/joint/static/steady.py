@@ -81,7 +81,8 @@ class SteadyResult(Film, FilmPictures):
     temperature : (n, m) array, float or None
         Of the film, K; None for an isothermal bearing.
     walls : Walls or None
-        Temperatures of bush and journal, and the clearance that they leave; None where none conducts.
+        Temperatures of bush and journal, and the clearance that they leave; None where none conducts and
+        the film has one temperature across it.
     bore_displacement : (n, m) array or None
         Of a flexible bore, m, positive outward; None for a rigid one.
     bore_coordinates : (k,) array or None

@@ -12,8 +12,8 @@ SPEED = 300.0
 WALL = ehd.Conduction(thickness=1e-3, conductance=5.0, density=400.0, expansion=1.2e-5)
 
 
-def run(journal, end, steps, **options):
-    thermal = ehd.FilmEnergy(supply_temperature=313.15, conductivity=0.13, bush=WALL, journal=journal)
+def run(journal, end, steps, across=1, **options):
+    thermal = ehd.FilmEnergy(supply_temperature=313.15, conductivity=0.13, bush=WALL, journal=journal, across=across)
     bearing = ehd.JournalBearing(
         journal_radius=0.02,
         length=0.02,
@@ -34,8 +34,9 @@ def run(journal, end, steps, **options):
 
 
 @pytest.mark.slow
-def test_a_run_ends_in_the_equilibrium_of_film_and_walls():
-    joint = run(WALL, 1.0, 250)
+@pytest.mark.parametrize("across", [1, 2])
+def test_a_run_ends_in_the_equilibrium_of_film_and_walls(across):
+    joint = run(WALL, 1.0, 250, across)
     history = joint.history
     found = ehd.equilibrium(joint.bearing, speed=history.motion[-1, 8], load=tuple(-history.force[-1, :2]))
     film = found.film

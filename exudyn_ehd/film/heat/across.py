@@ -1,0 +1,241 @@
+"""Temperature across the film as a cubic, its viscosity there, and the energy equation of its mean and its tilt.
+
+Over the height zeta, 0 at the bush and 1 at the journal, with Legendre's polynomials P_k on it,
+
+    T = s + a P_1 + ((T_j + T_b)/2 - s) P_2 + ((T_j - T_b)/2 - a) P_3,
+
+s the mean, a the tilt, T_b and T_j the surfaces' temperatures, which follow from what the surfaces let through:
+``q_b = k/h (6 s - 10 a - 9 T_b + 3 T_j)``, ``q_j = k/h (6 s + 10 a - 9 T_j + 3 T_b)``. Between its values at Lobatto's
+four points, the surfaces and 1/2 -+ 1/(2 sqrt 5), the fluidity 1/mu is a cubic (H. G. Elrod and D. E. Brewe, Proc. 13th
+Leeds-Lyon Symposium (1986) 493). With its moments ``J_r = int zeta^r / mu``, which Lobatto's rule sums exactly, a film
+carries (D. Dowson, Int. J. Mech. Sci. 4 (1962) 159)
+
+    q = U h (1 - J_1/J_0) - h^3 (J_2 - J_1^2/J_0) dp/dx,        tau = U / (h J_0) + h (zeta - J_1/J_0) dp/dx.
+
+The energy equation is taken in the mean and weighted with P_1: every link carries each height's flow with the
+temperature upstream of that height, of second order in z as in `exudyn_ehd.film.heat.energy`; continuity takes oil
+across the film as well. What leaves at the ends does so as pressure drives it, what a cavitation model finds or loses
+as sliding carries it.
+
+Scaled as in `exudyn_ehd.film.heat.energy`. What is linear in the temperatures has a last axis of four: s, a, and the
+temperatures w_b, w_j outside the surfaces; rows of two are heat and tilt, heat weighted with P_1. Fluidities (n, m, 4)
+are over the reference, at Lobatto's points.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.polynomial import Polynomial
+
+from exudyn_ehd.film.heat.energy import downstream_weight
+
+_FAST = {"reassoc", "contract", "nsz", "arcp"}
+LOBATTO = np.array([0.0, 0.5 - 0.5 / math.sqrt(5.0), 0.5 + 0.5 / math.sqrt(5.0), 1.0])
+_MOMENTS = (np.array([1.0, 5.0, 5.0, 1.0]) / 12.0)[:, None] * LOBATTO[:, None] ** np.arange(3)
+# five heights, exact for the degrees of a flow (5), a temperature (3) and a weight (1)
+_X, _W = np.polynomial.legendre.leggauss(5)
+HEIGHTS, _WEIGHTS = 0.5 * (1.0 + _X), np.array([0.5 * _W, 0.5 * _W * _X])
+
+
+def _of_points(moment: int, times: int) -> np.ndarray:
+    """zeta^moment times each point's polynomial, integrated so often from the bush, at the heights (4, 5)."""
+    polynomials = (Polynomial.fromroots(np.delete(LOBATTO, k)) for k in range(4))
+    weighted = (p * Polynomial.basis(moment) / p(at) for p, at in zip(polynomials, LOBATTO, strict=True))
+    return np.array([p.integ(times)(HEIGHTS) for p in weighted])
+
+
+def _cubic(at: np.ndarray) -> np.ndarray:
+    """Temperatures at heights (k,) per s, a, T_b and T_j (k, 4)."""
+    x = 2.0 * at - 1.0
+    p2, p3 = 0.5 * (3.0 * x**2 - 1.0), 0.5 * (5.0 * x**3 - 3.0 * x)
+    return np.column_stack((1.0 - p2, x - p3, 0.5 * (p2 - p3), 0.5 * (p2 + p3)))
+
+
+_FLUID, _FLOWS = _of_points(0, 0), [_of_points(r, k) for k in (1, 2) for r in (0, 1)]
+_CUBIC, _AT_LOBATTO = _cubic(HEIGHTS), _cubic(LOBATTO)
+
+
+def at_points(fields: np.ndarray) -> np.ndarray:
+    """Temperatures (n, m, 4) at Lobatto's points of mean, tilt and both surfaces (4, n, m)."""
+    return np.moveaxis(fields, 0, -1) @ _AT_LOBATTO.T
+
+
+def on_links(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Fluidities of the links in theta and z, by the mean viscosity of both vertices at each point."""
+    thick = 1.0 / fluid
+    far = np.concatenate((thick[:, 1:], thick[:, -1:]), axis=1)
+    return 2.0 / (thick + np.roll(thick, -1, axis=0)), 2.0 / (thick + far)
+
+
+def flow_factors(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What fluidities multiply conductance, carrier and shear stress by, (n, m) each."""
+    J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)
+    return 12.0 * (J2 - J1 * J1 / J0), 2.0 * (1.0 - J1 / J0), 1.0 / J0
+
+
+class Shapes(NamedTuple):
+    """Flows at the heights per mean flow, of sliding and of pressure, and what of them is below; (n, m, 5) each."""
+
+    slides: np.ndarray
+    pressed: np.ndarray
+    slides_below: np.ndarray
+    pressed_below: np.ndarray
+
+
+def flow_shapes(fluid: np.ndarray) -> Shapes:
+    """Shapes of the flows with these fluidities."""
+    J0, J1, J2 = np.moveaxis(fluid @ _MOMENTS, -1, 0)[..., None]
+    F0, F1, B0, B1 = ((fluid.reshape(-1, 4) @ of).reshape(*fluid.shape[:2], 5) for of in _FLOWS)
+    centre = J1 / J0
+    slide, press = 1.0 / (J0 - J1), 1.0 / (J2 - J1 * centre)
+    return Shapes(slide * F0, press * (centre * F0 - F1), slide * B0, press * (centre * B0 - B1))
+
+
+def heat_tilts(fluid: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Tilt of the heat of sliding and of pressure flow per heat, and of both stresses together, (n, m) each."""
+    J0, J1, _ = np.moveaxis(fluid @ _MOMENTS, -1, 0)
+    heat, tilt = ((fluid @ _FLUID) * w for w in _WEIGHTS)
+    arm = HEIGHTS - (J1 / J0)[..., None]
+    return tilt.sum(-1) / J0, (tilt * arm**2).sum(-1) / (heat * arm**2).sum(-1), (tilt * arm).sum(-1) / J0
+
+
+def crossed_tilt(
+    P: np.ndarray, H: np.ndarray, both: np.ndarray, speeds: tuple[float, float], mesh: tuple[np.ndarray, ...]
+) -> np.ndarray:
+    """Tilt of the heat (n, m) that the stresses of sliding and of pressure flow make together; ``both`` of
+    `heat_tilts`, scaled speeds along theta and z."""
+    width_x, width_z, link_x, _ = mesh
+    along = speeds[0] * np.where(link_x != 0.0, 1.0, 0.0)[:, None] * width_z * (np.roll(P, -1, axis=0) - P)
+    across = np.zeros_like(P)
+    across[:, :-1] = speeds[1] * width_x[:, None] * np.diff(P, axis=1)
+    return 2.0 * H * both * (along + np.roll(along, 1, axis=0) + across + np.roll(across, 1, axis=1))
+
+
+def surfaces(
+    kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Temperatures of both surfaces, heat into them, W, and what conduction takes off heat and tilt, W.
+
+    Arguments as for `exudyn_ehd.film.heat.passage.Passage`; (2, n, m, 4) each.
+    """
+    k, known = kappa[..., None], np.zeros((2, *kappa.shape, 4))
+    inside = np.array([[6.0, -10.0, 0.0, 0.0], [6.0, 10.0, 0.0, 0.0]])
+    meets = [0.0 if U is None else 1.0 for U in outward]
+    given = [1.0 if U is None else U for U in outward]
+    own = [9.0 * k * meet + U for meet, U in zip(meets, given, strict=True)]
+    for side in (0, 1):
+        known[side] = k * meets[side] * inside[side]
+        known[side, ..., 2 + side] = given[side]
+    determinant = own[0] * own[1] - 9.0 * k * k * meets[0] * meets[1]
+    T = np.stack([(own[1 - a] * known[a] + 3.0 * k * meets[a] * known[1 - a]) / determinant for a in (0, 1)])
+    through = k * area[..., None]
+    passed = through * (inside[:, None, None] - 9.0 * T + 3.0 * T[::-1])
+    tilt = through * (np.array([0.0, 20.0, 0.0, 0.0]) - 10.0 * (T[1] - T[0]))
+    return T, passed, np.stack((passed[0] + passed[1], tilt))
+
+
+def at_heights(surface: np.ndarray) -> np.ndarray:
+    """Temperatures (n, m, 5, 4) at the heights, with those of both surfaces (2, n, m, 4)."""
+    out = np.einsum("gk,kijc->ijgc", _CUBIC[:, 2:], surface)
+    out[..., :2] += _CUBIC[:, :2]
+    return out
+
+
+@njit(cache=True, fastmath=_FAST)
+def weighed(flow, at):
+    """Heat and tilt (2, n, m, 4) of what the heights carry (n, m, 5) with temperatures as `at_heights`."""
+    n, m, heights = flow.shape
+    out = np.zeros((2, n, m, 4))
+    for i in range(n):
+        for j in range(m):
+            for g in range(heights):
+                heat, tilt = _WEIGHTS[0, g] * flow[i, j, g], _WEIGHTS[1, g] * flow[i, j, g]
+                for c in range(4):
+                    out[0, i, j, c] += heat * at[i, j, g, c]
+                    out[1, i, j, c] += tilt * at[i, j, g, c]
+    return out
+
+
+def start_heights(fields: np.ndarray) -> np.ndarray:
+    """Temperatures (n, 5, m) at the heights of mean, tilt and both surfaces (4, n, m)."""
+    return np.ascontiguousarray(np.einsum("gc,cij->igj", _CUBIC, fields))
+
+
+@njit(cache=True, fastmath=_FAST)
+def carry(axis, driven, sliding, shapes, at, limiter, ends_out, below_out, content_out):
+    """Add what the links in theta (axis 0) or z (1) carry.
+
+    Parameters
+    ----------
+    driven, sliding : (n, m) arrays
+        Flows by pressure and by sliding.
+    shapes : Shapes
+        On the links.
+    at : (n, m, 5, 4) array
+        See `at_heights`.
+    limiter : three arrays
+        `start_heights`, and ``link_z`` and ``held`` of `exudyn_ehd.film.heat.energy.transport_slopes`, which does in z
+        what is done here at every height.
+    ends_out : (2, 2, n, m, 4) array
+        Heat and tilt that leave by the link, by its own and by the next vertex.
+    below_out, content_out : (n, m, 5), (n, m) arrays
+        What enters in all below the heights, and at all.
+    """
+    slides, pressed, slides_below, pressed_below = shapes
+    T, link_z, held = limiter
+    n, m, heights = slides.shape
+    for i in range(n):
+        for j in range(m - axis):
+            a, b = ((i + 1) % n, j) if axis == 0 else (i, j + 1)
+            p, s = driven[i, j], sliding[i, j]
+            content_out[i, j] -= p + s
+            content_out[a, b] += p + s
+            for g in range(heights):
+                passed = s * slides_below[i, j, g] + p * pressed_below[i, j, g]
+                below_out[i, j, g] -= passed
+                below_out[a, b, g] += passed
+                F, share = s * slides[i, j, g] + p * pressed[i, j, g], 0.0
+                if axis == 1 and F != 0.0:
+                    store = held[i, j + 1 if F < 0.0 else j]
+                    share = downstream_weight(T[i, g], link_z, j, F) * min(1.0, store / abs(F))
+                own = (1.0 - share if F > 0.0 else share) * F
+                for r in range(2):
+                    for c in range(4):
+                        ends_out[0, r, i, j, c] += _WEIGHTS[r, g] * own * at[i, j, g, c]
+                        ends_out[1, r, i, j, c] += _WEIGHTS[r, g] * (F - own) * at[a, b, g, c]
+
+
+@njit(cache=True)
+def band_of_pairs(ends, own, number, lower, upper):
+    """Bands, as of `exudyn_ehd.film.banded.lu`, of the pairs (s, a) at the numbered vertices (n, m).
+
+    ``own`` (2, n, m, 4), and what the links carry away in theta and z by their own and by the next vertex, ``ends``
+    (2, 2, 2, n, m, 4).
+    """
+    n, m = number.shape
+    lower[:] = 0.0
+    upper[:] = 0.0
+    for i in range(n):
+        for j in range(m):
+            here = number[i, j]
+            _add(own[:, i, j], 1.0, here, here, lower, upper)
+            for axis in range(2 if j + 1 < m else 1):
+                there = number[(i + 1) % n, j] if axis == 0 else number[i, j + 1]
+                for side, column in ((0, here), (1, there)):
+                    _add(ends[axis, side, :, i, j], 1.0, here, column, lower, upper)
+                    _add(ends[axis, side, :, i, j], -1.0, there, column, lower, upper)
+
+
+@njit(cache=True, inline="always")
+def _add(block, sign, row, column, lower, upper):
+    for r in range(2):
+        for c in range(2):
+            a, b = 2 * row + r, 2 * column + c
+            if b >= a:
+                upper[a, b - a] += sign * block[r, c]
+            else:
+                lower[b, a - b] += sign * block[r, c]

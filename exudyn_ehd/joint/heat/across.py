@@ -1,0 +1,271 @@
+"""Two temperatures across the film: a bearing model's state, viscosity and balance of heat, `FilmEnergy.across` = 2.
+
+A state has four blocks (n, m) in place of the film's one temperature, K: the mean, the mean with the tilt, and the
+surfaces of bush and journal; see `exudyn_ehd.film.heat.across`. Behind them stand walls that conduct, as in
+`exudyn_ehd.joint.heat.walls`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from exudyn_ehd.bearing import JournalBearing
+from exudyn_ehd.film.banded.lu import factor_lu
+from exudyn_ehd.film.banded.numbering import number_cells
+from exudyn_ehd.film.banded.substitution import solve_lu
+from exudyn_ehd.film.banded.workspace import PAD
+from exudyn_ehd.film.heat.across import (
+    HEIGHTS,
+    at_heights,
+    at_points,
+    band_of_pairs,
+    carry,
+    crossed_tilt,
+    flow_factors,
+    flow_shapes,
+    heat_tilts,
+    on_links,
+    start_heights,
+    surfaces,
+    weighed,
+)
+from exudyn_ehd.film.heat.energy import film_heat
+from exudyn_ehd.film.heat.options import FilmEnergy
+from exudyn_ehd.film.reynolds.links import LinkFlux
+from exudyn_ehd.joint.heat.heat_balance import STAGNANT
+from exudyn_ehd.joint.heat.temperature import ViscosityField
+from exudyn_ehd.joint.heat.walls import Between, WalledTemperature
+from exudyn_ehd.joint.solved_film import SolvedFilm
+
+# Exchange that mixes the oil over the height of a supply area, in the film's largest flow.
+MIXED = 1e4
+
+
+class FluidityField(ViscosityField):
+    """Viscosity over the height of a film: flux effect and shear factor.
+
+    Attributes
+    ----------
+    vertices, along, across : (n, m, 4) arrays
+        1 over the viscosity's ratio at Lobatto's points: at vertices, on links in theta and z.
+    """
+
+    changes_carriers = True
+
+    def set(self, ratio: np.ndarray) -> None:
+        """Take over the ratio at the vertices at Lobatto's points (n, m, 4); links take the mean of their vertices."""
+        self.vertices = 1.0 / ratio
+        self.along, self.across = on_links(self.vertices)
+        self.inverse_x, self.carried_x, _ = flow_factors(self.along)
+        self.inverse_z, self.carried_z, _ = flow_factors(self.across)
+        self.ratio = flow_factors(self.vertices)[2]
+
+    def apply(self, flux: LinkFlux, gap_x: np.ndarray, gap_z: np.ndarray, vx: float, vz: float) -> None:
+        """Multiply conductances and carriers by their factors on the links."""
+        super().apply(flux, gap_x, gap_z, vx, vz)
+        for carriers, factor in (((flux.cx, flux.cx_h), self.carried_x), ((flux.cz, flux.cz_h), self.carried_z)):
+            for carrier in carriers:
+                carrier *= factor
+
+
+class PairSolver:
+    """Systems of mean and tilt on one film grid (n, m); its buffers stay."""
+
+    def __init__(self, shape: tuple[int, int]) -> None:
+        n, m = shape
+        self.number, self.order = np.zeros(shape, dtype=np.int64), np.zeros(n * m, dtype=np.int64)
+        _, width = number_cells(np.ones(shape, dtype=np.bool_), np.ones(shape), self.order, self.number)
+        self.size, self.width = 2 * n * m, 2 * width + 1
+        self.lower, self.upper = np.zeros((2, self.size, self.width + 1 + PAD))
+        self.inverse = np.zeros(self.size)
+
+    def factor(self, ends: np.ndarray, own: np.ndarray) -> None:
+        """Factor the system of `exudyn_ehd.film.heat.across.band_of_pairs`."""
+        band_of_pairs(ends, own, self.number, self.lower, self.upper)
+        self.regular = factor_lu(self.lower, self.upper, self.size, self.width, self.inverse)
+
+    def solve(self, rhs: np.ndarray) -> np.ndarray:
+        """Mean and tilt (2, n, m) for a right-hand side (2, n, m); inf for a singular system."""
+        if not self.regular:
+            return np.full(rhs.shape, np.inf)
+        pairs, out = rhs.reshape(2, -1), np.empty((2, rhs[0].size))
+        x = np.ascontiguousarray(pairs[:, self.order].T).reshape(1, -1)
+        solve_lu(self.lower, self.upper, self.inverse, self.size, self.width, x)
+        out[:, self.order] = x.reshape(-1, 2).T
+        return out.reshape(rhs.shape)
+
+
+class PairBetween(Between):
+    """What warms mean and tilt of a solved film over a step, or for good with a step of 0.
+
+    Unknowns are mean and tilt (2, n, m), K.
+
+    Parameters
+    ----------
+    thermal : CubicTemperature
+    film, step
+        As for `Between`.
+    """
+
+    def __init__(self, thermal: CubicTemperature, film: SolvedFilm, step: float) -> None:
+        super().__init__(thermal, film, step)
+        assert film.walls is not None and film.walls.across is not None
+        self.pairs, across = thermal.pairs, film.walls.across
+        largest = float(max(np.abs(self.flows.x).max(), np.abs(self.flows.z).max(), self.store.max()))
+        largest_lost = float(np.abs(self.own).max())
+        self._carry(thermal.fluidity, np.array([self.old, *across]))
+        kept = self.store + STAGNANT * largest
+        self.own[0, ..., 0] += kept + self.follows
+        self.own[1, ..., 1] += kept / 3.0
+        if film.parts.supply is not None:
+            areas = np.logical_or.reduce(film.parts.supply.masks)
+            self.own[1, ..., 1] += areas * MIXED * (largest + largest_lost)
+        self.given = np.array([self.heat, thermal.heat_tilt(film)]) / self.scale
+        self.given[0] += (kept + self.follows) * (self.old - self.supply)
+        self.given[1] += kept / 3.0 * across[0]
+
+    def _pass(self, kappa: np.ndarray, area: np.ndarray, outward: tuple[float | None, float | None]) -> None:
+        self.surface, self.through, lost = surfaces(kappa, area, outward)
+        self.by = [[-self.through[a, ..., 2 + b] for b in (0, 1)] for a in (0, 1)]
+        self.own = lost / self.scale
+
+    def _carry(self, field: FluidityField, old: np.ndarray) -> None:
+        """What flows carry, with the temperatures ``old`` (4, n, m) of the step's start for the limiter."""
+        film, flows = self.film, self.flows
+        q, y, fill = film.solver.pressure, film.solver.system, flows.convected
+        at, own = at_heights(self.surface), flow_shapes(field.vertices)
+        held = self.store if self.step > 0.0 else np.full(q.shape, np.inf)
+        limiter = start_heights(old), film.grid.link_z, held
+        below = flows.outside[..., None] * own.pressed_below + flows.found[..., None] * own.slides_below
+        content, self.ends = flows.outside + flows.found, np.zeros((2, 2, *self.own.shape))
+        for axis, (k, f, fluid) in enumerate(((y.kx, flows.fx, field.along), (y.kz, flows.fz, field.across))):
+            driven, sliding = k * (q - np.roll(q, -1, axis)), f * np.where(f >= 0.0, fill, np.roll(fill, -1, axis))
+            carry(axis, driven, sliding, flow_shapes(fluid), at, limiter, self.ends[axis], below, content)
+        leaves, loses = (weighed(flow, at) for flow in (own.pressed, own.slides))
+        self.takes, uniform = (leaves[0], loses[0]), np.ones((*q.shape, HEIGHTS.size, 4))
+        self.brings = self.found * weighed(own.slides, uniform)[..., 0]
+        self.own[0, ..., 0] += content
+        self.own[1, ..., 1] += content / 3.0
+        self.own[1] -= 2.0 * weighed(below - content[..., None] * HEIGHTS, at)[0]
+        self.own += self.leaving[..., None] * leaves + self.lost[..., None] * loses
+
+    def solve(self) -> None:
+        """Factor the system, which `between` and `change` use."""
+        self.pairs.factor(self.ends, self.own)
+        if self.back > 0.0:
+            self.returning = self.pairs.solve(self.back * self.brings)
+
+    def between(self, at: list[np.ndarray]) -> np.ndarray:
+        """Mean and tilt (2, n, m), K, with temperatures ``at`` outside both surfaces."""
+        x = self._answer(self.given, [a - self.supply for a in at])
+        x[0] += self.supply
+        return x
+
+    def change(self, at: list[np.ndarray]) -> np.ndarray:
+        """Change of `between` by a change outside."""
+        return self._answer(np.zeros_like(self.given), at)
+
+    def _answer(self, given: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Mean and tilt (2, n, m), with rises ``at`` outside both surfaces."""
+        outside = _fields(np.zeros_like(given), at)
+        rest = given - _of(self.own, outside)
+        for axis, (own, other) in enumerate(self.ends):
+            flow = _of(own, outside) + _of(other, np.roll(outside, -1, axis))
+            rest -= flow - np.roll(flow, 1, axis + 1)
+        x = self.pairs.solve(rest)
+        if self.back > 0.0:
+            back = self._mixed(_fields(self.returning, [np.zeros((1, 1))] * 2))
+            x = x + self._mixed(_fields(x, at)) / (1.0 - back) * self.returning
+        return x
+
+    def _mixed(self, fields: np.ndarray) -> float:
+        """Temperature of all oil that is lost, mixed."""
+        return float(np.sum(self.weight * _of(self.takes[1], fields)))
+
+    def passed(self, x: np.ndarray, at: list[np.ndarray]) -> list[np.ndarray]:
+        """Heat into both sides (n, m), W."""
+        return list(_of(self.through, _fields(x, at)))
+
+    def state(self, x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+        """Blocks (n, 4 m) of a state."""
+        return np.hstack([x[0], x[0] + x[1], *_of(self.surface, _fields(x, at))])
+
+    def totals(self, x: np.ndarray, at: list[np.ndarray]) -> dict[str, float]:
+        """Heat in, convected and stored, W, with mean and tilt ``x`` (2, n, m) at the end."""
+        rise = _fields(x, at) - np.array([self.supply, 0.0, self.supply, self.supply])
+        leaving, lost = (_of(takes, rise) for takes in self.takes)
+        out = self.sums(x[0])
+        convected = float(np.sum(self.leaving * leaving + self.lost * lost))
+        return out | {"convected": self.scale * (convected - self.back * self._mixed(rise) * self.total_found)}
+
+
+def _fields(x: np.ndarray, at: list[np.ndarray]) -> np.ndarray:
+    """Mean and tilt (2, n, m) and temperatures outside both surfaces as (n, m, 4)."""
+    return np.stack([*x, *(np.broadcast_to(a, x.shape[1:]) for a in at)], axis=-1)
+
+
+def _of(linear: np.ndarray, fields: np.ndarray) -> np.ndarray:
+    """Values (..., n, m) of what is linear in fields (n, m, 4)."""
+    return np.einsum("...c,...c", linear, fields)
+
+
+class CubicTemperature(WalledTemperature):
+    """`FilmEnergy` with two temperatures across the film, of one bearing model.
+
+    Parameters
+    ----------
+    spec, bearing, shape
+        As for `WalledTemperature`.
+    field : FluidityField
+        Takes the viscosity of the temperatures to the film.
+    """
+
+    blocks = 4
+
+    def __init__(
+        self, spec: FilmEnergy, bearing: JournalBearing, field: ViscosityField, shape: tuple[int, int]
+    ) -> None:
+        assert isinstance(field, FluidityField)
+        super().__init__(spec, bearing, field, shape)
+        self.fluidity, self.pairs = field, PairSolver(shape)
+
+    def initial_temperature(self, shape: tuple[int, int]) -> np.ndarray:
+        """(n, 4 m + k) state, K, at the start of a motion: one temperature, and the walls' at the surfaces."""
+        if self._start is None:
+            start, m = super().initial_temperature(shape), shape[1]
+            for at, wall in zip((2 * m, 3 * m), self.sides, strict=True):
+                start[:, at : at + m] = self.initial if wall is None else wall.initial
+        return super().initial_temperature(shape)
+
+    def set_viscosity(self, temperature: float | np.ndarray) -> float:
+        """Bring the viscosity field to a state, K; the film shares no other factor than 1."""
+        if temperature is not self._last:
+            self._last = np.asarray(temperature)
+            self.field.set(self.viscosity_ratio(at_points(self._blocks(self._last))))
+        return 1.0
+
+    def heat_tilt(self, film: SolvedFilm) -> np.ndarray:
+        """What P_1 makes of the heat at the vertices, W (n, m); contacts rub evenly."""
+        sliding, pressed, both = heat_tilts(self.fluidity.vertices)
+        s, flow = film.solver, np.zeros(film.grid.shape)
+        film_heat(self.dropped(film), s.pressure, s.system.kx, s.system.kz, flow)
+        crossed = crossed_tilt(film.oil.P, s.H, both, (s.vx * s.flow_x, s.vz), film.grid.mesh)
+        power = film.parts.flow_scale * film.scales.pressure
+        return power * (self.sheared(film) * sliding + flow * pressed + crossed)
+
+    def equations(self, film: SolvedFilm, step: float) -> PairBetween:
+        """Of a solved film over a step, s; 0: for good."""
+        return PairBetween(self, film, step)
+
+    def _blocks(self, state: np.ndarray) -> np.ndarray:
+        """Mean, tilt and both surfaces (4, n, m) of a state."""
+        n, m = self.shape
+        out = state[:, : 4 * m].reshape(n, 4, m).transpose(1, 0, 2).copy()
+        out[1] -= out[0]
+        return out
+
+    def _across(self, state: np.ndarray) -> np.ndarray:
+        return self._blocks(state)[1:]
+
+    def _of_film(self, state: np.ndarray) -> np.ndarray:
+        return self._blocks(state)[:2]
